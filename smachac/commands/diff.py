@@ -25,12 +25,13 @@ examples:
   smachac diff main.yml --from v1.0 --to v2.0     two git revisions
   smachac diff --from origin/main --format markdown > comment.md   all scripts, for a pull request
   smachac diff old.yml new.yml --format dot | dot -Tsvg > diff.svg   a picture in red and green
+  smachac diff old.yml new.yml --format html > diff.html   the same to explore in a browser
 
 exit codes: 0 equal, 1 different or a script that cannot be read, 2 wrong usage,
 70 a bug in smachac
 """
 
-FORMATS = ("text", "markdown", "json", "dot")
+FORMATS = ("text", "markdown", "json", "dot", "html")
 DIFFERENT = 1
 
 
@@ -126,6 +127,8 @@ def _put(arguments: Namespace, pairs: Sequence[tuple[Analysis | None, Analysis |
     found = [compare(before, after) for before, after in pairs]
     different = [each for each in found if not each.equal]
     match arguments.format:
+        case "html":
+            return _put_page(list(zip(pairs, found, strict=True)))
         case "dot":
             return _put_picture(different or found)
         case "json":
@@ -145,3 +148,18 @@ def _put_picture(found: Sequence[Comparison]) -> int:
         return usage("--format dot draws one script: name it")
     sys.stdout.write(render_picture(found[0]))
     return OK if found[0].equal else DIFFERENT
+
+
+def _put_page(found: Sequence[tuple[tuple[Analysis | None, Analysis | None], Comparison]]) -> int:
+    """Print the page of one script; the exit code."""
+    from smachac.diff.page import render_difference_page
+
+    different = [each for each in found if not each[1].equal] or found
+    if len(different) > 1:
+        return usage("--format html draws one script: name it")
+    ((pair, comparison),) = different
+    machine = next((each.machine for each in reversed(pair) if each and each.machine), None)
+    if machine is None or comparison.unread:
+        return DIFFERENT  # its errors are printed
+    sys.stdout.write(render_difference_page(comparison, machine))
+    return OK if comparison.equal else DIFFERENT

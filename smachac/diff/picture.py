@@ -20,7 +20,7 @@ COLOURS = {
 """The line and fill colours of states."""
 
 
-class _Union:
+class Union:
     """Both machines as one: states by their path after the change; removed ones have a mark behind
     their path before."""
 
@@ -42,6 +42,11 @@ class _Union:
                 if state.parent is not None:
                     self.children[self.place[state.parent]].append(here)
 
+    def parent(self, path: str) -> str | None:
+        """The container around a state; None for a machine."""
+        around = self.shown[path].parent
+        return self.place[around] if around and self.look[path] == REMOVED else around
+
 
 class _Edge(NamedTuple):
     """An edge between two nodes of the graph; the outcome is empty for the edge from a start, and
@@ -54,7 +59,7 @@ class _Edge(NamedTuple):
 
 def render_picture(comparison: Comparison) -> str:
     """A comparison as a DOT file."""
-    union = _Union(comparison)
+    union = Union(comparison)
     lines = ["digraph diff {", f"  graph{attributes(_GRAPH)}", f"  node{attributes(_NODE)}"]
     lines.append(f"  edge{attributes(_EDGE)}")
     roots = [path for path in union.shown if union.shown[path].parent is None]
@@ -85,7 +90,7 @@ _NODE = {"fontname": FONT, "fontsize": "11", "shape": "box", "style": "rounded,f
 _EDGE = {"fontname": FONT, "fontsize": "9", "arrowsize": "0.7"}
 
 
-def _title(union: _Union, path: str) -> str:
+def _title(union: Union, path: str) -> str:
     state = union.shown[path]
     rows = [f"<B>{html(state.name)}</B>"]
     if state.type:
@@ -93,13 +98,13 @@ def _title(union: _Union, path: str) -> str:
     return spaced(rows)
 
 
-def _box(union: _Union, path: str) -> str:
+def _box(union: Union, path: str) -> str:
     line, fill = COLOURS[union.look[path]]
     look = {"color": line, "fillcolor": fill, "tooltip": union.look[path]}
     return f'"{node_id(path)}"{attributes(look, _title(union, path))}'
 
 
-def _frame(union: _Union, path: str) -> Iterator[str]:
+def _frame(union: Union, path: str) -> Iterator[str]:
     """The look of a cluster, its start mark and its outcomes."""
     state = union.shown[path]
     line, fill = COLOURS[union.look[path]]
@@ -121,7 +126,7 @@ def _exit(path: str, outcome: str) -> str:
     return f"{node_id(path)}={identifier(outcome)}"
 
 
-def _edges(comparison: Comparison, union: _Union) -> Iterator[str]:
+def _edges(comparison: Comparison, union: Union) -> Iterator[str]:
     """The edges of both machines; those between two places with one look are one."""
     old = dict.fromkeys(_arrows(comparison.before, comparison.place, union))
     new = dict.fromkeys(_arrows(comparison.after, {}, union))
@@ -137,11 +142,11 @@ def _edges(comparison: Comparison, union: _Union) -> Iterator[str]:
         yield f'  "{source}" -> "{target}"{attributes(style, text)}'
 
 
-def _arrows(states: States, place: Mapping[str, str], union: _Union) -> Iterator[_Edge]:
+def _arrows(states: States, place: Mapping[str, str], union: Union) -> Iterator[_Edge]:
     """The edges of a machine. A container is entered at its start mark and left at its outcomes."""
     for path, state in states.items():
         here = place.get(path, path)
-        for target in _started(state):
+        for target in started(state):
             if target in states:
                 yield _Edge(node_id(here), node_id(place.get(target, target)), "")
         for (kind, name), value in state.facts.items():
@@ -159,7 +164,7 @@ def _arrows(states: States, place: Mapping[str, str], union: _Union) -> Iterator
                 yield _Edge(source, _exit(around, outcome_of(first)), "" if left else name)
 
 
-def _started(state: State) -> Sequence[str]:
+def started(state: State) -> Sequence[str]:
     """The paths of the states that a container starts with."""
     initial = state.facts.get(("field", "initial"))
     if initial is None:

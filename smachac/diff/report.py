@@ -94,6 +94,12 @@ def _fact_line(change: Change) -> str:
     return f"{head}: {values}" if values else head
 
 
+def change_text(change: Change) -> str:
+    """A change on one line."""
+    line = _state_line(change) if change.what == "state" else _fact_line(change)
+    return on_one_line(line)
+
+
 def _finding(item: Diagnostic) -> str:
     return f"{item.severity.value}[{item.code}] {item.message} ({item.span})"
 

@@ -116,6 +116,8 @@ def test_a_film_that_cannot_be_read_is_named(
     film.write_bytes(b"\0\0\0\x20ftypisom" + b"\0" * 100)
     page = browser.new_page()
     page.goto(start("view", script, "--attach", trace, "--film", film, "--no-browser").url)
-    page.locator(".film figcaption", has_text="The film cannot be shown").wait_for()
+    reason = page.locator(".film figcaption", has_text="The film cannot be shown")
+    reason.wait_for()
     page.get_by_role("button", name="First event").click()
     page.locator("text=event 0 of 8").wait_for()
+    assert reason.count() == 1

@@ -195,14 +195,53 @@ def test_a_picture(capsys: pytest.CaptureFixture[str]) -> None:
     assert done.stderr == ""
 
 
-def test_a_picture_shows_one_script(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_page(capsys: pytest.CaptureFixture[str]) -> None:
+    """A state with another container moves; the page has it once."""
+    text = CHANGED.replace("  - PARK:", "  - WAIT: {template: SleepState, time: 1.0}\n  - PARK:")
+    write("new.yml", text.replace("script: park", "template: ScriptedState, outcomes: [done]"))
+    assert diff("main.yml", "new.yml", "--format", "html") == 1
+    page = capsys.readouterr().out
+    start = page.index('<script type="application/json" id="smachac-model">')
+    model = json.loads(page[page.index(">", start) + 1 : page.index("</script>", start)])
+    nodes = {each["path"]: each for each in model["nodes"]}
+    assert {path: each["change"] for path, each in nodes.items()} == {
+        "sm": "same",
+        "sm/PICK": "changed",
+        "sm/PARK": "changed",
+        "sm/WAIT": "added",
+        "sm/PARK/HOME (removed)": "removed",
+    }
+    for path, each in nodes.items():
+        assert all(nodes[child]["parent"] == path for child in each["children"])
+    edges = {(each["source"], each["outcome"], str(each["target"])): each["change"]
+             for each in model["edges"]}  # fmt: skip
+    assert edges["sm/PICK", "lost", "sm/PARK"] == "added"
+    assert edges["sm/PICK", "lost", "{'outcome': 'lost'}"] == "removed"
+    assert edges["sm/PICK", "done", "sm/PARK"] == "same"
+    changes = model["differences"]["changes"]
+    assert all(each["path"] in nodes for each in changes)
+    assert model["source"] == "new.yml"
+    write("new.yml", SCRIPT.replace("1.0", "x"))
+    assert diff("main.yml", "new.yml", "--format", "html") == 1
+    assert '"path":"sm/PICK","kind":"added","text":"+ error[SM' in capsys.readouterr().out
+    assert diff("main.yml", "main.yml", "--format", "html") == 0
+    write("bad.yml", "name: [")
+    capsys.readouterr()
+    assert diff("main.yml", "bad.yml", "--format", "html") == 1
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert "bad.yml" in shown.err
+
+
+@pytest.mark.parametrize("format", ["dot", "html"])
+def test_a_picture_shows_one_script(format: str, capsys: pytest.CaptureFixture[str]) -> None:
     write("other.yml", SCRIPT)
     commit()
     write("other.yml", CHANGED)
-    assert diff("--format", "dot") == 1
+    assert diff("--format", format) == 1
     write("main.yml", CHANGED)
     capsys.readouterr()
-    assert diff("--format", "dot") == 2
+    assert diff("--format", format) == 2
     assert "name it" in capsys.readouterr().err
 
 

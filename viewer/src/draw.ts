@@ -65,12 +65,22 @@ function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
   group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
   if (box.open) drawTitle(graph, group, node, box);
   else drawText(graph, group, node, box);
+  if (node.change && node.change !== "same") group.append(changeSign(node.change));
   return group;
 }
 
 function classes(node: StateNode, box: Box): string {
   const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
-  return `state ${node.kind} ${kind.trim()}`;
+  return ["state", node.kind, kind.trim(), node.change].filter(Boolean).join(" ");
+}
+
+/** The sign of a change at the corner of a box: plus, minus or a wave, not a colour alone. */
+export function changeSign(change: "added" | "removed" | "changed"): SVGElement {
+  const sign = { added: "M-4 0H4M0-4V4", removed: "M-4 0H4", changed: "M-4.5 1Q-2.2-4 0 0T4.5-1" };
+  return svg("g", { class: `sign ${change}` },
+    svg("circle", { r: 8 }),
+    svg("path", { d: sign[change] }),
+  );
 }
 
 /** The class with the colour of a container. */
@@ -92,6 +102,7 @@ function spoken(node: StateNode, box: Box): string[] {
   const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
   const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
   if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
+  if (node.change && node.change !== "same") parts.push(node.change);
   if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
   return parts;
 }
@@ -212,7 +223,7 @@ function towards(from: Point, to: Point, by: number): Point {
 }
 
 function look(line: PlacedLine["line"]): string {
-  return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop"].filter(Boolean).join(" ");
+  return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop", line.change].filter(Boolean).join(" ");
 }
 
 function drawLine({ line, points }: PlacedLine): SVGGElement {

@@ -1,5 +1,6 @@
 // The start of the page: the model in it, the layout program, the viewer.
 
+import { showDifferences } from "./differences";
 import { showEdits } from "./edit";
 import type { Model } from "./model";
 import { showRuns } from "./run_view";
@@ -16,6 +17,7 @@ async function main(): Promise<void> {
   showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
   showEdits(viewer);
   showStatistics(viewer);
+  showDifferences(viewer);
   document.documentElement.dataset["ready"] = "true";
 }
 

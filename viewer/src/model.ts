@@ -28,6 +28,12 @@ export interface Rule {
   when: [Path, string][];
 }
 
+/** What a comparison of two machines finds of a state or an edge. */
+export type Change = "added" | "removed" | "changed" | "same";
+
+/** The signs of changes, so that colours are not all that shows them. */
+export const SIGNS: Record<Change, string> = { added: "+", removed: "\u2212", changed: "~", same: "" };
+
 export interface StateNode {
   path: Path;
   shown?: string;
@@ -52,6 +58,7 @@ export interface StateNode {
   default?: string | null;
   rules?: Rule[];
   items?: string;
+  change?: Change;
 }
 
 export interface ModelEdge {
@@ -62,6 +69,7 @@ export interface ModelEdge {
   kind: string;
   implicit: boolean;
   failure: boolean;
+  change?: Change;
 }
 
 export interface Finding {
@@ -98,6 +106,12 @@ export interface Statistics {
   never: { path: Path; text: string }[];
 }
 
+/** The differences of two machines that are drawn as one: each with the state that it is about. */
+export interface Differences {
+  summary: string;
+  changes: { path: Path; kind: string; text: string }[];
+}
+
 export interface Model {
   version: number;
   name: string;
@@ -113,6 +127,7 @@ export interface Model {
   findings: Finding[];
   properties: Property[];
   statistics?: Statistics;
+  differences?: Differences;
 }
 
 /** How often a state ended with an outcome. */

@@ -1,7 +1,7 @@
 // The content of an open container as a graph for the layout: nodes with sizes, lines with labels.
 
-import type { Graph, ModelEdge, Path, StateNode } from "./model";
-import { edgeId, isContainer, kindInWords, shareOf } from "./model";
+import type { Change, Graph, ModelEdge, Path, StateNode } from "./model";
+import { SIGNS, edgeId, isContainer, kindInWords, shareOf } from "./model";
 import { fitting, width } from "./text";
 
 /** A drawn node: a state, an outcome of the container, its start, or the join of a rule. */
@@ -27,6 +27,7 @@ export interface Line {
   /** Whether all its outcomes follow requests to stop: it is drawn lighter. */
   stop: boolean;
   edges: string[];
+  change?: Change;
 }
 
 type Drawn = Omit<Line, "edges" | "labels" | "stop">;
@@ -134,7 +135,7 @@ export function contentOf(
   const add = (line: Drawn, edge: string, label: string): void => {
     // The lines of an open state start at its outcomes, so that each outcome has lines of its own.
     const own = open.has(line.from) ? line.outcome : "";
-    const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
+    const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own, line.change]);
     const known = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
     lines.set(key, known);
     known.stop &&= line.outcome === "preempted";
@@ -146,14 +147,15 @@ export function contentOf(
   for (const edge of graph.inside.get(path) ?? []) {
     if (written.has(edge)) continue;
     for (const line of linesOf(container, edge, joined)) {
-      add(line, edgeId(edge), withShare(graph, edge, labelOf(container, edge, line)));
+      add(line, edgeId(edge), withFigures(graph, edge, labelOf(container, edge, line)));
     }
   }
   return { path, pieces, lines: [...lines.values()] };
 }
 
-/** A label with the frequency of the outcome of its edge, where that is known. */
-function withShare(graph: Graph, edge: ModelEdge, label: string): string {
+/** A label with the sign of the change of its edge, or the frequency of its outcome, where there is one. */
+function withFigures(graph: Graph, edge: ModelEdge, label: string): string {
+  if (edge.change) return `${SIGNS[edge.change]} ${label}`.trim();
   const state = edge.source === null ? undefined : graph.model.statistics?.states[edge.source];
   if (!state || !edge.outcome) return label;
   return `${label} ${shareOf(state, edge.outcome)}`.trim();
@@ -200,7 +202,7 @@ function linesOf(
   joined: Map<string, string[]>,
 ): Drawn[] {
   const { outcome, failure, implicit } = edge;
-  const look = { outcome, failure, implicit };
+  const look = { outcome, failure, implicit, ...(edge.change ? { change: edge.change } : {}) };
   const from = edge.source ?? START;
   const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
   if (edge.kind === "loop") return [{ ...look, from, to: START }];

@@ -73,7 +73,7 @@ def machine_model(
 def _node(
     path: str, node: Node, context: Context, shown: Mapping[str, str], found: list[int]
 ) -> dict[str, Any]:
-    file, line = _place(node.span)
+    file, line = place_in_script(node.span)
     children = () if isinstance(node, Leaf) else node.children
     good = successes(node)
     data: dict[str, Any] = {
@@ -88,7 +88,7 @@ def _node(
         "doc": node.doc,
         "file": file,
         "line": line,
-        "snippet": _snippet(node.span),
+        "snippet": snippet(node.span),
         "outcomes": [
             {
                 "name": each.name,
@@ -182,7 +182,7 @@ def _edges(path: str, container: Container) -> Iterator[dict[str, Any]]:
 
 
 def finding_data(item: Diagnostic) -> dict[str, Any]:
-    file, line = _place(item.span)
+    file, line = place_in_script(item.span)
     return {
         "code": item.code,
         "severity": item.severity.value,
@@ -192,7 +192,9 @@ def finding_data(item: Diagnostic) -> dict[str, Any]:
         "line": line,
         "node": item.finding.node,
         "related": [
-            dict(zip(("file", "line"), _place(each.span), strict=True), message=each.message)
+            dict(
+                zip(("file", "line"), place_in_script(each.span), strict=True), message=each.message
+            )
             for each in item.related
         ],
     }
@@ -203,13 +205,19 @@ def _file(name: str) -> str:
     return PurePath(name.replace("\\", "/")).name
 
 
-def _place(span: Span) -> tuple[str | None, int | None]:
+def _place_data(span: Span) -> dict[str, Any]:
+    file, line = place_in_script(span)
+    return {"file": file, "line": line}
+
+
+def place_in_script(span: Span) -> tuple[str | None, int | None]:
+    """The file of a span, without its folder, and its line, from 1."""
     if span.source is NOWHERE.source:
         return None, None
     return _file(span.source.name), span.line
 
 
-def _snippet(span: Span) -> str:
+def snippet(span: Span) -> str:
     """The lines of the script that describe a state: those indented deeper than its first one."""
     if span.source is NOWHERE.source:
         return ""

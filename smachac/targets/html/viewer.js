@@ -1,46 +1,6 @@
 // The viewer of smachac, built from viewer/. Apache-2.0.
 "use strict";
 (() => {
-  // src/connection.ts
-  function connect(listener) {
-    const source = new EventSource("events");
-    source.addEventListener("open", () => listener.opened());
-    source.addEventListener("message", (message) => listener.received(JSON.parse(message.data)));
-    source.addEventListener("error", () => listener.interrupted());
-    source.addEventListener("end", () => {
-      source.close();
-      listener.ended();
-    });
-  }
-  var TOKEN = "smachac-token";
-  function takeToken() {
-    const parameters = new URLSearchParams(location.hash.slice(1));
-    const given = parameters.get("token");
-    if (given === null) return sessionStorage.getItem(TOKEN);
-    sessionStorage.setItem(TOKEN, given);
-    parameters.delete("token");
-    const rest = parameters.toString().replaceAll("%2F", "/");
-    history.replaceState(null, "", rest ? `#${rest}` : location.pathname + location.search);
-    return given;
-  }
-  async function post(token, path, body) {
-    try {
-      const answer = await fetch(path, {
-        method: "POST",
-        headers: { "Content-Type": "application/json", "X-Smachac-Token": token },
-        body: JSON.stringify(body)
-      });
-      const content = await answer.json();
-      return answer.ok ? { ok: true, content } : { ok: false, reason: content.error ?? answer.statusText };
-    } catch {
-      return { ok: false, reason: "the server does not answer" };
-    }
-  }
-  async function act(token, path, body) {
-    const answer = await post(token, path, body);
-    return answer.ok ? null : answer.reason;
-  }
-
   // src/dom.ts
   var SVG = "http://www.w3.org/2000/svg";
   function filled(element, attributes, children2) {
@@ -64,6 +24,7 @@
   }
 
   // src/model.ts
+  var SIGNS = { added: "+", removed: "\u2212", changed: "~", same: "" };
   function countOf(state, outcome) {
     return state && Object.hasOwn(state.outcomes, outcome) ? state.outcomes[outcome] : 0;
   }
@@ -149,6 +110,574 @@ ${target2}`;
       const child = graph.nodes.get(path);
       return child !== void 0 && (!isContainer(child) || isWrapped(graph, child));
     });
+  }
+
+  // src/text.ts
+  var FAMILY = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif';
+  var FONTS = {
+    title: `600 14px ${FAMILY}`,
+    name: `600 13px ${FAMILY}`,
+    detail: `11px ${FAMILY}`,
+    label: `11px ${FAMILY}`,
+    exit: `600 11px ${FAMILY}`
+  };
+  var LONGEST = 300;
+  var context = document.createElement("canvas").getContext("2d");
+  var widths = /* @__PURE__ */ new Map();
+  function width(text, font) {
+    const key = `${font} ${text}`;
+    let known2 = widths.get(key);
+    if (known2 === void 0) {
+      context.font = FONTS[font];
+      known2 = Math.ceil(context.measureText(text).width);
+      widths.set(key, known2);
+    }
+    return known2;
+  }
+  function fitting(text, font, most = LONGEST) {
+    if (width(text, font) <= most) return text;
+    let low = 0;
+    let high = text.length;
+    while (low < high) {
+      const middle = low + high + 1 >> 1;
+      if (width(`${text.slice(0, middle)}\u2026`, font) <= most) low = middle;
+      else high = middle - 1;
+    }
+    return `${text.slice(0, low)}\u2026`;
+  }
+
+  // src/pieces.ts
+  var EXIT_HEIGHT = 22;
+  var TITLE_HEIGHT = 34;
+  var LINE_HEIGHT = 14;
+  var exitId = (outcome) => `exit ${outcome}`;
+  var START = "start";
+  var MANY_LEAVE = 30;
+  function writtenExits(graph, path) {
+    const bySource = /* @__PURE__ */ new Map();
+    const counts = /* @__PURE__ */ new Map();
+    const leaving = (graph.inside.get(path) ?? []).flatMap(
+      (edge) => edge.source !== null && typeof edge.target !== "string" && edge.kind !== "exhausted" ? [{ edge, source: edge.source, exit: edge.target.outcome }] : []
+    );
+    if (leaving.length <= MANY_LEAVE) return bySource;
+    for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
+    for (const { edge, source, exit } of leaving) {
+      if (counts.get(exit) <= MANY_LEAVE) continue;
+      const known2 = bySource.get(source) ?? [];
+      bySource.set(source, [...known2, edge]);
+    }
+    return bySource;
+  }
+  function exitsInWords(edges) {
+    const byExit = /* @__PURE__ */ new Map();
+    for (const { outcome, target: target2 } of edges) {
+      if (typeof target2 === "string") continue;
+      byExit.set(target2.outcome, [...byExit.get(target2.outcome) ?? [], outcome]);
+    }
+    const texts = [...byExit].map(([exit, outcomes2]) => {
+      const others = [...new Set(outcomes2)].filter((each) => each !== exit);
+      return others.length ? `${others.join(", ")} \u2192 ${exit}` : `\u2192 ${exit}`;
+    });
+    return texts.join("; ");
+  }
+  var WRITTEN_HEIGHT = 16;
+  function boxSize(node, count2, written = []) {
+    const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
+    const detail = boxDetail(node, count2);
+    const chevron2 = isContainer(node) ? 22 : 0;
+    const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
+    return {
+      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
+      height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0)
+    };
+  }
+  function boxDetail(node, count2) {
+    if (!isContainer(node)) return node.type ?? "";
+    const words = kindInWords(node);
+    return node.role ? words : `${words}, ${count2} ${count2 === 1 ? "state" : "states"}`;
+  }
+  function contentOf(graph, path, open, sizes) {
+    const container = graph.nodes.get(path);
+    const pieces = [startPiece(container)];
+    for (const child of container.children) {
+      const node = graph.nodes.get(child);
+      if (node) pieces.push({ id: child, what: "state", label: node.name, path: child, ...sizes.get(child) });
+    }
+    for (const outcome of container.outcomes) {
+      const label = fitting(outcome.name, "exit");
+      pieces.push({
+        id: exitId(outcome.name),
+        what: "exit",
+        label,
+        width: width(label, "exit") + 22,
+        height: EXIT_HEIGHT,
+        failure: outcome.failure,
+        success: outcome.success
+      });
+    }
+    const lines = /* @__PURE__ */ new Map();
+    const add2 = (line, edge, label) => {
+      const own = open.has(line.from) ? line.outcome : "";
+      const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own, line.change]);
+      const known2 = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
+      lines.set(key, known2);
+      known2.stop &&= line.outcome === "preempted";
+      if (edge && !known2.edges.includes(edge)) known2.edges.push(edge);
+      if (label && !open.has(line.from) && !known2.labels.includes(label)) known2.labels.push(label);
+    };
+    const joined = joins(container, pieces, add2);
+    const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => open.has(source) ? [] : edges));
+    for (const edge of graph.inside.get(path) ?? []) {
+      if (written.has(edge)) continue;
+      for (const line of linesOf(container, edge, joined)) {
+        add2(line, edgeId(edge), withFigures(graph, edge, labelOf(container, edge, line)));
+      }
+    }
+    return { path, pieces, lines: [...lines.values()] };
+  }
+  function withFigures(graph, edge, label) {
+    if (edge.change) return `${SIGNS[edge.change]} ${label}`.trim();
+    const state = edge.source === null ? void 0 : graph.model.statistics?.states[edge.source];
+    if (!state || !edge.outcome) return label;
+    return `${label} ${shareOf(state, edge.outcome)}`.trim();
+  }
+  function startPiece(container) {
+    if (container.kind === "concurrence") {
+      const size = Math.min(260, 40 * Math.max(1, container.children.length));
+      return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
+    }
+    if (container.kind === "iterator") {
+      const label = container.role ? "next try" : "next item";
+      return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
+    }
+    return { id: START, what: "start", label: "start", width: 12, height: 12 };
+  }
+  function joins(container, pieces, add2) {
+    const joined = /* @__PURE__ */ new Map();
+    (container.rules ?? []).forEach((rule, index) => {
+      const exit = pieces.find((each) => each.id === exitId(rule.outcome));
+      if (rule.when.length < 2 || !exit) return;
+      const id = `join ${index}`;
+      const { failure = false, success } = exit;
+      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
+      for (const [child, outcome] of rule.when) {
+        const key = JSON.stringify([child, outcome, rule.outcome]);
+        joined.set(key, [...joined.get(key) ?? [], id]);
+      }
+      add2({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false }, "", "");
+    });
+    return joined;
+  }
+  function linesOf(container, edge, joined) {
+    const { outcome, failure, implicit } = edge;
+    const look3 = { outcome, failure, implicit, ...edge.change ? { change: edge.change } : {} };
+    const from = edge.source ?? START;
+    const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
+    if (edge.kind === "loop") return [{ ...look3, from, to: START }];
+    if (edge.kind === "exhausted") return [{ ...look3, outcome: "", failure: false, from: START, to }];
+    if (edge.kind === "rule" && typeof edge.target !== "string") {
+      const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
+      const bars = joined.get(key) ?? [];
+      const alone = (container.rules ?? []).some(
+        (rule) => rule.outcome === edge.target.outcome && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
+      );
+      return [
+        ...bars.map((bar) => ({ ...look3, from, to: bar })),
+        ...alone ? [{ ...look3, from, to }] : []
+      ];
+    }
+    if (edge.kind === "default") return [{ ...look3, failure: false, from, to }];
+    return [{ ...look3, from, to }];
+  }
+  function labelOf(container, edge, line) {
+    if (edge.kind === "default") return "otherwise";
+    if (edge.kind === "caught") return "exception";
+    if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
+    return line.to === exitId(edge.outcome) ? "" : edge.outcome;
+  }
+
+  // src/draw.ts
+  function draw(graph, scene) {
+    const states = /* @__PURE__ */ new Map();
+    const tree = svg("g", { role: "tree", "aria-label": `States of ${graph.model.name}` });
+    for (const box of scene.boxes) {
+      const node = graph.nodes.get(box.path);
+      if (!node) continue;
+      const element = drawState(graph, node, box);
+      states.set(box.path, element);
+      tree.append(element);
+    }
+    const lines = scene.lines.map((line) => ({ line, element: drawLine(line) }));
+    const edges = svg("g", { "aria-hidden": "true" }, ...lines.map((each) => each.element));
+    const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
+    const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) => drawLabel(line, label, grounds.get(container) ?? "")));
+    const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
+    return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
+  }
+  function drawState(graph, node, box) {
+    const siblings = node.parent === null ? [node.path] : graph.nodes.get(node.parent)?.children ?? [];
+    const group = svg("g", {
+      class: classes(node, box),
+      transform: `translate(${box.x} ${box.y})`,
+      role: "treeitem",
+      tabindex: "-1",
+      "data-path": node.path,
+      "aria-label": spoken(node, box).join("; "),
+      "data-words": spoken(node, box)[0],
+      "aria-level": box.level + 1,
+      "aria-setsize": siblings.length,
+      "aria-posinset": siblings.indexOf(node.path) + 1,
+      "aria-expanded": isContainer(node) ? String(box.open) : null,
+      "aria-selected": "false"
+    });
+    if (isContainer(node) && !box.open) {
+      group.append(svg("rect", { class: "below", x: 4, y: 4, width: box.width, height: box.height, rx: 8 }));
+    }
+    const radius = box.open ? 12 : 8;
+    group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
+    if (box.open) drawTitle(graph, group, node, box);
+    else drawText(graph, group, node, box);
+    if (node.change && node.change !== "same") group.append(changeSign(node.change));
+    return group;
+  }
+  function classes(node, box) {
+    const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
+    return ["state", node.kind, kind.trim(), node.change].filter(Boolean).join(" ");
+  }
+  function changeSign(change) {
+    const sign = { added: "M-4 0H4M0-4V4", removed: "M-4 0H4", changed: "M-4.5 1Q-2.2-4 0 0T4.5-1" };
+    return svg(
+      "g",
+      { class: `sign ${change}` },
+      svg("circle", { r: 8 }),
+      svg("path", { d: sign[change] })
+    );
+  }
+  function ground(node, box) {
+    if (node?.role || node?.kind === "iterator") return "looping";
+    if (node?.kind === "concurrence") return "parallel";
+    return box.level % 2 ? "odd" : "even";
+  }
+  function addTooltip(element, node) {
+    if (element.querySelector(":scope > title")) return;
+    const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
+    element.prepend(svg("title", {}, text));
+  }
+  function spoken(node, box) {
+    const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
+    const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
+    if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
+    if (node.change && node.change !== "same") parts.push(node.change);
+    if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
+    return parts;
+  }
+  function drawTitle(graph, group, node, box) {
+    const name = fitting(node.name, "title");
+    const detail = fitting(kindInWords(node), "detail");
+    group.append(
+      chevron(16, TITLE_HEIGHT / 2 + 1, true),
+      svg("text", { class: "title", x: 32, y: 22 }, name),
+      " ",
+      svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail)
+    );
+    if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
+  }
+  function drawText(graph, group, node, box) {
+    const middle = box.width / 2;
+    const detail = fitting(boxDetail(node, node.children.length), "detail");
+    const name = fitting(node.name, "name");
+    const y = detail ? 21 : 23;
+    group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
+    if (detail) {
+      group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
+    }
+    if (box.written.length) {
+      const exits = fitting(exitsInWords(box.written), "detail");
+      const failure = box.written.every((edge) => edge.failure);
+      const look3 = failure ? "detail written failure" : "detail written";
+      group.append(" ", svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
+    }
+    if (isContainer(node)) group.append(chevron(14, y - 4, false));
+    if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
+  }
+  function chevron(x, y, open) {
+    const points = open ? "-4,-2 0,3 4,-2" : "-2,-4 3,0 -2,4";
+    return svg(
+      "g",
+      { class: "toggle", transform: `translate(${x} ${y})` },
+      svg("rect", { class: "hit", x: -11, y: -11, width: 22, height: 22, rx: 5 }),
+      svg("polyline", { points })
+    );
+  }
+  function badge(graph, node, x, y) {
+    const found = new Set(node.findings.map((index) => graph.model.findings[index]?.severity));
+    const severity = found.has("error") ? "error" : found.has("warning") ? "warning" : "info";
+    const shape = severity === "warning" ? "M0-7 7.5 6H-7.5Z" : "M0-7A7 7 0 1 1 0 7 7 7 0 1 1 0-7Z";
+    const sign = { error: "M-2.5-2.5 2.5 2.5M2.5-2.5-2.5 2.5", warning: "M0-2.5V1.5M0 3.6V3.8", info: "M0-3.4V-3.2M0-.6V3.6" };
+    return svg(
+      "g",
+      { class: `badge ${severity}`, transform: `translate(${x} ${y})` },
+      svg("path", { d: shape }),
+      svg("path", { class: "stroke", d: sign[severity] })
+    );
+  }
+  function drawPiece(graph, { piece, container, x, y, width: width2, height }) {
+    const exit = piece.what === "exit" ? piece.id.slice(exitId("").length) : null;
+    const group = svg("g", {
+      class: `piece ${piece.what}`,
+      transform: `translate(${x} ${y})`,
+      "data-exit": exit,
+      "data-of": exit === null ? null : container
+    });
+    group.append(svg("title", {}, piece.label));
+    switch (piece.what) {
+      case "start":
+        group.append(svg("circle", { cx: width2 / 2, cy: height / 2, r: width2 / 2 }));
+        break;
+      case "fork":
+      case "join":
+        group.append(svg("rect", { width: width2, height, rx: 2.5 }));
+        break;
+      default: {
+        group.append(svg("rect", { width: width2, height, rx: height / 2 }));
+        if (piece.what === "exit" && container === graph.model.root) {
+          group.append(svg("rect", { class: "ring", x: -3, y: -3, width: width2 + 6, height: height + 6, rx: height / 2 + 3 }));
+        }
+        const text = { x: width2 / 2, y: height / 2 + 4, "text-anchor": "middle" };
+        group.append(svg("text", text, piece.label));
+      }
+    }
+    if (piece.failure) group.classList.add("failure");
+    if (piece.success) group.classList.add("success");
+    return group;
+  }
+  var CORNER = 7;
+  function roundedPath(points) {
+    const first = points[0];
+    if (!first) return "";
+    let path = `M${first.x} ${first.y}`;
+    for (let index = 1; index < points.length; index += 1) {
+      const before = points[index - 1];
+      const here = points[index];
+      const next = points[index + 1];
+      if (!next) {
+        path += `L${here.x} ${here.y}`;
+        continue;
+      }
+      const radius = Math.min(CORNER, distance(before, here) / 2, distance(here, next) / 2);
+      const start = towards(here, before, radius);
+      const end2 = towards(here, next, radius);
+      path += `L${start.x} ${start.y}Q${here.x} ${here.y} ${end2.x} ${end2.y}`;
+    }
+    return path;
+  }
+  function distance(a, b) {
+    return Math.hypot(a.x - b.x, a.y - b.y);
+  }
+  function towards(from, to, by) {
+    const length = distance(from, to) || 1;
+    return { x: from.x + (to.x - from.x) * by / length, y: from.y + (to.y - from.y) * by / length };
+  }
+  function look(line) {
+    return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop", line.change].filter(Boolean).join(" ");
+  }
+  function drawLine({ line, points }) {
+    const d = roundedPath(points);
+    const group = svg("g", { class: `line ${look(line)}` });
+    const end2 = points[points.length - 1];
+    const before = points[points.length - 2];
+    group.append(svg("path", { class: "stroke", d }));
+    if (end2 && before) {
+      const turn = Math.atan2(end2.y - before.y, end2.x - before.x) * 180 / Math.PI;
+      const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
+      group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
+      const [only, ...others] = line.edges;
+      if (only !== void 0 && !others.length) group.append(svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
+    }
+    return group;
+  }
+  function origin(edge) {
+    const [path = "", outcome = ""] = edge.split("\n");
+    return { "data-from": path, "data-outcome": outcome };
+  }
+  function drawLabel(line, label, ground2) {
+    if (!label) return null;
+    const group = svg("g", { class: `label ${ground2} ${look(line)}` });
+    group.append(background(label));
+    line.labels.forEach((text, index) => {
+      const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
+      const x = label.x + label.width / 2;
+      const edge = line.edges.find((each) => each.split("\n")[1] === text);
+      const from = edge === void 0 ? {} : origin(edge);
+      group.append(svg("text", { x, y, "text-anchor": "middle", ...from }, fitting(text, "label")));
+    });
+    return group;
+  }
+  function background({ x, y, width: width2, height }) {
+    return svg("rect", { x, y, width: width2, height, rx: 4 });
+  }
+  function markSelection(picture, path) {
+    for (const [each, element] of picture.states) {
+      const chosen = each === path;
+      element.classList.toggle("selected", chosen);
+      element.setAttribute("aria-selected", String(chosen));
+      element.setAttribute("tabindex", chosen ? "0" : "-1");
+    }
+    for (const { line, element } of picture.lines) {
+      element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
+    }
+  }
+  function markRun(graph, picture, run) {
+    const active = drawnStates(graph, picture, run?.active);
+    const waiting = drawnStates(graph, picture, run?.waiting);
+    const breakpoints = drawnStates(graph, picture, run?.breakpoints);
+    const taken = new Set(run?.taken ?? []);
+    for (const [path, element] of picture.states) {
+      element.classList.toggle("active", active.has(path));
+      element.classList.toggle("waiting", waiting.has(path));
+      setBreakpoint(element, breakpoints.has(path));
+      setVisits(element, run?.visits?.get(path) ?? 0);
+    }
+    for (const { line, element } of picture.lines) {
+      element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
+    }
+  }
+  function drawnStates(graph, picture, paths = []) {
+    const found = /* @__PURE__ */ new Set();
+    for (const path of paths) {
+      let node = nearest(graph, path);
+      while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
+      if (node) found.add(node.path);
+    }
+    return found;
+  }
+  function setBreakpoint(element, is) {
+    element.classList.toggle("breakpoint", is);
+    const mark = element.querySelector(":scope > .stop");
+    if (!is) mark?.remove();
+    else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
+  }
+  function setVisits(element, count2) {
+    element.classList.toggle("visited", count2 > 0);
+    let mark = element.querySelector(":scope > .visits");
+    speakVisits(element, count2 < 2 ? "" : ` \xD7${count2}`);
+    if (count2 < 2) {
+      mark?.remove();
+      return;
+    }
+    if (!mark) {
+      mark = svg("text", { class: "visits", "text-anchor": "end" });
+      const body = element.querySelector(":scope > .body");
+      mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
+      mark.setAttribute("y", "-4");
+      element.append(" ", mark);
+    }
+    mark.textContent = `\xD7${count2}`;
+  }
+  function speakVisits(element, visits) {
+    const words = element.dataset["words"] ?? "";
+    const before = element.dataset["visits"] ?? "";
+    if (before === visits) return;
+    const rest = (element.getAttribute("aria-label") ?? "").slice(words.length + before.length);
+    element.dataset["visits"] = visits;
+    element.setAttribute("aria-label", words + visits + rest);
+  }
+  function legend() {
+    const sign = (name) => svg(
+      "svg",
+      { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
+      svg(
+        "g",
+        { class: name },
+        svg("path", { class: "stroke", d: "M2 7H32" }),
+        svg("path", { class: "head", d: "M38 7l-7.5-4q1.6 4 0 8z" })
+      )
+    );
+    const row = (name, text) => html("li", {}, sign(name), html("span", {}, text));
+    return html(
+      "ul",
+      { class: "legend" },
+      row("line", "outcome"),
+      row("line failure", "outcome of failure"),
+      row("line implicit", "implied, not written in the script")
+    );
+  }
+
+  // src/differences.ts
+  function showDifferences(viewer) {
+    const { differences } = viewer.graph.model;
+    if (!differences) return;
+    viewer.addSection({
+      id: "differences",
+      title: "Differences",
+      first: true,
+      fill: (node) => node ? ofState(differences, node.path) : ofMachine(viewer, differences)
+    });
+  }
+  function ofState({ changes }, path) {
+    const found = changes.filter((each) => each.path === path);
+    if (!found.length) return html("p", {}, "no difference in this state itself");
+    return html("ul", { class: "changes" }, ...found.map(({ text }) => html("li", {}, html("code", {}, text))));
+  }
+  function ofMachine(viewer, { summary, changes }) {
+    const rows = changes.map(({ path, text }) => {
+      const link2 = html("button", { type: "button", class: "link" }, path);
+      link2.addEventListener("click", () => void viewer.select(path));
+      return html("li", {}, link2, " ", html("code", {}, text));
+    });
+    const signs = ["added", "removed", "changed"].map((change) => html(
+      "li",
+      {},
+      svg("svg", { viewBox: "-9 -9 18 18", width: 18, height: 18, "aria-hidden": "true" }, changeSign(change)),
+      html("span", {}, change)
+    ));
+    return html(
+      "div",
+      {},
+      html("p", {}, summary),
+      html("ul", { class: "legend" }, ...signs),
+      html("ul", { class: "changes", "aria-label": "All differences" }, ...rows)
+    );
+  }
+
+  // src/connection.ts
+  function connect(listener) {
+    const source = new EventSource("events");
+    source.addEventListener("open", () => listener.opened());
+    source.addEventListener("message", (message) => listener.received(JSON.parse(message.data)));
+    source.addEventListener("error", () => listener.interrupted());
+    source.addEventListener("end", () => {
+      source.close();
+      listener.ended();
+    });
+  }
+  var TOKEN = "smachac-token";
+  function takeToken() {
+    const parameters = new URLSearchParams(location.hash.slice(1));
+    const given = parameters.get("token");
+    if (given === null) return sessionStorage.getItem(TOKEN);
+    sessionStorage.setItem(TOKEN, given);
+    parameters.delete("token");
+    const rest = parameters.toString().replaceAll("%2F", "/");
+    history.replaceState(null, "", rest ? `#${rest}` : location.pathname + location.search);
+    return given;
+  }
+  async function post(token, path, body) {
+    try {
+      const answer = await fetch(path, {
+        method: "POST",
+        headers: { "Content-Type": "application/json", "X-Smachac-Token": token },
+        body: JSON.stringify(body)
+      });
+      const content = await answer.json();
+      return answer.ok ? { ok: true, content } : { ok: false, reason: content.error ?? answer.statusText };
+    } catch {
+      return { ok: false, reason: "the server does not answer" };
+    }
+  }
+  async function act(token, path, body) {
+    const answer = await post(token, path, body);
+    return answer.ok ? null : answer.reason;
   }
 
   // src/transition_drag.ts
@@ -399,485 +928,6 @@ ${target2}`;
         return { edit: { operation: "contain", path: state.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
       }
     };
-  }
-
-  // src/text.ts
-  var FAMILY = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif';
-  var FONTS = {
-    title: `600 14px ${FAMILY}`,
-    name: `600 13px ${FAMILY}`,
-    detail: `11px ${FAMILY}`,
-    label: `11px ${FAMILY}`,
-    exit: `600 11px ${FAMILY}`
-  };
-  var LONGEST = 300;
-  var context = document.createElement("canvas").getContext("2d");
-  var widths = /* @__PURE__ */ new Map();
-  function width(text, font) {
-    const key = `${font} ${text}`;
-    let known2 = widths.get(key);
-    if (known2 === void 0) {
-      context.font = FONTS[font];
-      known2 = Math.ceil(context.measureText(text).width);
-      widths.set(key, known2);
-    }
-    return known2;
-  }
-  function fitting(text, font, most = LONGEST) {
-    if (width(text, font) <= most) return text;
-    let low = 0;
-    let high = text.length;
-    while (low < high) {
-      const middle = low + high + 1 >> 1;
-      if (width(`${text.slice(0, middle)}\u2026`, font) <= most) low = middle;
-      else high = middle - 1;
-    }
-    return `${text.slice(0, low)}\u2026`;
-  }
-
-  // src/pieces.ts
-  var EXIT_HEIGHT = 22;
-  var TITLE_HEIGHT = 34;
-  var LINE_HEIGHT = 14;
-  var exitId = (outcome) => `exit ${outcome}`;
-  var START = "start";
-  var MANY_LEAVE = 30;
-  function writtenExits(graph, path) {
-    const bySource = /* @__PURE__ */ new Map();
-    const counts = /* @__PURE__ */ new Map();
-    const leaving = (graph.inside.get(path) ?? []).flatMap(
-      (edge) => edge.source !== null && typeof edge.target !== "string" && edge.kind !== "exhausted" ? [{ edge, source: edge.source, exit: edge.target.outcome }] : []
-    );
-    if (leaving.length <= MANY_LEAVE) return bySource;
-    for (const { exit } of leaving) counts.set(exit, (counts.get(exit) ?? 0) + 1);
-    for (const { edge, source, exit } of leaving) {
-      if (counts.get(exit) <= MANY_LEAVE) continue;
-      const known2 = bySource.get(source) ?? [];
-      bySource.set(source, [...known2, edge]);
-    }
-    return bySource;
-  }
-  function exitsInWords(edges) {
-    const byExit = /* @__PURE__ */ new Map();
-    for (const { outcome, target: target2 } of edges) {
-      if (typeof target2 === "string") continue;
-      byExit.set(target2.outcome, [...byExit.get(target2.outcome) ?? [], outcome]);
-    }
-    const texts = [...byExit].map(([exit, outcomes2]) => {
-      const others = [...new Set(outcomes2)].filter((each) => each !== exit);
-      return others.length ? `${others.join(", ")} \u2192 ${exit}` : `\u2192 ${exit}`;
-    });
-    return texts.join("; ");
-  }
-  var WRITTEN_HEIGHT = 16;
-  function boxSize(node, count2, written = []) {
-    const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
-    const detail = boxDetail(node, count2);
-    const chevron2 = isContainer(node) ? 22 : 0;
-    const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
-    return {
-      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
-      height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0)
-    };
-  }
-  function boxDetail(node, count2) {
-    if (!isContainer(node)) return node.type ?? "";
-    const words = kindInWords(node);
-    return node.role ? words : `${words}, ${count2} ${count2 === 1 ? "state" : "states"}`;
-  }
-  function contentOf(graph, path, open, sizes) {
-    const container = graph.nodes.get(path);
-    const pieces = [startPiece(container)];
-    for (const child of container.children) {
-      const node = graph.nodes.get(child);
-      if (node) pieces.push({ id: child, what: "state", label: node.name, path: child, ...sizes.get(child) });
-    }
-    for (const outcome of container.outcomes) {
-      const label = fitting(outcome.name, "exit");
-      pieces.push({
-        id: exitId(outcome.name),
-        what: "exit",
-        label,
-        width: width(label, "exit") + 22,
-        height: EXIT_HEIGHT,
-        failure: outcome.failure,
-        success: outcome.success
-      });
-    }
-    const lines = /* @__PURE__ */ new Map();
-    const add2 = (line, edge, label) => {
-      const own = open.has(line.from) ? line.outcome : "";
-      const key = JSON.stringify([line.from, line.to, line.failure, line.implicit, own]);
-      const known2 = lines.get(key) ?? { ...line, stop: true, labels: [], edges: [] };
-      lines.set(key, known2);
-      known2.stop &&= line.outcome === "preempted";
-      if (edge && !known2.edges.includes(edge)) known2.edges.push(edge);
-      if (label && !open.has(line.from) && !known2.labels.includes(label)) known2.labels.push(label);
-    };
-    const joined = joins(container, pieces, add2);
-    const written = new Set([...writtenExits(graph, path)].flatMap(([source, edges]) => open.has(source) ? [] : edges));
-    for (const edge of graph.inside.get(path) ?? []) {
-      if (written.has(edge)) continue;
-      for (const line of linesOf(container, edge, joined)) {
-        add2(line, edgeId(edge), withShare(graph, edge, labelOf(container, edge, line)));
-      }
-    }
-    return { path, pieces, lines: [...lines.values()] };
-  }
-  function withShare(graph, edge, label) {
-    const state = edge.source === null ? void 0 : graph.model.statistics?.states[edge.source];
-    if (!state || !edge.outcome) return label;
-    return `${label} ${shareOf(state, edge.outcome)}`.trim();
-  }
-  function startPiece(container) {
-    if (container.kind === "concurrence") {
-      const size = Math.min(260, 40 * Math.max(1, container.children.length));
-      return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
-    }
-    if (container.kind === "iterator") {
-      const label = container.role ? "next try" : "next item";
-      return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
-    }
-    return { id: START, what: "start", label: "start", width: 12, height: 12 };
-  }
-  function joins(container, pieces, add2) {
-    const joined = /* @__PURE__ */ new Map();
-    (container.rules ?? []).forEach((rule, index) => {
-      const exit = pieces.find((each) => each.id === exitId(rule.outcome));
-      if (rule.when.length < 2 || !exit) return;
-      const id = `join ${index}`;
-      const { failure = false, success } = exit;
-      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
-      for (const [child, outcome] of rule.when) {
-        const key = JSON.stringify([child, outcome, rule.outcome]);
-        joined.set(key, [...joined.get(key) ?? [], id]);
-      }
-      add2({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false }, "", "");
-    });
-    return joined;
-  }
-  function linesOf(container, edge, joined) {
-    const { outcome, failure, implicit } = edge;
-    const look3 = { outcome, failure, implicit };
-    const from = edge.source ?? START;
-    const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
-    if (edge.kind === "loop") return [{ ...look3, from, to: START }];
-    if (edge.kind === "exhausted") return [{ ...look3, outcome: "", failure: false, from: START, to }];
-    if (edge.kind === "rule" && typeof edge.target !== "string") {
-      const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
-      const bars = joined.get(key) ?? [];
-      const alone = (container.rules ?? []).some(
-        (rule) => rule.outcome === edge.target.outcome && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
-      );
-      return [
-        ...bars.map((bar) => ({ ...look3, from, to: bar })),
-        ...alone ? [{ ...look3, from, to }] : []
-      ];
-    }
-    if (edge.kind === "default") return [{ ...look3, failure: false, from, to }];
-    return [{ ...look3, from, to }];
-  }
-  function labelOf(container, edge, line) {
-    if (edge.kind === "default") return "otherwise";
-    if (edge.kind === "caught") return "exception";
-    if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
-    return line.to === exitId(edge.outcome) ? "" : edge.outcome;
-  }
-
-  // src/draw.ts
-  function draw(graph, scene) {
-    const states = /* @__PURE__ */ new Map();
-    const tree = svg("g", { role: "tree", "aria-label": `States of ${graph.model.name}` });
-    for (const box of scene.boxes) {
-      const node = graph.nodes.get(box.path);
-      if (!node) continue;
-      const element = drawState(graph, node, box);
-      states.set(box.path, element);
-      tree.append(element);
-    }
-    const lines = scene.lines.map((line) => ({ line, element: drawLine(line) }));
-    const edges = svg("g", { "aria-hidden": "true" }, ...lines.map((each) => each.element));
-    const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
-    const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) => drawLabel(line, label, grounds.get(container) ?? "")));
-    const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
-    return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
-  }
-  function drawState(graph, node, box) {
-    const siblings = node.parent === null ? [node.path] : graph.nodes.get(node.parent)?.children ?? [];
-    const group = svg("g", {
-      class: classes(node, box),
-      transform: `translate(${box.x} ${box.y})`,
-      role: "treeitem",
-      tabindex: "-1",
-      "data-path": node.path,
-      "aria-label": spoken(node, box).join("; "),
-      "data-words": spoken(node, box)[0],
-      "aria-level": box.level + 1,
-      "aria-setsize": siblings.length,
-      "aria-posinset": siblings.indexOf(node.path) + 1,
-      "aria-expanded": isContainer(node) ? String(box.open) : null,
-      "aria-selected": "false"
-    });
-    if (isContainer(node) && !box.open) {
-      group.append(svg("rect", { class: "below", x: 4, y: 4, width: box.width, height: box.height, rx: 8 }));
-    }
-    const radius = box.open ? 12 : 8;
-    group.append(svg("rect", { class: "body", width: box.width, height: box.height, rx: radius }));
-    if (box.open) drawTitle(graph, group, node, box);
-    else drawText(graph, group, node, box);
-    return group;
-  }
-  function classes(node, box) {
-    const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
-    return `state ${node.kind} ${kind.trim()}`;
-  }
-  function ground(node, box) {
-    if (node?.role || node?.kind === "iterator") return "looping";
-    if (node?.kind === "concurrence") return "parallel";
-    return box.level % 2 ? "odd" : "even";
-  }
-  function addTooltip(element, node) {
-    if (element.querySelector(":scope > title")) return;
-    const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
-    element.prepend(svg("title", {}, text));
-  }
-  function spoken(node, box) {
-    const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
-    const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
-    if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
-    if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
-    return parts;
-  }
-  function drawTitle(graph, group, node, box) {
-    const name = fitting(node.name, "title");
-    const detail = fitting(kindInWords(node), "detail");
-    group.append(
-      chevron(16, TITLE_HEIGHT / 2 + 1, true),
-      svg("text", { class: "title", x: 32, y: 22 }, name),
-      " ",
-      svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail)
-    );
-    if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
-  }
-  function drawText(graph, group, node, box) {
-    const middle = box.width / 2;
-    const detail = fitting(boxDetail(node, node.children.length), "detail");
-    const name = fitting(node.name, "name");
-    const y = detail ? 21 : 23;
-    group.append(svg("text", { class: "name", x: middle, y, "text-anchor": "middle" }, name));
-    if (detail) {
-      group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
-    }
-    if (box.written.length) {
-      const exits = fitting(exitsInWords(box.written), "detail");
-      const failure = box.written.every((edge) => edge.failure);
-      const look3 = failure ? "detail written failure" : "detail written";
-      group.append(" ", svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
-    }
-    if (isContainer(node)) group.append(chevron(14, y - 4, false));
-    if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
-  }
-  function chevron(x, y, open) {
-    const points = open ? "-4,-2 0,3 4,-2" : "-2,-4 3,0 -2,4";
-    return svg(
-      "g",
-      { class: "toggle", transform: `translate(${x} ${y})` },
-      svg("rect", { class: "hit", x: -11, y: -11, width: 22, height: 22, rx: 5 }),
-      svg("polyline", { points })
-    );
-  }
-  function badge(graph, node, x, y) {
-    const found = new Set(node.findings.map((index) => graph.model.findings[index]?.severity));
-    const severity = found.has("error") ? "error" : found.has("warning") ? "warning" : "info";
-    const shape = severity === "warning" ? "M0-7 7.5 6H-7.5Z" : "M0-7A7 7 0 1 1 0 7 7 7 0 1 1 0-7Z";
-    const sign = { error: "M-2.5-2.5 2.5 2.5M2.5-2.5-2.5 2.5", warning: "M0-2.5V1.5M0 3.6V3.8", info: "M0-3.4V-3.2M0-.6V3.6" };
-    return svg(
-      "g",
-      { class: `badge ${severity}`, transform: `translate(${x} ${y})` },
-      svg("path", { d: shape }),
-      svg("path", { class: "stroke", d: sign[severity] })
-    );
-  }
-  function drawPiece(graph, { piece, container, x, y, width: width2, height }) {
-    const exit = piece.what === "exit" ? piece.id.slice(exitId("").length) : null;
-    const group = svg("g", {
-      class: `piece ${piece.what}`,
-      transform: `translate(${x} ${y})`,
-      "data-exit": exit,
-      "data-of": exit === null ? null : container
-    });
-    group.append(svg("title", {}, piece.label));
-    switch (piece.what) {
-      case "start":
-        group.append(svg("circle", { cx: width2 / 2, cy: height / 2, r: width2 / 2 }));
-        break;
-      case "fork":
-      case "join":
-        group.append(svg("rect", { width: width2, height, rx: 2.5 }));
-        break;
-      default: {
-        group.append(svg("rect", { width: width2, height, rx: height / 2 }));
-        if (piece.what === "exit" && container === graph.model.root) {
-          group.append(svg("rect", { class: "ring", x: -3, y: -3, width: width2 + 6, height: height + 6, rx: height / 2 + 3 }));
-        }
-        const text = { x: width2 / 2, y: height / 2 + 4, "text-anchor": "middle" };
-        group.append(svg("text", text, piece.label));
-      }
-    }
-    if (piece.failure) group.classList.add("failure");
-    if (piece.success) group.classList.add("success");
-    return group;
-  }
-  var CORNER = 7;
-  function roundedPath(points) {
-    const first = points[0];
-    if (!first) return "";
-    let path = `M${first.x} ${first.y}`;
-    for (let index = 1; index < points.length; index += 1) {
-      const before = points[index - 1];
-      const here = points[index];
-      const next = points[index + 1];
-      if (!next) {
-        path += `L${here.x} ${here.y}`;
-        continue;
-      }
-      const radius = Math.min(CORNER, distance(before, here) / 2, distance(here, next) / 2);
-      const start = towards(here, before, radius);
-      const end2 = towards(here, next, radius);
-      path += `L${start.x} ${start.y}Q${here.x} ${here.y} ${end2.x} ${end2.y}`;
-    }
-    return path;
-  }
-  function distance(a, b) {
-    return Math.hypot(a.x - b.x, a.y - b.y);
-  }
-  function towards(from, to, by) {
-    const length = distance(from, to) || 1;
-    return { x: from.x + (to.x - from.x) * by / length, y: from.y + (to.y - from.y) * by / length };
-  }
-  function look(line) {
-    return [line.failure && "failure", line.implicit && "implicit", line.stop && "stop"].filter(Boolean).join(" ");
-  }
-  function drawLine({ line, points }) {
-    const d = roundedPath(points);
-    const group = svg("g", { class: `line ${look(line)}` });
-    const end2 = points[points.length - 1];
-    const before = points[points.length - 2];
-    group.append(svg("path", { class: "stroke", d }));
-    if (end2 && before) {
-      const turn = Math.atan2(end2.y - before.y, end2.x - before.x) * 180 / Math.PI;
-      const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
-      group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
-      const [only, ...others] = line.edges;
-      if (only !== void 0 && !others.length) group.append(svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
-    }
-    return group;
-  }
-  function origin(edge) {
-    const [path = "", outcome = ""] = edge.split("\n");
-    return { "data-from": path, "data-outcome": outcome };
-  }
-  function drawLabel(line, label, ground2) {
-    if (!label) return null;
-    const group = svg("g", { class: `label ${ground2} ${look(line)}` });
-    group.append(background(label));
-    line.labels.forEach((text, index) => {
-      const y = label.y + 2 + LINE_HEIGHT * index + 10.5;
-      const x = label.x + label.width / 2;
-      const edge = line.edges.find((each) => each.split("\n")[1] === text);
-      const from = edge === void 0 ? {} : origin(edge);
-      group.append(svg("text", { x, y, "text-anchor": "middle", ...from }, fitting(text, "label")));
-    });
-    return group;
-  }
-  function background({ x, y, width: width2, height }) {
-    return svg("rect", { x, y, width: width2, height, rx: 4 });
-  }
-  function markSelection(picture, path) {
-    for (const [each, element] of picture.states) {
-      const chosen = each === path;
-      element.classList.toggle("selected", chosen);
-      element.setAttribute("aria-selected", String(chosen));
-      element.setAttribute("tabindex", chosen ? "0" : "-1");
-    }
-    for (const { line, element } of picture.lines) {
-      element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
-    }
-  }
-  function markRun(graph, picture, run) {
-    const active = drawnStates(graph, picture, run?.active);
-    const waiting = drawnStates(graph, picture, run?.waiting);
-    const breakpoints = drawnStates(graph, picture, run?.breakpoints);
-    const taken = new Set(run?.taken ?? []);
-    for (const [path, element] of picture.states) {
-      element.classList.toggle("active", active.has(path));
-      element.classList.toggle("waiting", waiting.has(path));
-      setBreakpoint(element, breakpoints.has(path));
-      setVisits(element, run?.visits?.get(path) ?? 0);
-    }
-    for (const { line, element } of picture.lines) {
-      element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
-    }
-  }
-  function drawnStates(graph, picture, paths = []) {
-    const found = /* @__PURE__ */ new Set();
-    for (const path of paths) {
-      let node = nearest(graph, path);
-      while (node && !picture.states.has(node.path) && node.parent !== null) node = graph.nodes.get(node.parent);
-      if (node) found.add(node.path);
-    }
-    return found;
-  }
-  function setBreakpoint(element, is) {
-    element.classList.toggle("breakpoint", is);
-    const mark = element.querySelector(":scope > .stop");
-    if (!is) mark?.remove();
-    else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
-  }
-  function setVisits(element, count2) {
-    element.classList.toggle("visited", count2 > 0);
-    let mark = element.querySelector(":scope > .visits");
-    speakVisits(element, count2 < 2 ? "" : ` \xD7${count2}`);
-    if (count2 < 2) {
-      mark?.remove();
-      return;
-    }
-    if (!mark) {
-      mark = svg("text", { class: "visits", "text-anchor": "end" });
-      const body = element.querySelector(":scope > .body");
-      mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
-      mark.setAttribute("y", "-4");
-      element.append(" ", mark);
-    }
-    mark.textContent = `\xD7${count2}`;
-  }
-  function speakVisits(element, visits) {
-    const words = element.dataset["words"] ?? "";
-    const before = element.dataset["visits"] ?? "";
-    if (before === visits) return;
-    const rest = (element.getAttribute("aria-label") ?? "").slice(words.length + before.length);
-    element.dataset["visits"] = visits;
-    element.setAttribute("aria-label", words + visits + rest);
-  }
-  function legend() {
-    const sign = (name) => svg(
-      "svg",
-      { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
-      svg(
-        "g",
-        { class: name },
-        svg("path", { class: "stroke", d: "M2 7H32" }),
-        svg("path", { class: "head", d: "M38 7l-7.5-4q1.6 4 0 8z" })
-      )
-    );
-    const row = (name, text) => html("li", {}, sign(name), html("span", {}, text));
-    return html(
-      "ul",
-      { class: "legend" },
-      row("line", "outcome"),
-      row("line failure", "outcome of failure"),
-      row("line implicit", "implied, not written in the script")
-    );
   }
 
   // src/panel.ts
@@ -3277,6 +3327,7 @@ ${name}`;
     showRuns(viewer, textOf("smachac-trace"), textOf("smachac-film"));
     showEdits(viewer);
     showStatistics(viewer);
+    showDifferences(viewer);
     document.documentElement.dataset["ready"] = "true";
   }
   function textOf(id) {

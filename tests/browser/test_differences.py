@@ -1,0 +1,87 @@
+"""The page of `diff --format html`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from smachac.diff.comparison import compare
+from smachac.diff.page import render_difference_page
+from smachac.driver import analyse_script
+from tests.browser.pages import ROOT, SCREENSHOTS, Messages
+from tests.browser.test_edit import serious
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+pytestmark = pytest.mark.browser
+
+BEFORE = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - A: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: OLD, bad: failed}}
+  - OLD: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: C, bad: failed}}
+  - C: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: done, bad: failed}}
+"""
+
+AFTER = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - A: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: NEW, bad: failed}}
+  - NEW: {template: SleepState, time: 1.0, transitions: {succeeded: C, preempted: failed}}
+  - C:
+      template: ScriptedState
+      doc: <b>new</b>
+      outcomes: [ok, bad]
+      transitions: {ok: done, bad: A}
+"""
+
+
+def states(page: Page, change: str) -> list[str]:
+    found: list[str] = page.locator(f".state.{change}").evaluate_all(
+        "all => all.map(each => each.dataset.path)"
+    )
+    return found
+
+
+@pytest.mark.parametrize("colours", ["light", "dark"])
+def test_both_machines_are_one_picture(browser: Browser, tmp_path: Path, colours: str) -> None:
+    analyses = []
+    for name, text in (("old.yml", BEFORE), ("new.yml", AFTER)):
+        (tmp_path / name).write_text(text)
+        analyses.append(analyse_script(tmp_path / name))
+    machine = analyses[1].machine
+    assert machine is not None
+    path = tmp_path / "diff.html"
+    path.write_text(render_difference_page(compare(*analyses), machine), "utf-8")
+    page, messages = browser.new_page(viewport={"width": 1440, "height": 900}), Messages()
+    messages.watch(page)
+    page.emulate_media(color_scheme=colours)  # type: ignore[arg-type]
+    page.goto(path.as_uri())
+    page.wait_for_selector("html[data-ready]")
+    page.evaluate("theme => document.documentElement.dataset.theme = theme", colours)
+    assert states(page, "added") == ["sm/NEW"]
+    assert states(page, "removed") == ["sm/OLD (removed)"]
+    assert states(page, "changed") == ["sm/C"]
+    assert page.locator(".state .sign").count() == 3
+    label = page.locator('[data-path="sm/NEW"]').get_attribute("aria-label")
+    assert label is not None
+    assert label.endswith("; added")
+    labels = page.locator(".label text").all_text_contents()
+    assert {"+ ok", "\u2212 ok", "+ bad"} <= set(labels)
+    section = page.locator('[data-section="differences"]')
+    assert "1 state added, 1 state removed" in section.inner_text()
+    assert "<b>new</b>" in section.inner_text()
+    page.evaluate((ROOT / "viewer/node_modules/axe-core/axe.min.js").read_text("utf-8"))
+    assert serious(page) == []
+    SCREENSHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=SCREENSHOTS / f"differences_{colours}.png")
+    changes = page.get_by_label("All differences")
+    changes.get_by_role("button", name="sm/OLD (removed)").first.click()
+    page.locator('.state.selected[data-path="sm/OLD (removed)"]').wait_for()
+    assert "- state sm/OLD" in section.inner_text()
+    assert list(messages) == []
