@@ -102,7 +102,7 @@ def memory(worker: LocalWorker) -> float:
 
 def rates(runs: int, rounds: int, jobs: int = 2) -> None:
     """The CPU time of runs in a sweep against that of the same runs in a loop in one process. Other
-    work on the computer changes the rates of both, and their ratio hardly."""
+    work on the computer changes the rates of both, and this ratio less."""
     shares, starts = [], []
     for _ in range(rounds):
         one = cpu_of_one(runs)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
-from smachac.diagnostics.source import NOWHERE, Source, Word
+from smachac.diagnostics.source import NOWHERE, Source, Span, Word
 from smachac.frontend.data_files import plain, span_at
 from smachac.frontend.errors.references import bad_robot
 from smachac.frontend.loader import Library
@@ -17,11 +17,13 @@ from smachac.frontend.urdf import XACRO, UrdfError, read_joints, read_urdf
 from smachac.frontend.yaml_tree import Tree
 from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
-from smachac.robots import description, scene
+from smachac.robots import description
 from smachac.robots.description import Description, Part, Station, limb_names
 from smachac.robots.fields import DataError, guess
 from smachac.robots.files import BUILT_IN
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
+from smachac.robots.scene import Body
+from smachac.robots.scene import read as read_scene
 
 T = TypeVar("T")
 
@@ -32,13 +34,19 @@ SUFFIXES = (".urdf", ".xml", ".xacro")
 def robot_of(base: State, source: Source, library: Library, report: Report) -> Robot | None:
     """The robot of a script; None if it names none, or one that only its base type defines."""
     reader = _Reader(source, library, report)
-    bodies = reader.bodies(base.scene) if base.scene is not None else frozenset()
+    scene = reader.scene(base.scene) if base.scene is not None else None
     if base.robot is not None:
         found = reader.named(base.robot, base.type)
     else:
         found = default_robot(base.type, library)
     if found is None:
         return None
+    bodies: frozenset[str] = frozenset()
+    if base.scene is not None and scene is not None:
+        bodies = frozenset(body.name for body in scene[0])
+        for name in sorted(bodies & found.scene)[:1]:
+            error = DataError(f"`{name}` is the name of a robot", ("bodies", name))
+            reader.mistake(base.scene, scene[1], error, "scene")
     span = base.robot.span if base.robot is not None else NOWHERE
     added = frozenset(word.text for word in base.frames)
     return replace(found, added=added, scene=found.scene | bodies, span=span)
@@ -137,8 +145,13 @@ class _Reader:
         self, word: Word, source: Source, read: Callable[[object], T], what: str
     ) -> tuple[T, Tree] | None:
         """What `read` makes of a YAML file, with the tree of the file."""
+        before = len(self.report)
         tree = self.library.parse(source, self.report)
         if tree is None:
+            if len(self.report) == before:
+                message = f"`{word.text}` does not describe a {what}: the file is empty"
+                related = (Related(span=Span(source, 0, 0), message="found here"),)
+                self.wrong(word, message, None, (what, word.text, ""), related)
             return None
         try:
             return read(plain(tree)), tree
@@ -153,11 +166,10 @@ class _Reader:
         arguments = (what, word.text, ".".join(map(str, error.place)))
         self.wrong(word, message, error.help, arguments, related)
 
-    def bodies(self, word: Word) -> frozenset[str]:
-        """The names of the bodies of a scene."""
+    def scene(self, word: Word) -> tuple[tuple[Body, ...], Tree] | None:
+        """The bodies of a scene, with the tree of its file."""
         source = self.file(word)
-        found = self.data(word, source, scene.read, "scene") if source is not None else None
-        return frozenset(body.name for body in found[0]) if found is not None else frozenset()
+        return self.data(word, source, read_scene, "scene") if source is not None else None
 
     # Descriptions
 
@@ -165,13 +177,18 @@ class _Reader:
         source = self.library.robot(f"{word.text}.yml")
         return self.described(word, source) if source is not None else None
 
-    def described(self, word: Word, source: Source) -> Robot | None:
-        """The robot of a description, whose joints have the limits of its URDF file."""
+    def described(self, word: Word, source: Source, *, part: bool = False) -> Robot | None:
+        """The robot of a description, whose joints have the limits of its URDF file. `part`: it is
+        one of several robots, and has no parts of its own."""
         found = self.data(word, source, description.read, "robot")
         if found is None:
             return None
         data, tree = found
         if isinstance(data, Station):
+            if part:
+                error = DataError("a part has no parts of its own", ("parts",))
+                self.mistake(word, tree, error, "robot")
+                return None
             return self.station(word, source, data, tree)
         facts = self.joints(word, source, data, tree)
         if facts is None:
@@ -256,16 +273,24 @@ class _Reader:
                 help = guess(part.robot, BUILT_IN)
                 self.mistake(word, tree, DataError(message, part.place, help), "robot")
                 return None
-            robot = self.described(Word(part.robot, span), text)
+            robot = self.described(Word(part.robot, span), text, part=True)
             if robot is None:
                 return None
             found.append((part, robot))
+        arms: dict[str, Arm] = {}
+        for part, each in found:
+            for arm in _arms(part, each, data):
+                if arm.name in arms:
+                    error = DataError(f"there are two arms `{arm.name}`", part.place)
+                    self.mistake(word, tree, error, "robot")
+                    return None
+                arms[arm.name] = arm
         joints = {joint.name: joint for _, each in found for joint in each.joints}
         return Robot(
             name=data.name,
             joints=tuple(joints.values()),
             limbs=tuple(limb for _, each in found for limb in each.limbs),
-            arms=tuple(arm for part, each in found for arm in _arms(part, each, data)),
+            arms=tuple(arms.values()),
             base=data.base,
             description=word.text,
             scene=frozenset(part.name for part, _ in found),

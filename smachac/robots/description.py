@@ -135,6 +135,7 @@ def read(data: Any) -> Description | Station:
 
 
 def _part(name: str, data: Any, place: Place) -> Part:
+    fields.no_frame(name, place)
     given = Fields(data, place, ("robot", "base"))
     robot = given.take("robot", fields.text)
     base = given.get("base", fields.pose, None)
@@ -143,7 +144,19 @@ def _part(name: str, data: Any, place: Place) -> Part:
 
 def _stand(data: Any, place: Place) -> Stand:
     given = Fields(data, place, ("size", "centre"))
-    return Stand(size=given.take("size", _pair), centre=given.get("centre", _pair, (0.0, 0.0)))
+    return Stand(
+        size=given.take("size", _footprint), centre=given.get("centre", _centre, (0.0, 0.0))
+    )
+
+
+def _footprint(data: Any, place: Place) -> tuple[float, float]:
+    x, y = _centre(data, place)
+    return fields.positive(x, (*place, 0)), fields.positive(y, (*place, 1))
+
+
+def _centre(data: Any, place: Place) -> tuple[float, float]:
+    x, y = _pair(data, place)
+    return fields.near(x, (*place, 0)), fields.near(y, (*place, 1))
 
 
 def _pair(data: Any, place: Place) -> tuple[float, float]:
@@ -161,14 +174,24 @@ _ARM = (
 def _limb(name: str, data: Any, place: Place) -> Limb:
     given = Fields(data, place, _ARM)
     joints = given.take("joints", fields.texts)
+    for k, joint in enumerate(joints):
+        if joint in joints[:k]:
+            raise DataError(f"the joint `{joint}` is there twice", (*place, "joints", k))
     tip, offset = given.take("tool", _tool)
     home = given.take("home", fields.numbers)
     limits: tuple[tuple[float, float], ...] = given.get("limits", _limits, ())
-    speeds: tuple[float, ...] = given.get("speeds", fields.numbers, ())
+    speeds: tuple[float, ...] = given.get("speeds", _speeds, ())
+    gripper = given.get("gripper", _gripper, None)
     for key, found in (("home", home), ("limits", limits), ("speeds", speeds)):
         if found and len(found) != len(joints):
             message = f"`{key}` has {len(found)} items, but the arm has {len(joints)} joints"
             raise DataError(message, (*place, key))
+    for k, (low, high) in enumerate(limits):
+        _inside(joints[k], home[k], UrdfJoint(low, high, turns=True), (*place, "home", k))
+    for finger in gripper.fingers if gripper is not None else ():
+        if finger.joint in joints:
+            spot = (*place, "gripper", "joints", finger.joint)
+            raise DataError(f"the joint `{finger.joint}` is one of the arm", spot)
     return Limb(
         name=name,
         joints=joints,
@@ -176,7 +199,7 @@ def _limb(name: str, data: Any, place: Place) -> Limb:
         offset=offset,
         home=home,
         grasp=given.get("grasp", fields.pose, DOWN),
-        gripper=given.get("gripper", _gripper, None),
+        gripper=gripper,
         settled=given.get("tolerance", fields.positive, 0.002),
         efforts=given.get("efforts", _efforts, ()),
         limits=limits,
@@ -193,7 +216,17 @@ def _tool(data: Any, place: Place) -> tuple[str, Pose]:
 
 def _limits(data: Any, place: Place) -> tuple[tuple[float, float], ...]:
     rows = enumerate(fields.items(data, place))
-    return tuple(_pair(each, (*place, k)) for k, each in rows)
+    found = tuple(_pair(each, (*place, k)) for k, each in rows)
+    for k, (low, high) in enumerate(found):
+        if low > high:
+            message = f"the lowest position {low:g} is above the highest {high:g}"
+            raise DataError(message, (*place, k))
+    return found
+
+
+def _speeds(data: Any, place: Place) -> tuple[float, ...]:
+    rows = enumerate(fields.items(data, place))
+    return tuple(fields.positive(each, (*place, k)) for k, each in rows)
 
 
 def _efforts(data: Any, place: Place) -> tuple[tuple[str, float], ...]:
@@ -278,7 +311,7 @@ def _inside(name: str, position: float, joint: UrdfJoint, place: Place) -> None:
     message = (
         f"`{name}` is {position:g} {unit}, outside its limits {joint.lower:g} to {joint.upper:g}"
     )
-    help = f"the limits of the URDF file are in {unit}"
+    help = f"the limits are in {unit}"
     if joint.turns and abs(position) > 2 * math.pi:
         help = "angles are in radians, not in degrees"
     if not joint.turns and joint.lower <= position / 1000 <= joint.upper:

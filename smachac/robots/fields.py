@@ -19,6 +19,8 @@ Pose: TypeAlias = tuple[Vector, Quaternion]
 
 NO_ROTATION: Quaternion = (0.0, 0.0, 0.0, 1.0)
 IDENTITY: Pose = ((0.0, 0.0, 0.0), NO_ROTATION)
+FRAMES = ("base", "world")
+"""The frames of every world."""
 FARTHEST = 20.0
 """Largest coordinate of a pose (m): a larger one is written in millimetres."""
 
@@ -146,6 +148,12 @@ def size(data: Any, place: Place) -> Vector:
         positive(each, (*place, k))
         near(each, (*place, k))
     return found
+
+
+def no_frame(name: str, place: Place) -> None:
+    """Raises DataError for a name that is that of a frame of every world."""
+    if name in FRAMES:
+        raise DataError(f"`{name}` is the name of a frame", place, "choose another name")
 
 
 def near(length: float, place: Place) -> float:

@@ -51,7 +51,7 @@ def read(data: Any) -> tuple[Body, ...]:
     """The bodies in the data of a YAML file. Raises DataError."""
     given = Fields(data, (), ("bodies",))
     bodies = given.take("bodies", lambda each, place: fields.named(each, place, _body))
-    above = ["base", "world"]
+    above = [*fields.FRAMES]
     for body in bodies:
         place: Place = ("bodies", body.name)
         if body.frame not in above:
@@ -69,6 +69,7 @@ _BODY = ("model", "path", "size", "mass", "friction", "colour", "pose", "frame",
 
 
 def _body(name: str, data: Any, place: Place) -> Body:
+    fields.no_frame(name, place)
     given = Fields(data, place, _BODY)
     kinds = [key for key in ("model", "path", "size") if key in given]
     if len(kinds) != 1:
@@ -121,6 +122,9 @@ def _colour(data: Any, place: Place) -> RGB:
 
 def _spread(data: Any, place: Place) -> Vector:
     found = fields.vector(data, place)
+    for k, each in enumerate(found):
+        if each < 0.0:
+            raise DataError(f"a shift is not negative, as {each:g} is", (*place, k))
     for k, each in enumerate(found[:2]):
         fields.near(each, (*place, k))
     return found

@@ -115,6 +115,42 @@ def test_a_urdf_file_alone_cannot_be_simulated(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("file", "text", "message", "place"),
+    [
+        ("arm.yml", "", "robot: the file is empty", ("arm.yml", 1, 1)),
+        ("table.yml", "# nothing", "scene: the file is empty", ("table.yml", 1, 1)),
+        (
+            "arm.yml",
+            "name: x\nparts: {a: {robot: arm.yml}}",
+            "robot: a part has no parts of its own",
+            ("arm.yml", 2, 1),
+        ),
+        (
+            "arm.yml",
+            "name: x\nparts: {a: {robot: baxter}, a_left: {robot: panda}}",
+            "robot: there are two arms `a_left`",
+            ("arm.yml", 2, 45),
+        ),
+        (
+            "arm.yml",
+            "name: x\nparts: {tray: {robot: panda}, b: {robot: iiwa}}",
+            "scene: `tray` is the name of a robot",
+            ("table.yml", 1, 10),
+        ),
+    ],
+)
+def test_a_mistake_between_files(
+    tmp_path: Path, file: str, text: str, message: str, place: tuple[str, int, int]
+) -> None:
+    path = project(tmp_path, **{file.replace(".", "_"): text})
+    found = [item.finding for item in smachac.check(path) if item.code == "SM018"]
+    assert [each.message.partition("does not describe a ")[2] for each in found] == [message]
+    (related,) = found[0].related
+    span = related.span
+    assert (Path(span.source.name).name, span.line, span.column) == place
+
+
 STATION = "{name: two, parts: {near: {robot: panda}, far: {robot: arm.yml}}}"
 
 

@@ -86,6 +86,39 @@ MISTAKES: list[tuple[tuple[str | int, ...], Any, tuple[str | int, ...], str]] = 
     (("base",), [[0, 0, 400], [0, 0, 0, 1]], ("base", 0, 2), "400 m is farther away than 20 m"),
     (("base",), [[0, 0], [0, 0, 0, 1]], ("base", 0), "three numbers are expected, not 2"),
     (("stand",), {"size": [1]}, ("stand", "size"), "two numbers are expected, not 1"),
+    (("stand",), {"size": [1, 0]}, ("stand", "size", 1), "a number above 0 is expected, not 0"),
+    (("stand",), {"size": [250, 1]}, ("stand", "size", 0), "250 m is farther away than 20 m"),
+    (
+        ("stand",),
+        {"size": [1, 1], "centre": [0, 40]},
+        ("stand", "centre", 1),
+        "40 m is farther away than 20 m",
+    ),
+    ((*LEFT, "joints", 1), "a", (*LEFT, "joints", 1), "the joint `a` is there twice"),
+    (
+        (*LEFT, "gripper", "joints", "b"),
+        {"open": 1},
+        (*LEFT, "gripper", "joints", "b"),
+        "the joint `b` is one of the arm",
+    ),
+    (
+        (*LEFT, "limits"),
+        [[-1, 1], [2, -2]],
+        (*LEFT, "limits", 1),
+        "the lowest position 2 is above the highest -2",
+    ),
+    (
+        (*LEFT, "limits"),
+        [[-1, 1], [-2, 0.5]],
+        (*LEFT, "home", 1),
+        "`b` is 1 rad, outside its limits -2 to 0.5",
+    ),
+    (
+        (*LEFT, "speeds"),
+        [1, -1],
+        (*LEFT, "speeds", 1),
+        "a number above 0 is expected, not -1",
+    ),
 ]
 
 
@@ -122,6 +155,16 @@ def test_a_station_has_parts() -> None:
     assert description.limb_names("b", ["left", "right"]) == ("b_left", "b_right")
 
 
+@pytest.mark.parametrize("name", ["base", "world"])
+def test_no_part_and_no_body_has_the_name_of_a_frame(name: str) -> None:
+    with pytest.raises(DataError, match=f"`{name}` is the name of a frame") as part:
+        description.read({"name": "two", "parts": {name: {"robot": "panda"}}})
+    assert part.value.place == ("parts", name)
+    with pytest.raises(DataError, match=f"`{name}` is the name of a frame") as body:
+        scene.read({"bodies": {name: {"model": "block"}}})
+    assert body.value.place == ("bodies", name)
+
+
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_the_built_in_robots_are_read(name: str) -> None:
     found = built_in(name)
@@ -153,6 +196,12 @@ def test_a_scene() -> None:
         (("bodies", "cap", "frame"), "lid", ("bodies", "cap", "frame"), "no frame `lid`"),
         (("bodies", "cap", "apart"), {"lid": 1}, ("bodies", "cap", "apart", "lid"), "no body"),
         (("bodies", "cap", "size"), [100, 1, 1], ("bodies", "cap", "size", 0), "100 m is farther"),
+        (
+            ("bodies", "block", "spread"),
+            [0.1, -0.1, 1],
+            ("bodies", "block", "spread", 1),
+            "a shift is not negative",
+        ),
         (("bodies", "cap", "size"), None, ("bodies", "cap"), "a `model`, a `path` or a `size`"),
         (("bodies", "block", "mass"), 1, ("bodies", "block", "mass"), "`mass` needs `size`"),
         (
