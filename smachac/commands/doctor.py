@@ -36,6 +36,7 @@ MODULES = (
     ("imageio_ffmpeg", "imageio-ffmpeg", "films of the arm (.mp4)", "pip install 'smachac[sim]'",
      False),
     ("pygls", "pygls", "the language server, `smachac lsp`", "pip install 'smachac[lsp]'", False),
+    ("rosbags", "rosbags", "bags of ROS 2 in `trace check`", "pip install 'smachac[bags]'", False),
     ("smach", "smach", "SMACH itself; without it programs use the bundled runtime",
      "install ROS", False),
     ("rospy", "rospy", "programs for ROS 1", "install ROS 1", False),

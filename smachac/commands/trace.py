@@ -23,6 +23,7 @@ examples:
   smachac run main.yml --trace run.jsonl           record a run
   smachac trace check main.yml run.jsonl           is it a run that the script allows?
   smachac trace check main.yml runs/*.jsonl        many runs, and the transitions that none takes
+  smachac trace check main.yml bags/run_7          a bag of ROS 2 with the live status of a node
   smachac trace stats main.yml runs/*.jsonl        visits, durations and outcomes of each state
 
 exit codes: 0 every trace is a run that the script allows, 1 one is not, or the script has errors,
@@ -42,7 +43,10 @@ exit codes: 0 success, 1 a trace is not a run that the script allows, or the scr
 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
-TRACES = "file that `run --trace` or a robot has written; for statistics also a sweep's database"
+TRACES = (
+    "file that `run --trace` or a robot has written; for `check` also a bag of rosbag2, for"
+    " statistics a sweep's database"
+)
 
 
 class UnreadableTraceError(Exception):
@@ -159,7 +163,9 @@ def _judged(
     paths: list[Path], machine: Machine, *, conformance: bool = False
 ) -> tuple[list[JudgedTrace], Coverage, TraceStatistics]:
     """Every trace, with what all of them cover and count. The runs of a database have no events,
-    and so no `conformance`. Raises UnreadableTraceError, and DatabaseError for a database."""
+    and so no `conformance`; those of a bag have no outcomes of states, and so nothing else. Raises
+    UnreadableTraceError, and DatabaseError for a database."""
+    from smachac.commands.bag import is_bag
     from smachac.verify.coverage import Coverage
     from smachac.verify.trace_report import judge_trace
     from smachac.verify.trace_statistics import TraceStatistics
@@ -172,6 +178,11 @@ def _judged(
 
     for path in paths:
         try:
+            if is_bag(path):
+                if not conformance:
+                    raise UnreadableTraceError(path, "a bag has no outcomes of states to count")
+                judged += _judged_bag(path, machine, taken)
+                continue
             if not path.is_file() and path.exists():
                 raise UnreadableTraceError(path, "it is not a regular file")
             if _is_database(path):
@@ -185,6 +196,27 @@ def _judged(
             raise UnreadableTraceError(path, error.strerror or str(error)) from None
         statistics.end_trace()
     return judged, taken, statistics
+
+
+def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTrace]:
+    """The runs in a bag, one trace for each node that reports on the machine. Raises
+    UnreadableTraceError."""
+    from smachac.commands.bag import BagError, read_statuses
+    from smachac.verify.status_conformance import judge_statuses
+
+    if not path.exists():
+        raise UnreadableTraceError(path, "there is no such file")
+    try:
+        found = read_statuses(path)
+    except BagError as error:
+        raise UnreadableTraceError(path, str(error)) from None
+    roots = {topic: {each.path.partition("/")[0] for each in found[topic]} for topic in found}
+    own = [topic for topic in found if not roots[topic] or machine.root.name in roots[topic]]
+    if not own:
+        names = ", ".join(f"`/{root}`" for root in sorted(set().union(*roots.values())))
+        raise UnreadableTraceError(path, f"it reports on {names}, not on `/{machine.root.name}`")
+    names_of = {topic: str(path) if len(own) == 1 else f"{path} ({topic})" for topic in own}
+    return [judge_statuses(machine, names_of[topic], found[topic], taken) for topic in own]
 
 
 def _is_database(path: Path) -> bool:
