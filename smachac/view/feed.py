@@ -86,11 +86,6 @@ class Feed:
             self._closed = True
             self._changed.notify_all()
 
-    def drain(self, timeout: float) -> bool:
-        """Wait, after `close`, until all readers have left; whether they have."""
-        with self._changed:
-            return self._changed.wait_for(lambda: not self._readers, timeout)
-
     def after(self, reader: Reader, timeout: float) -> list[Entry] | None:
         """The messages that a reader has not received; see `Reader.wait`."""
         with self._changed:
@@ -110,7 +105,6 @@ class Feed:
         """Remove a reader."""
         with self._changed:
             self._readers.discard(reader)
-            self._changed.notify_all()
 
     def _newer(self, number: int) -> list[Entry]:
         found: list[Entry] = []

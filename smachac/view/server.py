@@ -37,7 +37,7 @@ IDLE = 5.0
 """Seconds between two signs of life of an idle stream, which show that a reader has gone."""
 
 FAREWELL = 3.0
-"""Seconds that readers have, at the end, to receive what they lack."""
+"""Seconds that requests have, at the end, to receive what they lack."""
 
 HEADERS = {
     "Cache-Control": "no-store",
@@ -88,6 +88,8 @@ class ViewServer(ThreadingHTTPServer):
         self.page, self.feed, self.actions = page, feed, actions
         self.name = name
         self.token = secrets.token_urlsafe(24)
+        self._ended = threading.Condition()
+        self._requests = 0
         super().__init__((HOST, port), _Handler)
 
     @property
@@ -105,11 +107,32 @@ class ViewServer(ThreadingHTTPServer):
         threading.Thread(target=self.serve_forever, name="smachac-server", daemon=True).start()
 
     def stop(self) -> None:
-        """End, after the readers have received what the feed holds."""
+        """End, after the readers have received what the feed holds, and actions their answers."""
         self.feed.close()
-        self.feed.drain(FAREWELL)
+        self._wait_for_requests()
         self.shutdown()
+        self._wait_for_requests()  # those that came meanwhile
         self.server_close()
+
+    def _wait_for_requests(self) -> None:
+        """Wait, at most FAREWELL, until no request goes on."""
+        with self._ended:
+            self._ended.wait_for(lambda: not self._requests, FAREWELL)
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Start the thread of a request."""
+        with self._ended:
+            self._requests += 1
+        super().process_request(request, client_address)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Answer a request, in its thread."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            with self._ended:
+                self._requests -= 1
+                self._ended.notify_all()
 
     def handle_error(self, request: object, client_address: object) -> None:
         """A reader that has gone is no news."""
@@ -202,7 +225,7 @@ class _Handler(BaseHTTPRequestHandler):
         if feed.readers >= MOST_READERS:
             self._refuse(HTTPStatus.SERVICE_UNAVAILABLE, "there are too many readers")
             return
-        reader = feed.open()  # before the answer, so that `stop` waits for this reader
+        reader = feed.open()
         self.close_connection = True
         try:
             self._head(HTTPStatus.OK, "text/event-stream")
