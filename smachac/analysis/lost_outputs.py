@@ -46,7 +46,8 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
         outer = around(flow, scope.path)
         if outer is None or scope.path not in flow.entered or scope.container.sugar:
             continue
-        for writer, written, own in fact_of(_kept, scope.path, scope):
+        kept: tuple[tuple[Node, Key, str], ...] = fact_of(_kept, scope.path, scope)
+        for writer, written, own in kept:
             around_it = flow.scopes[outer]
             key = remapping(scope.container).get(own, own)
             read = fact_of(_read, outer, around_it)

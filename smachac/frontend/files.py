@@ -322,10 +322,6 @@ def disk_library(
     """
     disk = disk or Disk()
     project = find_project(main, report, disk, codes)
-    own_scripts = [*scripts, *project.scripts]
-    template_folders = [*templates, *project.templates, main.parent / "templates", *BUILT_IN]
-
-    code_folders = [*project.code, main.parent, main.parent / "include"]
     refused: set[Path] = set()
 
     def refuse(path: Path, folder: Path) -> None:
@@ -333,14 +329,16 @@ def disk_library(
             refused.add(path)
             report.append(leads_out(path, folder))
 
-    for folder in (main.parent / "templates", main.parent / "include"):
+    own_templates, include = main.parent / "templates", main.parent / "include"
+    for folder in (own_templates, include):
         if folder.is_dir() and not lies_inside(folder, main.parent):
             refuse(folder, main.parent)
-            template_folders = [each for each in template_folders if each != folder]
-            code_folders = [each for each in code_folders if each != folder]
+    own_types = [*templates, *project.templates, own_templates]
+    template_folders = [each for each in (*own_types, *BUILT_IN) if each not in refused]
+    code_folders = [each for each in (*project.code, main.parent, include) if each not in refused]
 
     def script_folders(caller: str) -> list[Path]:
-        return list(dict.fromkeys([Path(caller).parent, *own_scripts]))
+        return list(dict.fromkeys([Path(caller).parent, *scripts, *project.scripts]))
 
     def searched(folders: Sequence[Path]) -> list[str]:
         """The folders for messages, without those of the project that do not exist."""

@@ -96,17 +96,7 @@ def outcomes_in_code(template: Source) -> tuple[Outcome, ...]:
     found = list(_OUTCOMES.finditer(template.text))
     if found and _DEFAULT.search(template.text, 0, found[0].start()) is not None:
         return ()
-    words = list(_QUOTED.finditer(found[0].group(1))) if len(found) == 1 else []
-    if not words or _QUOTED.sub("", found[0].group(1)).strip(", \n\t"):
-        return ()
-    start = found[0].start(1)
-    return tuple(
-        Outcome(
-            name=word.group(2),
-            span=Span(template, start + word.start(2), start + word.end(2)),
-        )
-        for word in words
-    )
+    return _quoted_outcomes(template, found[0]) if len(found) == 1 else ()
 
 
 def class_outcomes(template: Source) -> tuple[Outcome, ...]:
@@ -115,16 +105,17 @@ def class_outcomes(template: Source) -> tuple[Outcome, ...]:
     found = list(_INIT.finditer(template.text))
     if len(found) != 1 or "register_outcomes" in template.text:
         return ()
-    words = list(_QUOTED.finditer(found[0].group(1)))
-    if _QUOTED.sub("", found[0].group(1)).strip(", \n\t"):
+    return _quoted_outcomes(template, found[0])
+
+
+def _quoted_outcomes(template: Source, names: re.Match[str]) -> tuple[Outcome, ...]:
+    """The outcomes that a list in a template names; nothing if it is not of constants only."""
+    if _QUOTED.sub("", names[1]).strip(", \n\t"):
         return ()
-    start = found[0].start(1)
+    start = names.start(1)
     return tuple(
-        Outcome(
-            name=word.group(2),
-            span=Span(template, start + word.start(2), start + word.end(2)),
-        )
-        for word in words
+        Outcome(name=word[2], span=Span(template, start + word.start(2), start + word.end(2)))
+        for word in _QUOTED.finditer(names[1])
     )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from smachac.analysis import properties
 from smachac.checks.workspace import unreachable
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity
 from smachac.driver import CODES, analyse, build
@@ -57,11 +58,22 @@ def shown(report: Report) -> list[str]:
 
 
 @pytest.mark.parametrize("code", EVERY)
-def test_wrong_gives_exactly_its_code(code: Code, tmp_path: Path) -> None:
+def test_wrong_gives_exactly_its_code(
+    code: Code, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(properties, "MOST_PAIRS", 2_000)  # the limit of SM704, which takes seconds
     report = above_info(judged(explanation(code).wrong, tmp_path, TARGETS.get(code.code, "python")))
     assert {item.code for item in report} == {code.code}, shown(report)
     assert all(item.help for item in report), shown(report)
     assert (code.code in IN_THE_MESSAGE) != all(item.effect for item in report), shown(report)
+
+
+@pytest.mark.slow
+def test_the_example_of_a_limit_exceeds_the_documented_limit(tmp_path: Path) -> None:
+    code = CODES["SM704"]
+    assert f"{properties.MOST_PAIRS:,}" in code.explanation
+    report = above_info(judged(explanation(code).wrong, tmp_path))
+    assert {item.code for item in report} == {code.code}, shown(report)
 
 
 @pytest.mark.parametrize("code", EVERY)

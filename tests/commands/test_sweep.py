@@ -32,7 +32,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-MOCK = ("sweep", "main.yml", "--mock", "chances.yml", "--jobs", "2")
+MOCK = ("sweep", "main.yml", "--mock", "chances.yml", "--jobs", "1")
 
 
 def swept(capsys: pytest.CaptureFixture[str], *more: str) -> dict[str, Any]:
@@ -50,7 +50,7 @@ def seeds(database: Path) -> list[int]:
 
 
 def test_the_report(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    summary = swept(capsys, "--runs", "60")
+    summary = swept(capsys, "--runs", "60", "--jobs", "2")
     assert summary["runs"] == 60
     assert sum(each["count"] for each in summary["outcomes"]) == 60
     good = summary["success"]

@@ -109,4 +109,6 @@ def test_the_recorded_machines_have_much_that_is_always_set() -> None:
         watched = Watched(CASES[name])
         watched.run(copy.deepcopy(CASES[name].get("parent")))
         judged += watched.judged
-    assert judged > 500
+        if judged > 500:
+            return
+    pytest.fail(f"only {judged} keys are judged")

@@ -275,22 +275,22 @@ def test_constants_are_refused(data: Data, type_: str, reason: str) -> None:
 # What compiles, and gives the values of Python
 
 
-SEEDS = [1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (2, 3, 4))]
+SEEDS_AND_CASES = [(1, 50), *(pytest.param(n, 130, marks=pytest.mark.slow) for n in (1, 2, 3, 4))]
 
 
 @COMPILERS
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(("seed", "count"), SEEDS_AND_CASES)
 def test_random_expressions_have_the_value_of_python(
-    compiler: Compiler, seed: int, folder: Path
+    compiler: Compiler, seed: int, count: int, folder: Path
 ) -> None:
     tally = Tally()
     seed += 10 * len(compiler.name)
     flags = SANITIZED if compiler.runs_with(*SANITIZED) else ()
-    assert compare(compiler, folder, list(cases(130, seed)), seed, tally, "-O0", *flags) == []
+    assert compare(compiler, folder, list(cases(count, seed)), seed, tally, "-O0", *flags) == []
     # Most have a value, some have none, few are beyond 64 bits.
-    assert tally.equal > 350
-    assert tally.errors > 25
-    assert tally.limits + tally.nan < 75
+    assert tally.equal > 2.7 * count
+    assert tally.errors > 0.19 * count
+    assert tally.limits + tally.nan < 0.58 * count
 
 
 EDGES = [

@@ -21,11 +21,13 @@ SECONDS = 10
 CHILD = """
 import resource, sys
 resource.setrlimit(resource.RLIMIT_CPU, (int(sys.argv[1]), int(sys.argv[1])))
-if "--pure" in sys.argv:
+if sys.argv[2] == "pure":
     sys.modules["ruamel.yaml.cyaml"] = None
 from smachac.commands.cli import main
-sys.exit(main([word for word in sys.argv[2:] if word != "--pure"]))
+sys.exit(max(main(command.split()) for command in sys.argv[3:]))
 """
+
+COMMANDS = ("check main.yml", "build --target python main.yml", "migrate .")
 
 MAIN = """\
 name: sm
@@ -85,11 +87,12 @@ def first_quick(texts: Iterable[str]) -> list[ParameterSet]:
     ]
 
 
-def run(folder: Path, *words: str) -> None:
-    """Runs the command line in a folder with a limit; fails where the limit ends it."""
+def run(folder: Path, *commands: str, pure: bool = False) -> None:
+    """Run commands in a folder, all in one process; fail where its limit ends it. `pure`: without
+    the YAML parser in C."""
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     done = subprocess.run(
-        [sys.executable, "-c", CHILD, str(SECONDS), *words],
+        [sys.executable, "-c", CHILD, str(SECONDS), "pure" if pure else "fast", *commands],
         cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=300,
     )  # fmt: skip
     assert done.returncode in (0, 1), (done.returncode, done.stderr[-500:])
@@ -105,9 +108,7 @@ def write(folder: Path, name: str, text: str) -> None:
 def test_templates(text: str, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", MAIN)
     write(tmp_path, "templates/Own.tpl.py", f"{{% extends 'State.tpl.py' %}}\n{TEMPLATES[text]}")
-    run(tmp_path, "check", "main.yml")
-    run(tmp_path, "build", "--target", "python", "main.yml")
-    run(tmp_path, "migrate", ".")
+    run(tmp_path, *COMMANDS)
 
 
 @pytest.mark.parametrize("pure", [False, pytest.param(True, marks=pytest.mark.slow)])
@@ -115,17 +116,14 @@ def test_templates(text: str, tmp_path: Path) -> None:
 def test_scripts(text: str, pure: bool, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", SCRIPTS[text])
     write(tmp_path, "templates/Own.tpl.py", "{% extends 'State.tpl.py' %}\n" + STATE)
-    more = ["--pure"] if pure else []
-    run(tmp_path, "check", "main.yml", *more)
-    run(tmp_path, "build", "--target", "python", "main.yml", *more)
-    run(tmp_path, "migrate", ".", *more)
+    run(tmp_path, *COMMANDS, pure=pure)
 
 
 @pytest.mark.parametrize("text", SETTINGS)
 def test_settings(text: str, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", MAIN.replace("Own", "ScriptedState"))
     write(tmp_path, "smachac.toml", SETTINGS[text])
-    run(tmp_path, "check", "main.yml")
+    run(tmp_path, "check main.yml")
 
 
 @pytest.mark.parametrize("text", first_quick(HEADERS))
@@ -134,4 +132,4 @@ def test_headers(text: str, tmp_path: Path) -> None:
     write(tmp_path, "templates/Own.yml", INTERFACE)
     write(tmp_path, "templates/Own.tpl.py", "{% block class_defs %}\n" + STATE + "{% endblock %}\n")
     write(tmp_path, "include/own.hpp", HEADERS[text])
-    run(tmp_path, "check", "main.yml")
+    run(tmp_path, "check main.yml")
