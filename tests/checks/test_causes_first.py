@@ -363,3 +363,11 @@ def test_a_fault_of_a_class_is_one_finding(
     report = analysed({"main.yml": SEEN, **files}).report
     faults = [item.code for item in report if item.code not in ("SM314", "SM315")]
     assert sorted(faults) == expected
+
+
+def test_a_misspelt_type_is_one_finding() -> None:
+    limits = "{type: %s, min: 0, max: 2, unit: m/s}"
+    interface = FIND + f"input_keys: {{where: str}}\nvariables: {{speed: {limits}}}\n"
+    text = FIELDS.replace("template: Find", "template: Find\n      speed: 1.5")
+    usual = found(text, Find=interface % "float")
+    assert sorted(found(text, Find=interface % "flaot")) == sorted([*usual, "SM017 flaot"])
