@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator, Mapping
 from functools import cache
 
@@ -25,6 +26,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
+from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.types import ANY, Type
@@ -143,6 +145,8 @@ def _unset(
             # The item of an iterator is no list of items, although `item` resembles `items`.
             guess = guesser(sorted(_keys_of(scope) - {node.item_key}))(missing.key)
         help = did_you_mean(guess) or _item_help(scope.container, node) or help
+        if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
+            help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",

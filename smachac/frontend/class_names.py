@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+from collections import Counter
 from collections.abc import Iterable, Iterator
 
 from smachac.diagnostics.source import Span, Word
@@ -52,7 +53,16 @@ def undefined_names(
         return []
     bound = {name for each in every for name in _bound(each)} | BUILT_IN
     ends, guess, found = set(outcomes), guesser(sorted(bound - BUILT_IN)), []
+    methods = _only_methods(every)
     for each in _evaluated(node):
+        if (
+            isinstance(each, ast.Call)
+            and isinstance(each.func, ast.Name)
+            and each.func.id in methods
+        ):
+            methods.remove(each.func.id)
+            name = Word(each.func.id, text.span(each.func))
+            found.append(ClassFault(kind="undefined name", name=name, near=f"self.{name.text}"))
         if isinstance(each, ast.Name) and each.id not in bound:
             bound.add(each.id)
             near = f'"{each.id}"' if each.id in ends else guess.sure(each.id)
@@ -60,6 +70,16 @@ def undefined_names(
             if near is not None:
                 found.append(ClassFault(kind="undefined name", name=name, near=near))
     return found
+
+
+def _only_methods(every: list[ast.AST]) -> set[str]:
+    """The names that only methods of classes have: a call needs `self.` or the class."""
+    classes = [each for each in every if isinstance(each, ast.ClassDef)]
+    methods = Counter(
+        each.name for owner in classes for each in owner.body if isinstance(each, ast.FunctionDef)
+    )
+    uses = Counter(name for each in every for name in _bound(each))
+    return {name for name, times in methods.items() if uses[name] == times} - BUILT_IN
 
 
 def _bound(node: ast.AST) -> Iterator[str]:

@@ -255,6 +255,10 @@ def _execute_faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[C
     return [_at_method("arguments", module, function)] if few or many else []
 
 
+def _names_super(node: ast.AST) -> bool:
+    return isinstance(node, ast.Name) and node.id == "super"
+
+
 def _constructor_faults(own: OwnClass) -> list[ClassFault]:
     """A constructor that does not call the one of `smach.State`, or none at all."""
     module, node = own.classes[0]
@@ -268,8 +272,12 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
     owner = next(each for (_, each), names in zip(own.classes, own.names, strict=True)
                  if "__init__" in names)  # fmt: skip
     calls = any(
-        (isinstance(each, ast.Name) and each.id == "super")
-        or (isinstance(each, ast.Attribute) and each.attr == "__init__")
+        (isinstance(each, ast.Call) and _names_super(each.func))
+        or (
+            isinstance(each, ast.Attribute)
+            and each.attr == "__init__"
+            and not _names_super(each.value)
+        )
         for each in ast.walk(owner)
     )
     return [] if calls else [_at_method("no constructor call", *found)]

@@ -199,13 +199,18 @@ def _names(key: Scalar, report: Report) -> bool:
 
 
 def as_pairs(tree: Tree, report: Report) -> Pairs:
-    """A mapping of names to names: transitions, remapping."""
+    """A mapping of names to names: transitions, remapping. A value that is no name is reported, and
+    becomes the empty name, as a look-up that fails does; so a key has a value all the same."""
     pairs = []
-    for entry in tree.entries if isinstance(tree, Map) else as_map(tree, report):
+    entries = tree.entries if isinstance(tree, Map) else as_map(tree, report)
+    if isinstance(tree, Seq):  # reported: its mappings are meant
+        entries = tuple(
+            each for item in tree.items if isinstance(item, Map) for each in item.entries
+        )
+    for entry in entries:
         key = as_name(entry.key, report)
-        value = as_name(entry.value, report) if key is not None else None
-        if key is not None and value is not None:
-            pairs.append((key, value))
+        if key is not None:
+            pairs.append((key, as_name(entry.value, report) or Word("", key.span)))
     return tuple(pairs)
 
 

@@ -11,7 +11,16 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
 from smachac.frontend.errors.references import unresolved_look_up
 from smachac.frontend.errors.script import too_big
-from smachac.frontend.yaml_tree import Entry, Joined, Map, Scalar, Seq, Tree, known_wrong
+from smachac.frontend.yaml_tree import (
+    Entry,
+    Joined,
+    Map,
+    Scalar,
+    Seq,
+    Tree,
+    is_known_wrong,
+    known_wrong,
+)
 
 Scope = Mapping[str, Tree]
 """The params in scope of a state."""
@@ -103,11 +112,14 @@ def _found(word: Word, scope: Scope, report: Report) -> Tree:
 
 
 def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:
-    """The text of a string construct; None if a part is a collection: then the tree is a list."""
+    """The text of a string construct; None if a part is a collection: then the tree is a list. With
+    a part whose fault is reported it is `known_wrong`."""
     parts = []
-    for item in items:
+    for item, own in zip(items, tree.items, strict=True):
         if not isinstance(item, Scalar):
             return None
+        if item is not own and is_known_wrong(item):
+            return known_wrong(tree.span)
         parts.append(str(item.value))
     text = "".join(parts)
     if len(text) > MAX_TEXT:

@@ -321,11 +321,13 @@ class _Resolver:
 
     def children(self, tree: Tree, owner: FieldOwner, around: _Environment) -> tuple[State, ...]:
         """The states of a list. An Iterator has one, which uses the keys of the Iterator."""
+        items = tree.items if isinstance(tree, Seq) else ()
         if not isinstance(tree, Seq):
             wrong(tree, "states", self.report)
-            return ()
+        if isinstance(tree, Map):
+            items = tuple(Map((each,), each.key.span) for each in tree.entries)
         found: list[State] = []
-        for item in tree.items:
+        for item in items:
             if self.count >= MAX_STATES:
                 message = f"the script has more than {MAX_STATES:,} states"
                 help = "split the task into several scripts"
@@ -348,7 +350,8 @@ class _Resolver:
         keys of the item, as in SMACHA."""
         if not isinstance(tree, Map) or not tree.entries:
             wrong(tree, "state", self.report)
-            return None
+            word = name_of(tree)
+            return _unknown(word, (), around) if word is not None and word.text else None
         first, rest = tree.entries[0], tree.entries[1:]
         name = as_name(first.key, self.report)
         if name is None:
@@ -448,6 +451,7 @@ class _Resolver:
             word = as_name(fill_in(entry.value, scope, self.report), self.report)
             found = self.sub_script(word, around) if word is not None and word.text else None
             if word is None or found is None:
+                child_scope(around.scope, params, self.report)
                 transitions = own.get("transitions")
                 pairs = pairs_of(transitions.value) if transitions is not None else ()
                 return _unknown(name, pairs, around)

@@ -14,7 +14,7 @@ from smachac.diagnostics.spelling import guesser_of
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
-from smachac.frontend.fields import READERS, listed_keys, name_of
+from smachac.frontend.fields import READERS, as_outcomes, listed_keys, name_of
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, State
@@ -105,8 +105,10 @@ def with_meant_fields(
 def _known_fields(
     entries: Entries, owner: FieldOwner, type_: StateType, report: Report
 ) -> tuple[dict[str, Any], set[str | None]]:
-    """The fields of the schema, read, and for each unknown field the one that it looks like."""
+    """The fields of the schema, read, and for each unknown field the one that it looks like. An
+    outcome beside the transitions is read as one of them."""
     read: dict[str, Any] = {}
+    strays: list[tuple[Word, Word]] = []
     meant: set[str | None] = set()
     for key, entry in entries.items():
         row = schema.VARIABLES.get(key)
@@ -131,9 +133,24 @@ def _known_fields(
             whose = _owner_of(owner, type_, of_type=owner == "state")
             own = [name for name in type_.variables if name not in known]
             sure = "template" if entries.get("template") is entry else None
-            report.append(unknown_variable(word, whose, known, own=own, meant=sure))
+            target = name_of(entry.value) if key in _outcomes(entries, type_) else None
+            if target is not None:
+                strays.append((word, target))
+            report.append(
+                unknown_variable(
+                    word, whose, known, own=own, meant=sure, outcome=target is not None
+                )
+            )
             meant.add(guesser_of((*known, *own))(word.text))
+    if strays:
+        read["transitions"] = (*read.get("transitions", ()), *strays)
     return read, meant
+
+
+def _outcomes(entries: Entries, type_: StateType) -> set[str]:
+    """The names of the outcomes that a state has."""
+    given = as_outcomes(entries["outcomes"].value, []) if "outcomes" in entries else ()
+    return {each.name for each in (*type_.outcomes, *given)}
 
 
 def _check_required(

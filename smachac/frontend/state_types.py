@@ -12,6 +12,7 @@ from typing import TypeAlias, TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import smacha_meta
 from smachac.frontend.class_reader import read_module, read_template
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
@@ -48,6 +49,13 @@ CLASS_FIELDS = ("header", "class", "with")
 """The fields of code that is a class: its file, its name, the parameter of its constructor."""
 
 _ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
+
+_OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
+    "inputs": ("input_keys",),
+    "io_keys": ("output_keys",),
+    "outputs": ("output_keys",),
+}
+"""Fields that other tools have, with those of interfaces that they are meant for."""
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
@@ -99,15 +107,8 @@ def _read_interface(
         help = "write it with fields such as `outcomes:`"
         report.append(wrong_shape(span, message, help, arguments=("interface", name)))
         return StateType(name=name, open=True)
-    fields: dict[str, Tree] = {}
-    for entry in as_map(tree, report):
-        key = str(entry.key.value)
-        if key in INTERFACE_FIELDS:
-            fields[key] = entry.value
-        else:
-            word = Word(key, entry.key.span)
-            owner = Owner("interface", "an interface")
-            report.append(unknown_variable(word, owner, INTERFACE_FIELDS))
+    fields = _fields(tree, report)
+    unclear = tree.get("io_keys") is not None  # reported; which keys are inputs is not known
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
     sections = {key: as_map(fields[key], report) if key in fields else () for key in _SECTIONS}
@@ -122,6 +123,7 @@ def _read_interface(
 
     return StateType(
         name=name,
+        open=unclear,
         kind=_kind(fields.get("kind"), report),
         doc=as_text(fields["doc"], report) if "doc" in fields else "",
         variables=_variables(sections["variables"], report),
@@ -143,13 +145,32 @@ def _read_interface(
         code=code,
         classes=_classes(sections["code"], report),
         class_facts=None
-        if built_in
+        if built_in or unclear
         else _class_facts(
             name, sections["code"], given | ({"optional"} if optional else set()), library
         ),
         prints_itself=_prints_itself(code.get("python", ""), library),
         optional=optional,
     )
+
+
+def _fields(tree: Map, report: Report) -> dict[str, Tree]:
+    """The fields of an interface. One with an unknown name is also the field that it is certainly
+    meant for: then it is one finding."""
+    fields: dict[str, Tree] = {}
+    meant: dict[str, Tree] = {}
+    sure = guesser_of(tuple(INTERFACE_FIELDS)).sure
+    for entry in as_map(tree, report):
+        key = str(entry.key.value)
+        if key in INTERFACE_FIELDS:
+            fields[key] = entry.value
+            continue
+        near = sure(key)
+        for name in _OTHER_FIELDS.get(key, (near,) if near is not None else ()):
+            meant[name] = entry.value
+        word, owner = Word(key, entry.key.span), Owner("interface", "an interface")
+        report.append(unknown_variable(word, owner, INTERFACE_FIELDS))
+    return meant | fields
 
 
 def _check_own_name(tree: Tree, name: str, report: Report) -> None:
@@ -440,26 +461,37 @@ def _key(name: str, tree: Tree, report: Report) -> Key:
 def _writes(
     sections: Mapping[str, Section], report: Report
 ) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """The outputs of each outcome. Names that the interface does not declare are reported."""
-    found = []
+    """The outputs of each outcome. Names that the interface does not declare are reported, and
+    stand for the name that is certainly meant; else the keys of such an outcome are of all."""
+    found: dict[str, tuple[str, ...]] = {}
+    of_all: set[str] = set()
     for entry in sections["writes"]:
-        outcome = Word(str(entry.key.value), entry.key.span)
-        keys = as_names(entry.value, report)
-        _check_declared(sections, "outcomes", outcome, report)
-        for word in keys:
-            _check_declared(sections, "output_keys", word, report)
-        if keys:
-            found.append((outcome.text, tuple(word.text for word in keys)))
-    return tuple(found)
+        word = Word(str(entry.key.value), entry.key.span)
+        outcome = _check_declared(sections, "outcomes", word, report)
+        keys = [
+            _check_declared(sections, "output_keys", key, report) or key.text
+            for key in as_names(entry.value, report)
+        ]
+        if outcome is None:
+            of_all.update(keys)
+        elif keys:
+            found[outcome] = (*found.get(outcome, ()), *keys)
+    kept = ((name, tuple(key for key in keys if key not in of_all)) for name, keys in found.items())
+    return tuple((name, keys) for name, keys in kept if keys)
 
 
-def _check_declared(sections: Mapping[str, Section], part: str, word: Word, report: Report) -> None:
+def _check_declared(
+    sections: Mapping[str, Section], part: str, word: Word, report: Report
+) -> str | None:
+    """Reports a name that a part of the interface does not declare. The declared name that is meant
+    for certain; None if there is none."""
     names = [name for name, _ in _declared(sections[part])]
     if word.text in names or _is_starred(sections[part]):
-        return
+        return word.text
     message = f"`{word.text}` is not in the `{part}` of the interface"
     help = did_you_mean(word.text, names) or f"add it to `{part}`, or remove it here"
     report.append(wrong_shape(word.span, message, help, arguments=(part, word.text)))
+    return guesser_of(tuple(names)).sure(word.text)
 
 
 def _prints_itself(file: str, library: Library) -> bool:

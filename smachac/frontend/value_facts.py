@@ -14,7 +14,7 @@ from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, kind_of
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.ir.nodes import Limits
-from smachac.ir.types import ANY, Type, parse_type
+from smachac.ir.types import ANY, Type, parse_type, unknown_words
 
 NAMES = ("joint", "frame", "limb", "model", "body")
 """What the values of a variable or key can be names of; each is a role."""
@@ -55,7 +55,7 @@ def described(type_: Type, tree: Tree, role: str, report: Report) -> Type:
         type_ = Type("float", ("s",))
     if type_ == ANY and role in NAMES:
         type_ = Type("str")
-    if not isinstance(tree, Map):
+    if not isinstance(tree, Map) or unknown_words(type_):
         return type_
     if type_ == ANY and any(tree.get(name) for name in ("min", "max", "unit")):
         type_ = Type("float")
@@ -114,6 +114,8 @@ def limits_of(tree: Tree, type_: Type, role: str, report: Report) -> Limits | No
     least = 0.0 if role == "duration" else -math.inf
     if not isinstance(tree, Map):
         return Limits(least=least) if role == "duration" else None
+    if unknown_words(type_):
+        return None  # reported
     bounds = {name: _bound(tree, name, type_, report) for name in ("min", "max")}
     exclusive = tree.get("exclusive")
     choices = tree.get("one_of")

@@ -6,12 +6,13 @@ class. Parts that cannot be read are not checked.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
+from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Leaf, Machine, StateType
@@ -118,17 +119,35 @@ def type_faults(
         judge = code_not_found if fault.kind in NOT_FOUND else bad_class
         yield judge(fault, target.name, type_.name, found.name, used)
     facts = type_.class_facts if checked and target.name == "python" else None
-    if found.stale is None and facts is not None and found.outcomes is not None:
-        # A returned outcome that the interface lacks is SM309.
-        known = {each.name for each in type_.outcomes}
-        returned = {word.text for word in facts.returns}.difference(known)
-        kept = tuple(word for word in found.outcomes if word.text not in returned)
-        found = replace(found, outcomes=kept)
+    if found.stale is None and facts is not None:
+        # Returned outcomes that the interface lacks are SM309, such reads SM310, such writes SM308.
+        found = replace(
+            found,
+            outcomes=_without(
+                found.outcomes, facts.returns, [each.name for each in type_.outcomes]
+            ),
+            inputs=_without(found.inputs, facts.reads, [each.name for each in type_.input_keys]),
+            outputs=_without(
+                found.outputs, facts.writes, [each.name for each in type_.output_keys]
+            ),
+        )
     differences = [*_differences(type_, found)]
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
     elif differences:
         yield interfaces_differ(leaf.span, target.name, type_.name, found.name, differences)
+
+
+def _without(words: Words | None, used: Words, known: Sequence[str]) -> Words | None:
+    """The names that a class declares, without those that its code uses and its interface lacks:
+    in place of each is the name that is probably meant."""
+    if words is None:
+        return None
+    reported = {word.text for word in used}.difference(known)
+    near = guesser(known)
+    meant = (Word(near(word.text) or "", word.span) for word in words if word.text in reported)
+    kept = (word for word in words if word.text not in reported)
+    return (*kept, *(word for word in meant if word.text))
 
 
 def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:

@@ -201,3 +201,173 @@ def test_another_word_for_template_with_an_unknown_type_is_one_finding() -> None
     new = [(item.code, item.span.text, item.help) for item in report if "Find" in str(item)]
     assert ("SM005", "class", "write `template:` in place of `class:`") in new
     assert all(item.code not in ("SM004", "SM013") for item in report)
+
+
+SCRIPTS = """\
+name: sm
+template: Base
+outcomes: [done, failed, preempted]
+params: {limb: left}
+states:
+  - FIND:
+      script: ["find_", [params, limb]]
+      params: {arm: [params, limb]}
+      transitions: {found: done, nothing: failed, preempted: preempted}
+"""
+FIND_LEFT = "- FIND: {template: Find, arm: [params, arm]}\n"
+
+
+def test_a_sub_script_whose_look_up_fails_is_one_finding() -> None:
+    files = {
+        "find_left.yml": FIND_LEFT,
+        "templates/Find.yml": FIND + "variables: {arm: {type: str}}\n",
+    }
+
+    def codes(text: str, **more: str) -> list[str]:
+        report = analysed({"main.yml": text, **files, **more}).report
+        return [f"{item.code} {item.span.text}".partition(" [")[0] for item in report]
+
+    assert codes(SCRIPTS) == []
+    assert codes(SCRIPTS.replace('"find_", [params, limb]', '"find_", [params, lim]')) == [
+        "SM015 lim"
+    ]
+    assert codes(SCRIPTS.replace("arm: [params, limb]", "arm: [params, lim]")) == ["SM015 lim"]
+    assert codes(SCRIPTS.replace("{limb: left}", "{limb: right}")) == ["SM011"]
+    both = SCRIPTS.replace("limb: left", "limb: right").replace("[params, limb]}", "[params, lim]}")
+    assert codes(both) == ["SM011", "SM015 lim"]
+
+
+FLAT = """\
+name: sm
+template: Base
+outcomes: [done, failed]
+states:
+  - FIND:
+      template: ScriptedState
+      outcomes: [found, nothing]
+      transitions:
+        found: done
+        nothing: failed
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "expected"),
+    [
+        ("        nothing: failed", "      nothing: failed", ["SM003 nothing"]),
+        ("nothing: failed", "nothing:", ["SM004 "]),
+        ("        found: done\n        n", "        - found: done\n        - n", ["SM004 -"]),
+        ("        nothing: failed\n", "", ["SM104 FIND"]),
+        ("nothing: failed", "nothing: ''", ["SM101 ''"]),
+        ("states:\n  - FIND", "initial: FIND\nstates:\n  FIND", ["SM004 FIND"]),
+        ("states:", "initial: MOVE\nstates:\n  - MOVE", ["SM004 MOVE"]),
+        ("states:", "initial: MOVE\nstates:", ["SM205 MOVE"]),
+    ],
+)
+def test_a_wrong_shape_is_one_finding(before: str, after: str, expected: list[str]) -> None:
+    codes = found(FLAT.replace(before, after, 1))
+    assert [each.partition("\n")[0][: len(expected[0])] for each in codes] == expected
+
+
+SEEN = """\
+name: sm
+template: Base
+outcomes: [done, failed]
+userdata: {pose: [0.1, 0.2, 0.3]}
+states:
+  - FIND: {template: Find, transitions: {found: USE, nothing: failed}}
+  - USE:
+      template: ScriptedState
+      outcomes: [ok]
+      input_keys: [grasp]
+      transitions: {ok: done}
+"""
+SEES = """\
+input_keys: {pose: Pose}
+output_keys: {grasp: Pose}
+outcomes: {found: {}, nothing: {}}
+writes: {found: [grasp]}
+"""
+SEEING = """\
+import smach
+
+
+class Find(smach.State):
+    def __init__(self):
+        super().__init__(
+            outcomes=["found", "nothing"], input_keys=["pose"], output_keys=["grasp"]
+        )
+
+    def execute(self, ud):
+        if ud.pose is None:
+            return "nothing"
+        ud.grasp = ud.pose
+        return "found"
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "expected"),
+    [
+        ("{found: [grasp]}", "{fuond: [grasp]}", "SM004 fuond"),
+        ("{found: [grasp]}", "{good: [grasp]}", "SM004 good"),
+        ("{found: [grasp]}", "{found: [graps]}", "SM004 graps"),
+        ("writes:", "wriets:", "SM003 wriets"),
+        ("output_keys:", "outputs:", "SM003 outputs"),
+        ("input_keys:", "inputs:", "SM003 inputs"),
+        ("output_keys:", "ouput_keys:", "SM003 ouput_keys"),
+        (
+            "input_keys: {pose: Pose}\noutput_keys: {grasp: Pose}",
+            "io_keys: {pose: Pose, grasp: Pose}",
+            "SM003 io_keys",
+        ),
+        ("{found: [grasp]}", "{nothing: [grasp]}", "SM301 grasp"),  # the consequence alone
+    ],
+)
+@pytest.mark.parametrize("has_class", [True, False])
+def test_a_misspelt_part_of_an_interface_is_one_finding(
+    before: str, after: str, expected: str, has_class: bool
+) -> None:
+    interface = SEES.replace(before, after)
+    files = {"cell/find.py": SEEING}
+    if has_class:
+        interface += 'code: {python: "cell.find:Find"}\n'
+    assert found(SEEN, Find=SEES) == []
+    if expected.startswith("SM301") and has_class:
+        return  # the class is a second witness
+    report = analysed({"main.yml": SEEN, "templates/Find.yml": interface, **files}).report
+    assert [f"{item.code} {item.span.text}" for item in report] == [expected]
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ([('["found"', '["fuond"'), ('return "found"', 'return "fuond"')], ["SM309"]),
+        ([('["found"', '["fuond"')], ["SM603"]),
+        ([('["pose"]', '["pos"]'), ("ud.pose is", "ud.pos is")], ["SM310"]),
+        ([('["pose"]', '["pos"]')], ["SM603"]),
+        ([('["grasp"]', '["graps"]'), ("ud.grasp", "ud.graps")], ["SM308"]),
+        ([('["grasp"]', '["graps"]')], ["SM603"]),
+        ([('input_keys=["pose"], output_keys=["grasp"]', 'io_keys=["pose", "grasp"]')], ["SM603"]),
+        ([('"found", "n', '"n'), ("ud.pose is", "ud.size is")], ["SM310", "SM603"]),
+    ],
+)
+def test_a_fault_of_a_class_is_one_finding(
+    changes: list[tuple[str, str]], expected: list[str]
+) -> None:
+    code = SEEING
+    for before, after in changes:
+        code = code.replace(before, after)
+    interface = SEES.replace("writes: {found: [grasp]}\n", 'code: {python: "cell.find:Find"}\n')
+    files = {"templates/Find.yml": interface, "cell/find.py": code}
+    report = analysed({"main.yml": SEEN, **files}).report
+    faults = [item.code for item in report if item.code not in ("SM314", "SM315")]
+    assert sorted(faults) == expected
+
+
+def test_a_misspelt_type_is_one_finding() -> None:
+    limits = "{type: %s, min: 0, max: 2, unit: m/s}"
+    interface = FIND + f"input_keys: {{where: str}}\nvariables: {{speed: {limits}}}\n"
+    text = FIELDS.replace("template: Find", "template: Find\n      speed: 1.5")
+    usual = found(text, Find=interface % "float")
+    assert sorted(found(text, Find=interface % "flaot")) == sorted([*usual, "SM017 flaot"])

@@ -70,6 +70,7 @@ def report(body: str, old: str = "", new: str = "") -> list[Diagnostic]:
         ("return found", "found", 'write `"found"`'),
         ("x = maths.sqrt(2)", "maths", "did you mean `math`?"),
         ("self.serch()", "serch", "did you mean `search`?"),
+        ("search()", "search", "did you mean `self.search`?"),
         ("self.grip()", "grip", "define `grip` in the class, or correct the name"),
         ("self.loks += self.look", "look", "did you mean `looks`?"),
         ("if self.prempt_requested(): return 'nothing'", "prempt_requested", "preempt_requested"),
@@ -146,3 +147,17 @@ def test_literals_that_do_not_fit_the_interface(value: str) -> None:
 )
 def test_values_that_fit_or_are_not_known(value: str) -> None:
     assert report(f"userdata.part = {value}") == []
+
+
+def test_super_without_a_call_is_no_constructor_call() -> None:
+    (finding,) = report("pass", "super().__init__(outcomes", "super.__init__(outcomes")
+    assert finding.code == "SM609"
+    assert report("pass", "super().__init__(outcomes", "smach.State.__init__(self, outcomes") == []
+
+
+@pytest.mark.parametrize(
+    "definition",
+    ["def search():\n    return 1\n\n\nclass Camera", "from arm import search\n\n\nclass Camera"],
+)
+def test_a_function_with_the_name_of_a_method_can_be_called(definition: str) -> None:
+    assert report("search()", "class Camera", definition) == []

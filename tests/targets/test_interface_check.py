@@ -152,7 +152,10 @@ def test_a_stub_of_another_interface_is_found(one: NewStateType, other: NewState
         assert type_ is not None
         file = code_file("Grasp", language).removeprefix("include/")
         texts = {"main.yml": machine(one), "templates/Grasp.yml": text, file: stub(type_, language)}
-        assert (said(texts) == []) == alike
+        library = memory_library(texts, BUILT_IN)
+        report = analyse(Source("main.yml", texts["main.yml"]), library, []).report
+        differing = ("SM308", "SM309", "SM310", "SM603", "SM604")
+        assert (not any(item.code in differing for item in report)) == alike
 
 
 @pytest.mark.parametrize(

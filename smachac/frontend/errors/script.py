@@ -146,6 +146,7 @@ def unknown_variable(
     own: Iterable[str] = (),
     anything: bool = False,
     meant: str | None = None,
+    outcome: bool = False,
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -179,6 +180,13 @@ def unknown_variable(
             message=f"`{word.text}` is not a {owner.part} of {owner.text}",
             arguments=(word.text, owner.name),
             help=f"a decimal comma? write `{number}.{word.text}`",
+        )
+    if outcome:
+        return Finding(
+            span=word.span,
+            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
+            arguments=(word.text, owner.name),
+            help=f"`{word.text}` is an outcome: write its transition inside `transitions:`",
         )
     if anything:
         return Finding(
