@@ -226,9 +226,11 @@ class Session:
         if self.is_interface(path):
             return "interface"
         tree = self._tree(path)
-        entries = tree.entries if isinstance(tree, Map) else ()
-        only_steps = [str(each.key.value) for each in entries] == ["states"]
-        return "scenario" if only_steps and isinstance(entries[0].value, Map) else "script"
+        if isinstance(tree, Map) and len(tree.entries) == 1:
+            entry = tree.entries[0]
+            if entry.key.value == "states" and isinstance(entry.value, Map):
+                return "scenario"
+        return "script"
 
     def is_interface(self, path: str) -> bool:
         """Whether a file is the interface of a state type: it is in a folder of templates."""
