@@ -9,6 +9,7 @@ Everything is CPU time of one process; the garbage collector is on, as in the se
 
 from __future__ import annotations
 
+import os
 import random
 import resource
 import sys
@@ -180,7 +181,9 @@ def resident() -> int:
 
 
 def row(item: Diagnostic) -> tuple[object, ...]:
-    return item.code, item.severity.value, item.span.source.name, item.span.start, item.message
+    # A file that several scripts share has the name by which the first of them calls it.
+    name = os.path.realpath(item.span.source.name)
+    return item.code, item.severity.value, name, item.span.start, item.message
 
 
 if __name__ == "__main__":

@@ -14,7 +14,10 @@ function program() {
 async function activate(context) {
   const run = { command: program(), args: ["lsp"] };
   const options = {
-    documentSelector: [{ scheme: "file", language: "yaml" }],
+    documentSelector: [
+      { scheme: "file", language: "yaml" },
+      { scheme: "file", pattern: "**/smachac.toml" },
+    ],
     synchronize: {
       fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{yml,yaml,toml,py,hpp}"),
     },

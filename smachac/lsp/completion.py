@@ -15,6 +15,7 @@ from smachac.lsp import (
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import FIELD, STATE, place_at
 from smachac.lsp.repair import MARK, with_mark
+from smachac.lsp.schema_words import schema_words
 from smachac.lsp.session import View
 from smachac.lsp.word import Completion, Request
 
@@ -33,6 +34,8 @@ def word_range(text: str, offset: int) -> tuple[int, int]:
 def complete(text: str, offset: int, path: str, view: View | None) -> list[Completion]:
     """The words that fit at an offset of a text, in the order of their likelihood."""
     start, end = word_range(text, offset)
+    if view is not None and view.kind != "script":
+        return schema_words(text, start, end, view)
     marked = with_mark(text, start, end, path)
     if marked is None or view is None:
         return []

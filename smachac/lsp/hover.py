@@ -12,12 +12,23 @@ from smachac.ir.nodes import StateType, VariableType
 from smachac.ir.types import ANY
 from smachac.lsp.facts import Facts
 from smachac.lsp.navigation import Named, named_at, script_path
-from smachac.lsp.place import FIELD, KEY, Body, Place
+from smachac.lsp.place import FIELD, KEY, Body, Place, place_at
+from smachac.lsp.schema_words import schema_hover
 from smachac.lsp.session import View
 from smachac.report.explain_key import explain_key, key_text
 from smachac.report.explain_state import explain_state, state_text
 from smachac.report.outline import paragraphs
 from smachac.report.state_types import Known, container_type, type_markdown
+
+
+def hover_at(view: View, path: str, offset: int, facts: Facts) -> tuple[str, int, int] | None:
+    """What the word at an offset of a text means, and its range; None if that is not known."""
+    if view.kind != "script":
+        found = schema_hover(view, offset)
+        return (found[0], found[1].start, found[1].end) if found is not None else None
+    place = place_at(view.tree, offset)
+    text = hover(place, facts, view, path) if place is not None else ""
+    return (text, place.word.start, place.word.end) if place is not None and text else None
 
 
 def hover(place: Place, facts: Facts, view: View, path: str) -> str:

@@ -28,7 +28,7 @@ from smachac.lsp import actions, symbols
 from smachac.lsp.completion import complete
 from smachac.lsp.facts import Facts
 from smachac.lsp.hints import hints
-from smachac.lsp.hover import hover
+from smachac.lsp.hover import hover_at
 from smachac.lsp.navigation import definitions, named_at, references
 from smachac.lsp.picture import picture
 from smachac.lsp.place import Place, place_at
@@ -300,11 +300,12 @@ def _words(server: Server) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_HOVER)
     def hovered(params: lsp.HoverParams) -> lsp.Hover | None:
         def answer(view: View, path: str) -> lsp.Hover | None:
-            place = server.place(view, params.position)
-            text = hover(place, server.facts(view, path), view, path) if place is not None else ""
-            if place is None or not text:
+            offset = server.offset(view, params.position)
+            found = hover_at(view, path, offset, server.facts(view, path))
+            if found is None:
                 return None
-            at = server.range(server.positions(view.source), place.word.start, place.word.end)
+            text, start, end = found
+            at = server.range(server.positions(view.source), start, end)
             content = lsp.MarkupContent(kind=lsp.MarkupKind.Markdown, value=text)
             return lsp.Hover(contents=content, range=at)
 
@@ -481,7 +482,9 @@ def _changes(server: Server) -> None:
     def formatting(params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
         path = server.path_of(params.text_document.uri)
         source = server.session.source(path) if path is not None else None
-        if source is None or server.session.disk.parse(source, []) is None:
+        if path is None or source is None or server.session.disk.parse(source, []) is None:
+            return None
+        if server.session.kind(path) in ("project", "scenario"):
             return None
         new = format_script(source)
         at = server.positions(source)

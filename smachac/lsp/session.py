@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.batch import Batch, check_scripts
@@ -40,18 +41,24 @@ def collection_paused() -> Iterator[None]:
             gc.enable()
 
 
+FileKind: TypeAlias = Literal["script", "interface", "scenario", "project"]
+"""The kinds of files that are edited; a sub-script is a script."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class View:
     """A text as the answers to questions about it need it, as far as it can be read.
 
     `source` has the offsets of the present text; its syntax errors are blanked. `context` has the
-    facts of the machine that uses the text: its own, or that of a script that calls it.
+    facts of the machine that uses the text: its own, or that of a script that calls it. Scenarios
+    and project files have no tree here.
     """
 
     source: Source
     tree: Tree | None
     library: Library
     context: Context | None
+    kind: FileKind = "script"
 
     @property
     def machine(self) -> Machine | None:
@@ -197,8 +204,11 @@ class Session:
         return self._checked[path]
 
     def _check(self, path: str) -> dict[str, Report]:
-        if self.is_interface(path):
+        kind = self.kind(path)
+        if kind == "interface":
             return self._check_interface(path)
+        if kind == "project":
+            return self._check_project(path)
         roots = self.roots(path)
         batch = self._check_scripts(roots)
         if not any(path in (root, *batch.uses[root]) for root in batch.reports):
@@ -208,6 +218,19 @@ class Session:
         for item in in_order(batch.report):
             found.setdefault(os.path.realpath(item.span.source.name), []).append(item)
         return found
+
+    def kind(self, path: str) -> FileKind:
+        """The kind of a file, from its name, its folder and its text."""
+        if Path(path).name == "smachac.toml":
+            return "project"
+        if self.is_interface(path):
+            return "interface"
+        tree = self._tree(path)
+        if isinstance(tree, Map) and len(tree.entries) == 1:
+            entry = tree.entries[0]
+            if entry.key.value == "states" and isinstance(entry.value, Map):
+                return "scenario"
+        return "script"
 
     def is_interface(self, path: str) -> bool:
         """Whether a file is the interface of a state type: it is in a folder of templates."""
@@ -228,6 +251,13 @@ class Session:
         for item in in_order(report):
             found.setdefault(os.path.realpath(item.span.source.name), []).append(item)
         return found
+
+    def _check_project(self, path: str) -> dict[str, Report]:
+        """The findings in a project file."""
+        report: Report = []
+        find_project(Path(path), report, self.disk, CODES)
+        return {path: in_order(item for item in report
+                               if os.path.realpath(item.span.source.name) == path)}  # fmt: skip
 
     def users(self, path: str) -> list[str]:
         """The other open texts whose check uses a file."""
@@ -259,15 +289,20 @@ class Session:
         source = self.disk.read(Path(path), [])
         if source is None:
             return None
+        kind = self.kind(path)
+        if kind in ("project", "scenario"):
+            library = self._library(path)
+            return View(source=source, tree=None, library=library, context=None, kind=kind)
         tree = self.disk.parse(source, [])
         if tree is None:
-            return self._repaired_view(path, source)
+            return replace(self._repaired_view(path, source), kind=kind)
         for root in self._known_roots(path):
             analysis, context = self._contexts[root]
             if analysis.library is not None:
                 library = analysis.library
-                return View(source=source, tree=tree, library=library, context=context)
-        return View(source=source, tree=tree, library=self._library(path), context=None)
+                return View(source=source, tree=tree, library=library, context=context, kind=kind)
+        library = self._library(path)
+        return View(source=source, tree=tree, library=library, context=None, kind=kind)
 
     def _known_roots(self, path: str) -> list[str]:
         """The analysed scripts that use a text; they are analysed now if there is none."""

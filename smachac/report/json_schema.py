@@ -18,6 +18,7 @@ from smachac.frontend.unquoted import VARIABLE_SHAPES
 from smachac.frontend.value_facts import NAMES
 from smachac.interpreter.scenario import STEP_FIELDS
 from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
+from smachac.ir.types import WORDS
 
 Schema: TypeAlias = dict[str, Any]
 
@@ -28,6 +29,7 @@ _NAME = ["string", "number", "array"]
 TYPE: Schema = {
     "description": "As float<rad>[7] or Pose; a mapping of fields to types is a record.",
     "type": ["string", "object"],
+    "examples": [*WORDS, "float<rad>[7]"],
 }
 
 SHAPES: Mapping[str, Schema] = {
@@ -230,7 +232,11 @@ def interface_schema() -> Schema:
         "one_of": {"type": "array", "items": {"type": ["string", "number"]}, "minItems": 1},
         "names": {"enum": list(NAMES)},
     }
-    type_only: Schema = {"type": ["string", "null"], "description": "A type, as float<rad>[7]."}
+    type_only: Schema = {
+        "type": ["string", "null"],
+        "description": "A type, as float<rad>[7].",
+        "examples": [*WORDS, "float<rad>[7]"],
+    }
 
     def section(of: Schema) -> Schema:
         return {"type": "object", "additionalProperties": {"anyOf": [type_only, of]}}

@@ -1,0 +1,170 @@
+"""Completion and hover in interfaces, scenarios and project files, from their JSON Schemas."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from smachac.driver import CODES
+from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.lsp.repair import with_mark
+from smachac.lsp.session import FileKind, View
+from smachac.lsp.word import Completion
+from smachac.report.json_schema import Schema, generated_schemas
+
+ITEM = "-"
+"""The step to an item of a list."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WordPlace:
+    """A word of a file: its range, the names from the top of the file to it, without its own if it
+    is a key, and the other keys of its mapping."""
+
+    start: int
+    end: int
+    steps: tuple[str, ...]
+    is_key: bool
+    siblings: frozenset[str] = frozenset()
+
+
+def schema_of(kind: FileKind) -> Schema:
+    return generated_schemas(CODES)[kind]()
+
+
+def schema_words(text: str, start: int, end: int, view: View) -> list[Completion]:
+    """The words that fit in place of the text from `start` to `end`."""
+    if view.kind == "project":
+        place = toml_place(text, start)
+        quoted = text[start - 1 : start] in ("'", '"')
+        return [*_words(view.kind, place, " = ", "{}" if quoted else '"{}"')] if place else []
+    marked = with_mark(text, start, end, view.source.name)
+    if marked is None:
+        return []
+    place = yaml_place(marked[1], marked[2])
+    return [*_words(view.kind, place, ": ", "{}")] if place is not None else []
+
+
+def _words(kind: FileKind, place: WordPlace, then: str, quoted: str) -> Iterator[Completion]:
+    schemas = _at(schema_of(kind), place.steps)
+    values: dict[str, Completion] = {}
+    for each in schemas if not place.is_key else ():
+        known = [*each.get("enum", ()), *each.get("examples", ())]
+        for value in known:
+            word = str(value)
+            values.setdefault(word, Completion(word=word, kind="value", text=quoted.format(word)))
+        if each.get("type") == "boolean":
+            values |= {word: Completion(word=word, kind="value") for word in ("true", "false")}
+    yield from values.values()
+    for name, part in _properties(schemas):
+        if name not in place.siblings:
+            doc = str(part.get("description", ""))
+            yield Completion(word=name, kind="field", doc=doc, text=f"{name}{then}")
+
+
+def schema_hover(view: View, offset: int) -> tuple[str, WordPlace] | None:
+    """What a word of a file means, as Markdown, with its place; None if that is not known."""
+    text = view.source.text
+    if view.kind == "project":
+        place = toml_place(text, offset)
+    else:
+        place = yaml_place(view.library.parse(view.source, []), offset)
+    if place is None:
+        return None
+    word = text[place.start : place.end]
+    steps = (*place.steps, word) if place.is_key else place.steps
+    schemas = _at(schema_of(view.kind), steps[:-1])
+    part = dict(_properties(schemas)).get(steps[-1]) if steps else None
+    if part is None or "description" not in part:
+        return None
+    lines = [f"**{steps[-1]}**", str(part["description"])]
+    if "enum" in part:
+        lines.append(f"One of {', '.join(f'`{each}`' for each in part['enum'])}.")
+    if isinstance(part.get("default"), str):
+        lines.append(f"Default: `{part['default']}`.")
+    return "\n\n".join(lines), place
+
+
+def _alternatives(schema: Schema) -> Iterator[Schema]:
+    """A schema, and those of which one must hold."""
+    yield schema
+    for each in schema.get("anyOf", ()):
+        yield from _alternatives(each)
+
+
+def _at(schema: Schema, steps: Iterable[str]) -> list[Schema]:
+    """The schemas of the value behind some steps."""
+    found = [*_alternatives(schema)]
+    for step in steps:
+        found = [part for each in found for below in _below(each, step)
+                 for part in _alternatives(below)]  # fmt: skip
+    return found
+
+
+def _below(schema: Schema, step: str) -> list[Schema]:
+    if step in schema.get("properties", {}):
+        return [schema["properties"][step]]
+    others = schema.get("items" if step == ITEM else "additionalProperties")
+    return [others] if isinstance(others, dict) else []
+
+
+def _properties(schemas: Iterable[Schema]) -> Iterator[tuple[str, Schema]]:
+    for each in schemas:
+        yield from each.get("properties", {}).items()
+
+
+def yaml_place(tree: Tree | None, offset: int) -> WordPlace | None:
+    """The place of the word at an offset of a YAML file."""
+    steps: list[str] = []
+    while tree is not None:
+        match tree:
+            case Scalar(start=start, end=end):
+                inside = start <= offset <= end
+                place = WordPlace(start=start, end=end, steps=tuple(steps), is_key=False)
+                return place if inside else None
+            case Seq(items=items):
+                tree = next((each for each in items[::-1] if each.span.start <= offset), None)
+                steps.append(ITEM)
+            case Map(entries=entries):
+                entry = next((each for each in entries[::-1] if each.key.start <= offset), None)
+                if entry is None:
+                    return None
+                key = entry.key
+                if offset <= key.end:
+                    names = frozenset(str(each.key.value) for each in entries) - {str(key.value)}
+                    return WordPlace(start=key.start, end=key.end, steps=tuple(steps), is_key=True,
+                                     siblings=names)  # fmt: skip
+                steps.append(str(key.value))
+                tree = entry.value
+    return None
+
+
+_HEADER = re.compile(r"^[ \t]*\[([^\[\]\n]*)\]", re.MULTILINE)
+_KEY = re.compile(r"""^[ \t]*["']?([\w-]+)["']?[ \t]*=""", re.MULTILINE)
+_WORD = re.compile(r"[\w-]*")
+
+
+def toml_place(text: str, offset: int) -> WordPlace | None:
+    """The place of the word at an offset of a project file, which has one key in a line."""
+    line = text.rfind("\n", 0, offset) + 1
+    before = text[line:offset]
+    if before.lstrip().startswith(("[", "#")):
+        return None
+    start = offset
+    while start > line and _WORD.fullmatch(text[start - 1]):
+        start -= 1
+    found = _WORD.match(text, offset)
+    end = found.end() if found is not None else offset
+    headers = [*_HEADER.finditer(text, 0, line)]
+    table = tuple(each.strip(" \"'") for each in headers[-1][1].split(".")) if headers else ()
+    key = _KEY.match(before)
+    if key is not None:
+        inside = before[key.end() :].lstrip()
+        steps = (*table, key[1], *([ITEM] if inside.startswith("[") else []))
+        return WordPlace(start=start, end=end, steps=steps, is_key=False)
+    top = headers[-1].end() if headers else 0
+    below = _HEADER.search(text, line)
+    others = _KEY.finditer(text, top, below.start() if below is not None else len(text))
+    names = frozenset(each[1] for each in others if not each.start() <= start <= each.end())
+    return WordPlace(start=start, end=end, steps=table, is_key=True, siblings=names)

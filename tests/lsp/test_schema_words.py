@@ -1,0 +1,159 @@
+"""Completion and hover in interfaces, scenarios and project files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from smachac.lsp.completion import complete
+from smachac.lsp.facts import Facts
+from smachac.lsp.hover import hover_at
+from smachac.lsp.session import FileKind, Session
+
+INTERFACE = """\
+name: Grasp
+doc: Close the gripper.
+kind: state
+variables:
+  force: {type: "float<N>", min: 0.0}
+input_keys:
+  pose: {type: Pose, role: goal_pose}
+outcomes:
+  succeeded: {}
+  lost: {failure: true}
+"""
+
+SCENARIO = """\
+states:
+  sm/PICK: [succeeded, {outcome: aborted, wait: true}]
+  sm/PLACE: {set: {pose: 1}, outcome: succeeded}
+"""
+
+PROJECT = """\
+scripts = ["parts"]
+ros = 2
+
+[severity]
+SM301 = "warning"
+SM302 = "off"
+"""
+
+FILES: dict[FileKind, tuple[str, str]] = {
+    "interface": ("templates/Grasp.yml", INTERFACE),
+    "scenario": ("mock.yml", SCENARIO),
+    "project": ("smachac.toml", PROJECT),
+}
+
+
+def opened(kind: FileKind, old: str, new: str, folder: Path) -> tuple[Session, str, str, int]:
+    """A session with a file in which `new`, that has a `|`, replaces `old`; with the path, the text
+    and the offset of `|`."""
+    name, text = FILES[kind]
+    assert old in text
+    text = text.replace(old, new, 1)
+    offset = text.index("|")
+    text = text.replace("|", "", 1)
+    path = os.path.realpath(folder / name)
+    session = Session([folder])
+    session.change(path, text)
+    return session, path, text, offset
+
+
+@pytest.mark.parametrize(
+    ("kind", "old", "new", "words"),
+    [
+        ("interface", "doc: Close the gripper.", "|", ["doc", "claims", "blocking", "code"]),
+        ("interface", "doc: Close", "do|: Close", ["doc"]),
+        ("interface", "kind: state", "kind: |", ["state"]),
+        ("interface", "{failure: true}", "{fai|}", ["failure", "doc"]),
+        ("interface", "failure: true", "failure: |", ["true", "false"]),
+        ("interface", "min: 0.0", "|", ["min", "max", "unit", "one_of", "names"]),
+        ("interface", "type: Pose", "type: P|", ["Pose", "float", "bool"]),
+        ("interface", "role: goal_pose", "role: |", ["goal_pose"]),
+        ("interface", "lost: {failure: true}", "lost:\n    |", ["failure", "doc"]),
+        ("scenario", "wait: true", "|", ["wait", "set", "error", "stop"]),
+        ("scenario", "wait: true", "wait: |", ["true", "false"]),
+        ("project", "ros = 2", "|", ["ros", "templates", "code"]),
+        ("project", 'SM301 = "warning"', "SM3|", ["SM301", "SM303"]),
+        ("project", '"warning"', "|", ["error", "warning", "info", "off"]),
+        ("project", '"warning"', '"w|"', ["error", "warning", "info", "off"]),
+    ],
+)
+def test_words(kind: FileKind, old: str, new: str, words: list[str], tmp_path: Path) -> None:
+    session, path, text, offset = opened(kind, old, new, tmp_path)
+    view = session.view(path)
+    assert view is not None
+    assert view.kind == kind
+    found = [each.word for each in complete(text, offset, path, view)]
+    assert {*words} <= {*found}
+
+
+@pytest.mark.parametrize(
+    ("kind", "old", "new", "absent"),
+    [
+        ("interface", "doc: Close the gripper.", "|", ["name", "outcomes", "template"]),
+        ("interface", "min: 0.0", "|", ["type", "callbacks"]),
+        ("scenario", "wait: true", "|", ["outcome"]),
+        ("project", "ros = 2", "|", ["scripts", "SM301"]),
+        ("project", 'SM301 = "warning"', "|", ["SM302", "ros"]),
+    ],
+)
+def test_what_is_there_or_elsewhere_is_not_offered(
+    kind: FileKind, old: str, new: str, absent: list[str], tmp_path: Path
+) -> None:
+    session, path, text, offset = opened(kind, old, new, tmp_path)
+    found = [each.word for each in complete(text, offset, path, session.view(path))]
+    assert found
+    assert not {*absent} & {*found}
+
+
+def test_words_are_inserted_as_the_file_wants_them(tmp_path: Path) -> None:
+    def inserted(kind: FileKind, old: str, new: str) -> set[str]:
+        session, path, text, offset = opened(kind, old, new, tmp_path)
+        return {each.text for each in complete(text, offset, path, session.view(path))}
+
+    assert "doc: " in inserted("interface", "doc: Close the gripper.", "|")
+    assert "templates = " in inserted("project", "ros = 2", "|")
+    assert '"off"' in inserted("project", '"warning"', "|")
+    assert "off" in inserted("project", '"warning"', '"|"')
+
+
+@pytest.mark.parametrize(
+    ("kind", "word", "parts"),
+    [
+        ("interface", "fail|ure", ["**failure**"]),
+        ("interface", "ki|nd", ["**kind**", "`container`, `state`", "Default: `state`"]),
+        ("interface", "goal_|pose", ["**role**", "`goal_pose`"]),
+        ("scenario", "wa|it", ["**wait**"]),
+        ("project", "SM3|01", ["**SM301**", "read-before-write", "Default: `error`"]),
+        ("project", "scri|pts", ["**scripts**"]),
+    ],
+)
+def test_hover(kind: FileKind, word: str, parts: list[str], tmp_path: Path) -> None:
+    plain = word.replace("|", "")
+    session, path, _, offset = opened(kind, plain, word, tmp_path)
+    view = session.view(path)
+    assert view is not None
+    found = hover_at(view, path, offset, Facts(view.library, path, {}))
+    assert found is not None
+    assert all(part in found[0] for part in parts), found[0]
+    start = FILES[kind][1].index(plain)
+    assert found[1:] == (start, start + len(plain))
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_names_of_the_user_have_no_meaning(kind: FileKind, tmp_path: Path) -> None:
+    word = {"interface": "lo|st", "scenario": "PI|CK", "project": "par|ts"}[kind]
+    session, path, _, offset = opened(kind, word.replace("|", ""), word, tmp_path)
+    view = session.view(path)
+    assert view is not None
+    found = hover_at(view, path, offset, Facts(view.library, path, {}))
+    assert found is None
+
+
+def test_findings_in_a_project_file(tmp_path: Path) -> None:
+    (tmp_path / "parts").mkdir()
+    session, path, _, _ = opened("project", "SM301", "SM999|", tmp_path)
+    assert [item.code for item in session.check(path)[path]] == ["SM007"]
