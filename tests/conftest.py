@@ -23,7 +23,7 @@ from tests.support.silent_smach import silent_smach
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
-# A shell starts what it puts in the background deaf to Ctrl-C, which tests send and raise.
+# A shell starts background jobs with SIGINT ignored; the tests send and raise SIGINT.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
