@@ -20,7 +20,12 @@ MOST_VISITS = 200_000
 """The most events that the searches of one machine visit; beyond them nothing more is found."""
 
 
-@rule("SM514", "body-loaded-twice", Severity.WARNING)
+@rule(
+    "SM514",
+    "body-loaded-twice",
+    Severity.WARNING,
+    effect="the state ends with `aborted`: the world keeps the first body and adds no second one",
+)
 def body_loaded_twice(context: Context) -> Iterator[Finding]:
     """A state loads a body under a name that a body of the simulated world has already.
 

@@ -135,7 +135,12 @@ def unknown_field(context: Context) -> Iterator[Finding]:
             yield from _wrong_reads(path, node, slot, found)
 
 
-@rule("SM515", "untyped-message", Severity.ERROR)
+@rule(
+    "SM515",
+    "untyped-message",
+    Severity.ERROR,
+    effect="no class of the message is known: the state ends with `aborted`, or the program stops",
+)
 def untyped_message(context: Context) -> Iterator[Finding]:
     """A state makes a message of a mapping, but its type is not given.
 
