@@ -2,7 +2,7 @@
 
 import { html, svg } from "./dom";
 import type { Area, Box, PlacedLine, PlacedPiece, Point, Scene } from "./layout";
-import type { Graph, Path, StateNode } from "./model";
+import type { Graph, Model, Path, StateNode } from "./model";
 import { isContainer, kindInWords, nearest } from "./model";
 import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitId, exitsInWords } from "./pieces";
 import { fitting, width } from "./text";
@@ -323,10 +323,11 @@ function setVisits(element: SVGGElement, count: number): void {
     return;
   }
   if (!mark) {
-    mark = svg("text", { class: "visits", "text-anchor": "end" });
+    // To the right of the box: lines enter it from above.
+    mark = svg("text", { class: "visits" });
     const body = element.querySelector(":scope > .body")!;
-    mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
-    mark.setAttribute("y", "-4");
+    mark.setAttribute("x", String(Number(body.getAttribute("width")) + 4));
+    mark.setAttribute("y", "10");
     element.append(" ", mark);
   }
   mark.textContent = `×${count}`;
@@ -342,8 +343,8 @@ function speakVisits(element: SVGGElement, visits: string): void {
   element.setAttribute("aria-label", words + visits + rest);
 }
 
-/** A legend of the signs of the picture. */
-export function legend(): HTMLElement {
+/** A legend of the signs of the picture. The picture of differences marks no failures. */
+export function legend({ differences }: Model): HTMLElement {
   const sign = (name: string): SVGElement =>
     svg("svg", { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
       svg("g", { class: name },
@@ -353,7 +354,7 @@ export function legend(): HTMLElement {
   const row = (name: string, text: string): HTMLElement => html("li", {}, sign(name), html("span", {}, text));
   return html("ul", { class: "legend" },
     row("line", "outcome"),
-    row("line failure", "outcome of failure"),
+    differences ? null : row("line failure", "outcome of failure"),
     row("line implicit", "implied, not written in the script"),
   );
 }

@@ -183,7 +183,7 @@ function machineSections(graph: Graph, actions: PanelActions): (HTMLElement | nu
     heading,
     model.findings.length ? section("Findings", machineFindings(graph, actions)) : null,
     model.properties.length ? section("Properties", propertyList(graph, model.properties, actions)) : null,
-    section("Legend", legend()),
+    section("Legend", legend(model)),
     section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)]))),
   ];
 }

@@ -566,10 +566,10 @@ ${target2}`;
       return;
     }
     if (!mark) {
-      mark = svg("text", { class: "visits", "text-anchor": "end" });
+      mark = svg("text", { class: "visits" });
       const body = element.querySelector(":scope > .body");
-      mark.setAttribute("x", String(Number(body.getAttribute("width")) - 8));
-      mark.setAttribute("y", "-4");
+      mark.setAttribute("x", String(Number(body.getAttribute("width")) + 4));
+      mark.setAttribute("y", "10");
       element.append(" ", mark);
     }
     mark.textContent = `\xD7${count2}`;
@@ -582,7 +582,7 @@ ${target2}`;
     element.dataset["visits"] = visits;
     element.setAttribute("aria-label", words + visits + rest);
   }
-  function legend() {
+  function legend({ differences }) {
     const sign = (name) => svg(
       "svg",
       { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
@@ -598,7 +598,7 @@ ${target2}`;
       "ul",
       { class: "legend" },
       row("line", "outcome"),
-      row("line failure", "outcome of failure"),
+      differences ? null : row("line failure", "outcome of failure"),
       row("line implicit", "implied, not written in the script")
     );
   }
@@ -1082,7 +1082,7 @@ ${target2}`;
       heading2,
       model.findings.length ? section("Findings", machineFindings(graph, actions)) : null,
       model.properties.length ? section("Properties", propertyList(graph, model.properties, actions)) : null,
-      section("Legend", legend()),
+      section("Legend", legend(model)),
       section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)])))
     ];
   }
