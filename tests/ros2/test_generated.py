@@ -305,19 +305,17 @@ states:
       states:
         - GO:
             template: WaitForMsgState
-            topic: seen
+            topic: seen/NAVIGATE/GO
             qos: latched
             msg_type: std_msgs/String
-            msg_cb: 'lambda message, userdata: message.data == "/NAVIGATE/GO"'
             timeout: 100.0
             transitions: {succeeded: succeeded, aborted: preempted, preempted: preempted}
       transitions: {succeeded: DOCK, preempted: preempted}
   - DOCK:
       template: WaitForMsgState
-      topic: seen
+      topic: seen/DOCK
       qos: latched
       msg_type: std_msgs/String
-      msg_cb: 'lambda message, userdata: message.data == "/DOCK"'
       timeout: 100.0
       transitions: {succeeded: succeeded, aborted: preempted, preempted: preempted}
 """
@@ -333,7 +331,8 @@ from smachac_test_interfaces.action import Drive
 rclpy.init()
 node = rclpy.create_node("caller")
 latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-seen = node.create_publisher(String, "seen", latched)
+states = ["/NAVIGATE", "/NAVIGATE/GO", "/DOCK"]
+seen = {state: node.create_publisher(String, f"seen{state}", latched) for state in states}
 client = ActionClient(node, Drive, "machine")
 threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
 client.wait_for_server()
@@ -342,7 +341,7 @@ paths = []
 
 def show(message):  # each state ends after this
     paths.append(message.feedback.state)
-    seen.publish(String(data=message.feedback.state))
+    seen[message.feedback.state].publish(String())
 
 
 response = client.send_goal(Drive.Goal(speed=0.5), feedback_callback=show)
