@@ -115,7 +115,7 @@ class ViewServer(ThreadingHTTPServer):
         self.server_close()
 
     def _wait_for_requests(self) -> None:
-        """Wait, at most FAREWELL, until no request goes on."""
+        """Wait until all requests have ended, but FAREWELL at most."""
         with self._ended:
             self._ended.wait_for(lambda: not self._requests, FAREWELL)
 
