@@ -3,6 +3,7 @@ name: ParseMessages
 description: Functions that convert lists of numbers to messages.
 type: None
 {% endblock meta %}
+{% include "MessageFields.tpl.py" %}
 {% block imports %}
 import rospy
 from geometry_msgs.msg import Point, Point32, PointStamped, Pose, PoseArray, PoseStamped, Quaternion, Transform, TransformStamped, Vector3
@@ -115,21 +116,27 @@ PARSERS = {
 
 
 def parse_message(data, kind=None):
-    """Convert lists of numbers to a message of type `kind`; a message stays as it is.
+    """Convert lists of numbers, or a mapping of fields, to a message of type `kind`.
 
-    Without `kind`, the shape of the lists determines the message type, and a Point or a
-    Pose becomes a stamped message. Raises ValueError for an unknown `kind`.
+    A message of this type stays as it is. Without `kind`, the shape of the lists determines the
+    message type, and a Point or a Pose becomes a stamped message. Raises TypeError or ValueError
+    if the values do not fit.
     """
     if kind is None and isinstance(data, (Point, Point32)):
         return parse_pointstamped(data)
     if kind is None and isinstance(data, Pose):
         return parse_posestamped(data)
-    if hasattr(data, "_type") and kind in (None, data._type):
+    if kind is None and hasattr(data, "_type"):
         return data
     if kind is not None:
-        if kind not in PARSERS:
-            raise ValueError(f"lists of numbers cannot be converted to {kind}")
-        return PARSERS[kind](data)
+        wanted = message_class(kind)
+        if isinstance(data, wanted):
+            return data
+        if isinstance(data, dict) or wanted._type not in PARSERS:
+            return filled(wanted(), data)
+        return PARSERS[wanted._type](data)
+    if isinstance(data, dict):
+        raise TypeError("a mapping needs the key msg_type")
     if len(data) == 2 and len(data[0]) == 3 and len(data[1]) == 4:
         return parse_posestamped(data)
     if len(data) == 3 and all(isinstance(each, (int, float)) for each in data):

@@ -1,8 +1,21 @@
 {% include "WaitForMsg.tpl.py" %}
+{% include "MessageClass.tpl.py" %}
 {% block imports %}
-import roslib.message
 import rospy
 import sys
+{% endblock %}
+{% block defs %}
+def imported_class(raw):
+    """The class of a received message, if the program imports its package (security).
+
+    Raises ValueError if it does not.
+    """
+    kind = raw._connection_header["type"]
+    package, _, name = kind.partition("/")
+    found = getattr(sys.modules.get(f"{package}.msg"), name, None)
+    if found is None:
+        raise ValueError(f"type {kind} is not available; import it or set msg_type")
+    return found
 {% endblock %}
 {% block class_defs %}
 class ReadTopicState(smach.State):
@@ -22,18 +35,11 @@ class ReadTopicState(smach.State):
         raw = self.read(topic, rospy.AnyMsg)
         if raw is None:
             return preempted_or_aborted(self)
-        if kind:
-            message_class = roslib.message.get_message_class(kind)
-        else:  # security: only a module that the program imports is used
-            kind = raw._connection_header["type"]
-            package, _, name = kind.partition("/")
-            message_class = getattr(sys.modules.get(f"{package}.msg"), name, None)
-        if message_class is None:
-            smach.logerr(
-                f"{topic}: type {kind} is not available; import it or set msg_type"
-            )
+        try:
+            message = (message_class(kind) if kind else imported_class(raw))()
+        except ValueError as error:
+            smach.logerr(f"{topic}: {error}")
             return "aborted"
-        message = message_class()
         message.deserialize(raw._buff)
         outputs = self.get_registered_output_keys()
         names = ["output", "msg", "output_msg", "msg_output"]

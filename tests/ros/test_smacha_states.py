@@ -68,6 +68,23 @@ TOPICS = """
       transitions: {succeeded: succeeded, aborted: aborted}
 """
 
+FIELDS = """
+  - PUBLISH:
+      template: PublishMsgState
+      action: start
+      userdata: {polygon: POLYGON, kind: KIND, topic: /polygon, often: 20.0}
+      input_keys: [msg, msg_type, topic, rate]
+      remapping: {msg: polygon, msg_type: kind, rate: often}
+      transitions: {succeeded: READ, aborted: aborted}
+  - READ:
+      template: ReadTopicState
+      input_keys: [topic, msg_type]
+      remapping: {msg_type: kind}
+      output_keys: [msg]
+      transitions: {succeeded: SHOW, aborted: aborted}
+  - SHOW: {template: PrintUserdataState, input_keys: [msg], transitions: {succeeded: succeeded}}
+"""
+
 BAG = """
   - PUBLISH:
       template: PublishMsgState
@@ -136,3 +153,48 @@ def test_a_bag_holds_what_was_published(graph: Graph, tmp_path: Path) -> None:
         graph.run(READ.replace("FILE", file))
         == "[('/smacha/point', 'geometry_msgs/PointStamped')]\n"
     )
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "geometry_msgs/PolygonStamped",
+        "geometry_msgs/msg/PolygonStamped",
+        "geometry_msgs.msg.PolygonStamped",
+    ],
+)
+def test_a_message_is_made_of_a_mapping_of_its_fields(
+    graph: Graph, tmp_path: Path, kind: str
+) -> None:
+    polygon = "{header: {frame_id: map, stamp: 3.5}, polygon: {points: [{x: 4}, [1, 2, 3]]}}"
+    script = FIELDS.replace("POLYGON", polygon).replace("KIND", kind)
+    output = graph.run(built(tmp_path, script))
+    assert output.endswith("outcome: succeeded\n")
+    assert 'frame_id: "map"' in output
+    assert "x: 4.0" in output
+    assert "z: 3.0" in output
+
+
+def test_a_list_gives_the_fields_in_their_order(graph: Graph, tmp_path: Path) -> None:
+    script = FIELDS.replace("POLYGON", "[0.5, 0.25, 1, 0]").replace("KIND", "std_msgs/ColorRGBA")
+    output = graph.run(built(tmp_path, script))
+    assert output.endswith("outcome: succeeded\n")
+    assert "g: 0.25" in output
+
+
+@pytest.mark.parametrize(
+    ("polygon", "kind", "reason"),
+    [
+        ("{colour: 1}", "std_msgs/ColorRGBA", "std_msgs/ColorRGBA has no field colour"),
+        ("{r: red}", "std_msgs/ColorRGBA", "std_msgs/ColorRGBA: "),
+        ("[1, 2]", "std_msgs/ColorRGBA", "std_msgs/ColorRGBA has the fields r, g, b, a"),
+        ("{data: 1}", "std_msgs/Nothing", "the message type std_msgs/Nothing is not available"),
+    ],
+)
+def test_values_that_do_not_fit_are_an_invalid_message(
+    graph: Graph, tmp_path: Path, polygon: str, kind: str, reason: str
+) -> None:
+    script = FIELDS.replace("POLYGON", polygon).replace("KIND", kind)
+    output = graph.run(built(tmp_path, script))
+    assert "the message is invalid: " + reason in output
+    assert output.endswith("outcome: aborted\n")

@@ -10,7 +10,6 @@ import sys
 import threading
 import time
 
-import roslib.message
 import rospy
 import tf2_geometry_msgs
 import tf2_ros
@@ -109,16 +108,64 @@ def preempted_or_aborted(state):
     return "aborted"
 
 
+def message_class(kind):
+    """The class of a message type such as `std_msgs/Bool`. Raises ValueError without one."""
+    if isinstance(kind, type):
+        return kind
+    from roslib.message import get_message_class
+
+    package, *_, name = kind.replace(".", "/").split("/")
+    found = get_message_class(f"{package}/{name}")
+    if found is None:
+        raise ValueError(f"the message type {kind} is not available")
+    return found
+
+
 def filled(message, values):
-    """Set the fields of a message from a mapping, or from a list in their order."""
+    """Set the fields of a message from a mapping, or from a list in their order.
+
+    A number of seconds makes a time or a duration. Raises TypeError or ValueError if the values
+    do not fit.
+    """
+    from genpy import SerializationError
+
+    if isinstance(values, type(message)):
+        return values
+    types = dict(zip(message.__slots__, message._slot_types))
     if not isinstance(values, dict):
-        values = dict(zip(message.__slots__, values))
+        if len(values) != len(types):
+            raise ValueError(f"{message._type} has the fields {', '.join(types)}")
+        values = dict(zip(types, values))
     for name, value in values.items():
+        if name not in types:
+            raise ValueError(f"{message._type} has no field {name}: it has {', '.join(types)}")
+        item, is_list, _ = types[name].partition("[")
         field = getattr(message, name)
-        if isinstance(value, (dict, list)) and hasattr(field, "__slots__"):
+        if "/" in item and is_list:
+            value = [filled(message_class(item)(), each) for each in value]
+        elif "/" in item:
             value = filled(field, value)
+        elif item in ("time", "duration") and isinstance(value, (int, float)):
+            value = type(field).from_sec(value)
         setattr(message, name, value)
+    try:
+        message._check_types()
+    except SerializationError as error:
+        raise ValueError(f"{message._type}: {error}") from None
     return message
+
+
+def imported_class(raw):
+    """The class of a received message, if the program imports its package (security).
+
+    Raises ValueError if it does not.
+    """
+    kind = raw._connection_header["type"]
+    package, _, name = kind.partition("/")
+    found = getattr(sys.modules.get(f"{package}.msg"), name, None)
+    if found is None:
+        raise ValueError(f"type {kind} is not available; import it or set msg_type")
+    return found
 
 
 def parse_point(data):
@@ -227,21 +274,27 @@ PARSERS = {
 
 
 def parse_message(data, kind=None):
-    """Convert lists of numbers to a message of type `kind`; a message stays as it is.
+    """Convert lists of numbers, or a mapping of fields, to a message of type `kind`.
 
-    Without `kind`, the shape of the lists determines the message type, and a Point or a
-    Pose becomes a stamped message. Raises ValueError for an unknown `kind`.
+    A message of this type stays as it is. Without `kind`, the shape of the lists determines the
+    message type, and a Point or a Pose becomes a stamped message. Raises TypeError or ValueError
+    if the values do not fit.
     """
     if kind is None and isinstance(data, (Point, Point32)):
         return parse_pointstamped(data)
     if kind is None and isinstance(data, Pose):
         return parse_posestamped(data)
-    if hasattr(data, "_type") and kind in (None, data._type):
+    if kind is None and hasattr(data, "_type"):
         return data
     if kind is not None:
-        if kind not in PARSERS:
-            raise ValueError(f"lists of numbers cannot be converted to {kind}")
-        return PARSERS[kind](data)
+        wanted = message_class(kind)
+        if isinstance(data, wanted):
+            return data
+        if isinstance(data, dict) or wanted._type not in PARSERS:
+            return filled(wanted(), data)
+        return PARSERS[wanted._type](data)
+    if isinstance(data, dict):
+        raise TypeError("a mapping needs the key msg_type")
     if len(data) == 2 and len(data[0]) == 3 and len(data[1]) == 4:
         return parse_posestamped(data)
     if len(data) == 3 and all(isinstance(each, (int, float)) for each in data):
@@ -424,18 +477,11 @@ class ReadTopicState(smach.State):
         raw = self.read(topic, rospy.AnyMsg)
         if raw is None:
             return preempted_or_aborted(self)
-        if kind:
-            message_class = roslib.message.get_message_class(kind)
-        else:  # security: only a module that the program imports is used
-            kind = raw._connection_header["type"]
-            package, _, name = kind.partition("/")
-            message_class = getattr(sys.modules.get(f"{package}.msg"), name, None)
-        if message_class is None:
-            smach.logerr(
-                f"{topic}: type {kind} is not available; import it or set msg_type"
-            )
+        try:
+            message = (message_class(kind) if kind else imported_class(raw))()
+        except ValueError as error:
+            smach.logerr(f"{topic}: {error}")
             return "aborted"
-        message = message_class()
         message.deserialize(raw._buff)
         outputs = self.get_registered_output_keys()
         names = ["output", "msg", "output_msg", "msg_output"]
