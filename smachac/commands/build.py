@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from argparse import Namespace
 
@@ -103,7 +104,9 @@ def _text_of(name: str) -> str | None:
 
 def _levels(script: Path, output: Path) -> int:
     """The number of folders from that of the script down to the output; 0 if it is elsewhere."""
-    folder, target = script.parent.resolve(), output.resolve()
+    from pathlib import Path
+
+    folder, target = Path(os.path.realpath(script.parent)), Path(os.path.realpath(output))
     if str(output) == "-" or not target.is_relative_to(folder):
         return 0
     return len(target.relative_to(folder).parts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from argparse import Namespace
 
@@ -61,7 +62,7 @@ def new_command(arguments: Namespace) -> int:
     if not words[0].isprintable():
         return usage(f"`{words[0]}` is not a name for a folder")
     schemas = {each: schema_text(each) for each in ("script", "interface", "project")}
-    return _put(folder, project(folder.resolve().name, schemas))
+    return _put(folder, project(Path(os.path.realpath(folder)).name, schemas))
 
 
 def _put(folder: Path, files: Files) -> int:

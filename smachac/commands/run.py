@@ -363,6 +363,8 @@ def perform(
 ) -> str:
     """Run the generated module; the outcome. Raises FailedError, and SystemExit after a line with
     the reason if the arguments of a node are not valid."""
+    from pathlib import Path
+
     from smachac.frontend.files import module_folders
     from smachac.runtime.ros2_errors import ParameterError
     from smachac.sweep.play import FailedError
@@ -370,7 +372,7 @@ def perform(
 
     gc.enable()  # from here on the user's program runs
     # The program may change the working folder.
-    folders = [folder.resolve() for folder in module_folders(arguments.script)]
+    folders = [Path(os.path.realpath(folder)) for folder in module_folders(arguments.script)]
     try:
         outcome = execute(
             name,

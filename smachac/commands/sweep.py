@@ -149,12 +149,12 @@ def sweep_command(arguments: Namespace) -> int:
 
 def _file_with_two_uses(arguments: Namespace) -> str | None:
     """A message if two of the arguments name one file, which the report would overwrite."""
-    uses: dict[Path, str] = {}
+    uses: dict[str, str] = {}
     for name in ("script", "faults", "mock", "database", "output", "junit"):
         path: Path | None = getattr(arguments, name)
         if path is None or (path.exists() and not path.is_file()):
             continue
-        other = uses.setdefault(path.resolve(), name)
+        other = uses.setdefault(os.path.realpath(path), name)
         if other != name:
             what = "the script" if other == "script" else f"the file of --{other}"
             return f"--{name} {path} is {what}"

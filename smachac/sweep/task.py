@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -89,7 +90,9 @@ class Runner:
         self._tree = parse(task.source, [])
         self._text = ""
         self._program: Program | None = None
-        self._folders = [folder.resolve() for folder in module_folders(Path(task.source.name))]
+        self._folders = [
+            Path(os.path.realpath(folder)) for folder in module_folders(Path(task.source.name))
+        ]
 
     def prepare(self) -> None:
         """Compile the script as it is, so that this is no part of the first run."""

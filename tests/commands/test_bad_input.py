@@ -97,6 +97,26 @@ def test_names_of_files(script: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["fmt", long]) == 0
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["build", "main.yml", "-t", "python", "-o", "loop"],
+        ["build", "main.yml", "-t", "python", "-o", "loop/inner"],
+        ["build", "loop", "-t", "python"],
+        ["new", "loop"],
+        ["run", "loop"],
+        ["sweep", "loop", "--runs", "1"],
+        ["sweep", "main.yml", "--runs", "1", "--mock", "loop"],
+    ],
+    ids=" ".join,
+)
+def test_links_that_name_each_other(script: Path, words: list[str]) -> None:
+    script.with_name("loop").symlink_to("other")
+    script.with_name("other").symlink_to("loop")
+    assert main(words) in (1, 2)
+    assert script.with_name("loop").is_symlink()
+
+
 def test_huge_numbers(script: Path) -> None:
     number = "9" * 5000
     assert main(["build", str(script), "-t", "dot", "--option", f"depth={number}"]) == 2

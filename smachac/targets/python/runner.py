@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import linecache
+import os
 import random
 import signal
 import sys
@@ -211,7 +212,7 @@ def loaded(
     module.__file__ = name
     linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
     # The program may change the working folder.
-    homes = list(dict.fromkeys(folder.resolve() for folder in folders))
+    homes = list(dict.fromkeys(Path(os.path.realpath(folder)) for folder in folders))
     sys.path[:0] = map(str, homes)
     before = set(sys.modules)
     if importable:

@@ -6,6 +6,7 @@ case its states, outcomes and keys are compared with those of the script.
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -98,7 +99,7 @@ def _file_faults(source: Source, folders: Sequence[Path]) -> Iterator[None]:
             message = f"this is not Python {sys.version_info[0]}: {error.msg}"
             line = error.lineno or 0
         elif isinstance(error, ImportError):
-            homes = ", ".join(dict.fromkeys(str(folder.resolve()) for folder in folders))
+            homes = ", ".join(dict.fromkeys(os.path.realpath(folder) for folder in folders))
             help_ = f"install it; modules of your own are found in {homes}"
         elif isinstance(error, SystemExit | _RunsError):
             message = "the program runs its machine, or ends, when it is loaded"
