@@ -35,11 +35,19 @@ class _Stream(TextIOWrapper):
 
 
 def open_streams() -> None:
-    """Replace standard output and standard error; text to a closed one is dropped."""
+    """Replace standard output and standard error; text to a closed one is dropped.
+
+    A closed one, and closed standard input, is opened on the null device, also for the processes
+    that this one starts: the next file or pipe would have its number otherwise.
+    """
+    if sys.stdin is None:
+        os.set_inheritable(os.open(os.devnull, os.O_RDONLY), True)
     for name in ("stdout", "stderr"):
         old = getattr(sys, name)
         if old is None:
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.set_inheritable(nowhere, True)
+            setattr(sys, name, open(nowhere, "w", encoding="utf-8"))  # noqa: PTH123, SIM115
             continue
         raw = _Raw(old.fileno(), "w", closefd=False)
         new = _Stream(

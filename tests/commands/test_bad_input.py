@@ -178,6 +178,14 @@ def test_standard_output_is_full_closed_or_unread(
     assert (ended.stderr == "") == prints
 
 
+@pytest.mark.parametrize("closed", ["1>&-", "2>&-", "0<&- 1>&- 2>&-"])
+def test_the_workers_of_a_sweep_start_without_standard_streams(script: Path, closed: str) -> None:
+    words = [sys.executable, "-m", "smachac", "sweep", str(script), "--runs", "1", "-o", "report"]
+    shell = ["sh", "-c", f'exec "$@" {closed}', "sh", *words]
+    assert subprocess.run(shell, check=False, capture_output=True).returncode == 0
+    assert "succeeded" in script.with_name("report").read_text("utf-8")
+
+
 def test_a_pipe_that_does_not_block(script: Path) -> None:
     read_end, write_end = os.pipe()
     os.set_blocking(write_end, False)
