@@ -91,7 +91,7 @@ def _prepare(path: Path, data: bytes, changes: list[_Change]) -> None:
     with os.fdopen(handle, "wb") as stream:
         stream.write(data)
     if status is None or stat.S_ISLNK(status.st_mode):
-        change.new.chmod(0o644)
+        change.new.chmod(0o666 & ~_umask())
     else:
         change.in_place = status.st_nlink > 1 or not _made_alike(change.new, path, status)
     if status is not None:
@@ -102,6 +102,13 @@ def _prepare(path: Path, data: bytes, changes: list[_Change]) -> None:
             old.chmod(0o600)
         else:
             _link(path, old)
+
+
+def _umask() -> int:
+    """The permissions that this process withholds from a new file."""
+    mask = os.umask(0o077)  # the only way to read it: a file of another thread is private meanwhile
+    os.umask(mask)
+    return mask
 
 
 def _made_alike(new: Path, path: Path, status: os.stat_result) -> bool:

@@ -67,6 +67,18 @@ def test_hard_links_permissions_and_links(tmp_path: Path) -> None:
     assert sorted(contents(tmp_path)) == ["a", "b", "link", "new", "same"]
 
 
+@pytest.mark.skipif(os.name != "posix", reason="no permissions of this kind")
+@pytest.mark.parametrize(("mask", "permissions"), [(0o077, 0o600), (0o002, 0o664), (0o022, 0o644)])
+def test_the_umask_holds_for_new_files(tmp_path: Path, mask: int, permissions: int) -> None:
+    before = os.umask(mask)
+    try:
+        put_all({tmp_path / "new": b"new"})
+        assert os.umask(mask) == mask
+    finally:
+        os.umask(before)
+    assert (tmp_path / "new").stat().st_mode & 0o777 == permissions
+
+
 def test_a_signal_waits_for_the_last_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     replace = os.replace
 
