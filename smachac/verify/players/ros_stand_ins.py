@@ -26,7 +26,8 @@ ALWAYS = (
 )
 """The modules that have stand-ins also where they are installed."""
 
-TRANSFORMS = ("tf2_ros", "tf2_geometry_msgs", "tf2_sensor_msgs")
+OPTIONAL = ("genpy", "tf2_ros", "tf2_geometry_msgs", "tf2_sensor_msgs")
+"""The modules that have stand-ins where they are not installed, as packages of messages have."""
 
 MESSAGE_MODULES = ("msg", "srv", "action")
 
@@ -34,7 +35,14 @@ READ_SLOTS = ("goal_slots", "request_slots")
 WRITTEN_SLOTS = ("result_slots", "response_slots")
 
 
-class StandIn:
+class _AnyType(type):
+    """A type that every value has: a value for a message that is not installed is not converted."""
+
+    def __instancecheck__(cls, instance: object) -> bool:
+        return True
+
+
+class StandIn(metaclass=_AnyType):
     """Any object of ROS, as far as the code that builds a machine touches it."""
 
     def __getattr__(self, name: str) -> Any:
@@ -57,7 +65,7 @@ def ros_stand_ins(text: str, machine: Machine) -> Iterator[None]:
         for name, type_ in machine.state_types.items()
         if type_.kind == "state" and type_.built_in
     }
-    names = (*TRANSFORMS, *_message_packages(text))
+    names = (*OPTIONAL, *_message_packages(text))
     first, last = _Finder(ALWAYS, states), _Finder(names, states)
     before = _taken_out(ALWAYS)
     sys.meta_path.insert(0, first)
