@@ -20,6 +20,7 @@ import pytest
 
 import smachac
 from smachac import driver
+from smachac.commands.cli import main
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.driver import build
 from smachac.frontend.files import disk_library
@@ -268,6 +269,50 @@ def test_a_program_that_is_one_function_runs_and_tells_its_outcome(tmp_path: Pat
     assert list(result.events) == events
     entered = [event["path"] for event in events if event["event"] == "enter"]
     assert entered == ["SM/START", "SM/IN", "SM/IN/PAUSE", "SM/STOP"]
+
+
+@pytest.mark.parametrize("script", ["recording", "served", "two_arms", "whole"])
+def test_a_program_that_is_one_function_is_verified(
+    script: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folders = ["--templates", str(TEMPLATES), "--scripts", str(FOLDER / "scripts")]
+    path = str(FOLDER / "scripts" / f"{script}.yml")
+    assert main(["verify", path, *folders, "--paths", "20"]) == 0
+    assert capsys.readouterr().out.endswith("python: agrees\n")
+
+
+MAIN = """\
+name: sm
+template: OwnBase
+function_name: Run_It
+outcomes: [done]
+states:
+- A: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
+"""
+
+
+def test_the_main_function_of_a_base_may_be_in_lower_case(tmp_path: Path) -> None:
+    (tmp_path / "main.yml").write_text(MAIN)
+    (tmp_path / "OwnBase.tpl.py").write_text('{% extends "Base.tpl.py" %}\n')
+    assert smachac.run(tmp_path / "main.yml", templates=[tmp_path]).outcome == "done"
+    assert main(["verify", str(tmp_path / "main.yml"), "--templates", str(tmp_path)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("function", "fault"),
+    [
+        ("", "the base of the program defines no function `Run_It`"),
+        ("def run_it(): pass", "the program runs no state machine"),
+    ],
+)
+def test_a_base_without_a_main_function_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], function: str, fault: str
+) -> None:
+    (tmp_path / "main.yml").write_text(MAIN)
+    (tmp_path / "OwnBase.tpl.py").write_text(f"import smach\n{{{{ class_defs }}}}\n{function}\n")
+    words = ["verify", str(tmp_path / "main.yml"), "--templates", str(tmp_path)]
+    assert main(words) == 1
+    assert fault in capsys.readouterr().err
 
 
 def test_core_states_do_what_their_names_say(

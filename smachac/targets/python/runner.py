@@ -106,11 +106,11 @@ def execute(
 
         with (
             _simulation(settings),
-            _watching(module, watch) as outcomes,
+            watching(module, watch) as outcomes,
             quiet(module["smach"], _print_log),
             _preempting(built, on_preempt, on_interrupt),
         ):
-            outcome: str | None = module[main_function(machine)](*given)
+            outcome: str | None = main_function(module, machine)(*given)
         return RunResult(
             outcome=outcomes[0] if outcomes else outcome,
             userdata=_userdata(built[-1]) if built else None,
@@ -161,7 +161,7 @@ def _userdata(root: Any) -> dict[str, object]:
 
 
 @contextmanager
-def _watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[list[str | None]]:
+def watching(module: dict[str, Any], watch: Callable[[Any], None]) -> Iterator[list[str | None]]:
     """Calls `watch` with the machine before it runs.
 
     A program with a function `build` returns the machine from it, and the outcome from its main
@@ -294,12 +294,19 @@ def failure_text(error: BaseException) -> str:
     return "\n".join(lines)
 
 
-def main_function(machine: Machine) -> str:
-    """The name of the generated program's main function."""
+def main_function(module: Mapping[str, Any], machine: Machine) -> Callable[..., Any]:
+    """The main function of a loaded program. Raises NameError if it has none.
+
+    Bases in the manner of SMACHA print its name in lower case.
+    """
+    name = "main"
     for variable in machine.variables:
         if variable.name == "function_name" and isinstance(variable.value.data, str):
-            return variable.value.data
-    return "main"
+            name = variable.value.data
+    for each in (name, name.lower()):
+        if callable(found := module.get(each)):
+            return found  # type: ignore[no-any-return]
+    raise NameError(f"the base of the program defines no function `{name}`")
 
 
 @contextmanager

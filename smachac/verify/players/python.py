@@ -13,7 +13,15 @@ from typing import Any
 
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
-from smachac.targets.python.runner import failure_text, hidden, loaded, places, quiet
+from smachac.targets.python.runner import (
+    failure_text,
+    hidden,
+    loaded,
+    main_function,
+    places,
+    quiet,
+    watching,
+)
 from smachac.verify.players.ros_stand_ins import built, ros_stand_ins
 from smachac.verify.python_values import ITEMS
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError, record_read
@@ -35,9 +43,34 @@ def player(name: str, text: str, machine: Machine, *, folders: Sequence[Path]) -
             quiet(module["smach"], hidden),
         ):
             for case in cases:
-                yield trace_of(built(module["build"]), machine.root.name, case, sources)
+                yield trace_of(_machine_of(module, machine), machine.root.name, case, sources)
 
     return play
+
+
+class _Found(BaseException):
+    """The machine is about to run. No `except Exception` of the program catches it."""
+
+
+def _machine_of(module: dict[str, Any], machine: Machine) -> Any:
+    """A new machine of a loaded program.
+
+    A program that is one function, as SMACHA's are, has no function `build`: its main function is
+    called, and is left before the machine runs.
+    """
+    if "build" in module:
+        return built(module["build"])
+    found: list[Any] = []
+
+    def leave(root: Any) -> None:
+        found.append(root)
+        raise _Found
+
+    with suppress(_Found), watching(module, leave):
+        main_function(module, machine)()
+    if not found:
+        raise RuntimeError("the program runs no state machine")
+    return found[0]
 
 
 @contextmanager
