@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
+from smachac.interpreter.userdata import BehaviourError
 from smachac.runtime.tracing.compare import compare
 from tests.support.ir_machines import concurrence, leaf, machine, ran
 
@@ -31,6 +33,55 @@ def test_the_order_between_branches_does_not_count() -> None:
     assert len(orders) > 1
     for seed in range(10):
         assert compare(trace(0), trace(seed)) is None
+
+
+def failing(seed: int) -> Events:
+    """A run of a machine that catches the exception in a branch of it, then two branches."""
+
+    def fail(_: object) -> str:
+        raise BehaviourError("no")
+
+    end = {"x": "x"}
+    raising = concurrence(
+        "C", "x", leaf("F", outcomes="x"), leaf("B", outcomes="x"), default="x", to=end
+    )
+    caught = machine("M", "x error", raising, to={"x": "D", "error": "D"})
+    both = concurrence(
+        "D", "x", leaf("A", outcomes="x"), leaf("B", outcomes="x"), default="x", to=end
+    )
+    root = machine("sm", "x", replace(caught, catches="error"), both)
+    events = ran(root, {"F": fail}, seed=seed)[1]
+    # The order of branches decides whether the stop request comes before the end of the other.
+    return [event for event in events if event["event"] != "preempt"]
+
+
+def test_branches_are_sorted_after_an_exception_in_an_earlier_one() -> None:
+    orders = {tuple((e["event"], e["path"]) for e in failing(seed)) for seed in range(10)}
+    assert len(orders) > 1
+    for seed in range(10):
+        assert compare(failing(0), failing(seed)) is None
+
+
+def visit(name: str, to: str) -> Events:
+    path = f"sm/M/{name}"
+    return [
+        {"event": "enter", "path": path},
+        {"event": "exit", "path": path, "outcome": "x"},
+        {"event": "transition", "path": path, "outcome": "x", "to": f"sm/M/{to}"},
+    ]
+
+
+def test_a_machine_is_no_concurrence_because_a_state_in_it_failed() -> None:
+    failed: Events = [
+        {"event": "enter", "path": "sm/M"},
+        {"event": "enter", "path": "sm/M/A"},
+        {"event": "error", "path": "sm/M/A"},
+        {"event": "exit", "path": "sm/M", "outcome": "error"},
+        {"event": "transition", "path": "sm/M", "outcome": "error", "to": "sm/M"},
+        {"event": "enter", "path": "sm/M"},
+    ]
+    first, second = visit("A", to="B"), visit("B", to="A")
+    assert compare([*failed, *first, *second], [*failed, *second, *first]) is not None
 
 
 def test_times_places_numbers_and_messages_do_not_count() -> None:

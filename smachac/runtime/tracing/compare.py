@@ -71,14 +71,24 @@ def _concurrences(events: Sequence[Event]) -> set[str]:
             running[parent].add(path)
         elif event["event"] == "exit":
             running.setdefault(parent, set()).discard(path)
+            failed = [path]  # states in which an exception was raised have no exit of their own
+            while failed:
+                failed += running.pop(failed.pop(), ())
             left.add(parent)
         elif event["event"] == "transition":
             left.discard(parent)
     return found | left
 
 
-OPENING = {"start": "finish", "enter": "exit"}
-"""The event that begins a state -> the event that ends it."""
+OPENING = ("start", "enter")
+CLOSING = ("finish", "exit")
+"""The events that begin and end a state."""
+
+
+def _ends(event: Event, path: str) -> bool:
+    """Whether an event is the end of a state, or of a container around it: a state in which an
+    exception is raised has no event at its end, if a container around it catches the exception."""
+    return event["event"] in CLOSING and f"{path}/".startswith(f"{event['path']}/")
 
 
 def _in_order(events: Sequence[Event], concurrences: set[str]) -> list[Event]:
@@ -89,11 +99,11 @@ def _in_order(events: Sequence[Event], concurrences: set[str]) -> list[Event]:
         event = events[at]
         ordered.append(event)
         at += 1
-        path, closing = event["path"], OPENING.get(event["event"])
-        if closing is None or path not in concurrences:
+        path = event["path"]
+        if event["event"] not in OPENING or path not in concurrences:
             continue
         end = at
-        while end < len(events) and (events[end]["event"], events[end]["path"]) != (closing, path):
+        while end < len(events) and not _ends(events[end], path):
             end += 1
         branches: dict[str, list[Event]] = {}
         for inner in events[at:end]:
