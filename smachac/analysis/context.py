@@ -25,6 +25,7 @@ from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine
+from smachac.ir.secret_keys import SecretKeys, secret_keys
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Judgement
@@ -140,6 +141,11 @@ class Context:
     def plain_paths(self) -> dict[str, str]:
         """The paths of the script without roles, by full path; only those that differ."""
         return script_paths.plain_paths(self.machine.root)
+
+    @cached_property
+    def secret_keys(self) -> SecretKeys:
+        """The secret keys of each state, by path."""
+        return secret_keys(self.machine)
 
     @cached_property
     def types(self) -> Types:

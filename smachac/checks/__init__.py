@@ -80,6 +80,7 @@ RULES: tuple[Rule, ...] = (
     code_slots.wrong_arguments,
     code_slots.wrong_result,
     stores.dead_store,
+    initial_values.secret_in_script,
     concurrence.uncovered_combination,
     concurrence.overlapping_rules,
     concurrence.dead_rule,

@@ -1,10 +1,12 @@
-"""The rule on initial values of userdata."""
+"""Rules over values of userdata in the script: initial ones, and those of secret keys."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
+from smachac.analysis.secret_values import secret_values
+from smachac.checks.messages import calls
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
@@ -91,3 +93,58 @@ def _alike(one: Given, other: Given) -> bool:
     """Whether two values are the same; nan is itself here."""
     a, b = one.value.data, other.value.data
     return a == b or repr(a) == repr(b)
+
+
+@rule(
+    "SM321",
+    "secret-in-script",
+    Severity.WARNING,
+    effect="everybody who can read the script or a program generated from it can read the value",
+)
+def secret_in_script(context: Context) -> Iterator[Finding]:
+    """The script contains the value of a secret key.
+
+    A password or a PIN in a script is copied to version control and to every generated program.
+    Traces and pages hide the values of secret keys, programs contain them.
+
+    Exactly: a text or number that reaches a key with `secret: true`, through userdata, params and
+    remappings. Code is allowed, and so are null, true, false and the empty text.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata:
+          pin: {type: str, value: "4711", secret: true}
+        states:
+          - UNLOCK:
+              template: ScriptedState
+              outcomes: [done]
+              input_keys: [pin]
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        userdata:
+          pin: {type: str, value: "`os.environ['PIN']`", secret: true}
+        states:
+          - UNLOCK:
+              template: ScriptedState
+              outcomes: [done]
+              input_keys: [pin]
+    """
+    if not context.secret_keys:
+        return
+    for flow in secret_values(context.types, context.secret_keys):
+        cell = flow.cell
+        node = cell.node
+        yield Finding(
+            span=flow.span,
+            message=f"the script contains the value of the secret key `{cell.key}`",
+            arguments=(cell.key,),
+            help=f"remove the value: let the caller of the machine set `{cell.key}` (`input_keys`),"
+            " or read it in code, as in `os.environ['PIN']`",
+            related=calls(node, flow.span) if node is not None else (),
+            node=cell.path,
+        )

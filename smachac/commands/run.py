@@ -316,9 +316,11 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     from smachac.interpreter.scenario import scenario_behaviour
     from smachac.interpreter.userdata import trace_value
     from smachac.ir.script_paths import script_paths
-    from smachac.runtime.tracing.writer import shown_path
+    from smachac.ir.secret_keys import secret_keys
+    from smachac.runtime.tracing.writer import SECRET, shown_path
 
     paths = script_paths(machine.root)
+    secret = secret_keys(machine).get(machine.root.name, ())
     ends: dict[str, list[InterpreterResult]] = {}
     orders = explore(
         machine, lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed)
@@ -327,7 +329,10 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
         end = f"outcome: {result.outcome}"
         if result.error:
             end = f"error: {shown_path(result.error.path, paths)}: {result.error.message}"
-        held = (f"{key}={trace_value(result.userdata[key])!r}" for key in sorted(result.userdata))
+        held = (
+            f"{key}={SECRET if key in secret else repr(trace_value(result.userdata[key]))}"
+            for key in sorted(result.userdata)
+        )
         ends.setdefault(" ".join([end, *held]), []).append(result)
     tried = sum(map(len, ends.values()))
     more = next(orders, None) is not None

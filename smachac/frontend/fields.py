@@ -256,19 +256,26 @@ def listed_keys(tree: Tree) -> Keys:
 
 def as_presets(tree: Tree, report: Report) -> tuple[Preset, ...]:
     """Userdata in the short form `key: value` or the long one `key: {type: T, value: V}`."""
-    return tuple([_preset(entry) for entry in as_map(tree, report)])
+    return tuple([_preset(entry, report) for entry in as_map(tree, report)])
 
 
-def _preset(entry: Entry) -> Preset:
-    value, type_ = entry.value, ANY
+def _preset(entry: Entry, report: Report) -> Preset:
+    value, type_, secret = entry.value, ANY, False
     if isinstance(value, Map) and is_long_form(value):
         parts = {item.key.value: item.value for item in value.entries}
         named = parts.get("type")
         if isinstance(named, Scalar) and isinstance(named.value, str):
             type_ = parse_type(named.value) or ANY
         value = parts["value"]
+        secret = "secret" in parts and as_flag(parts["secret"], report)
     key = entry.key
-    return Preset(key=str(key.value), value=as_value(value), type=type_, span=key.span)
+    return Preset(
+        key=str(key.value), value=as_value(value), type=type_, span=key.span, secret=secret
+    )
+
+
+PRESET_FIELDS = ("type", "value", "doc", "secret")
+"""The fields of the long form of userdata."""
 
 
 def is_long_form(tree: Tree) -> bool:
@@ -276,7 +283,7 @@ def is_long_form(tree: Tree) -> bool:
     if not isinstance(tree, Map):
         return False
     keys = {entry.key.value for entry in tree.entries}
-    return "value" in keys and keys <= {"type", "value", "doc"}
+    return "value" in keys and keys <= {*PRESET_FIELDS}
 
 
 def as_text(tree: Tree, report: Report) -> str:

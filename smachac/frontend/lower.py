@@ -87,9 +87,10 @@ def _keys(
     known: tuple[Key, ...],
     roles: Mapping[str, KeyRole],
     default: tuple[Key, ...],
+    secret: frozenset[str],
 ) -> tuple[Key, ...]:
     """The keys of an interface and those that the script lists, which have `roles` by name; where
-    it lists none, the default ones."""
+    it lists none, the default ones. The keys in `secret` are secret."""
     if not listed:
         names = {key.name for key in known}
         return (*known, *(key for key in default if key.name not in names))
@@ -102,6 +103,7 @@ def _keys(
             doc=declared.doc if declared else "",
             role=declared.role if declared else roles.get(word.text, roles.get("*", "")),
             frame=declared.frame if declared else "",
+            secret=word.text in secret,
             span=word.span,
         )
     return tuple(keys.values())
@@ -119,12 +121,14 @@ def _interface(state: State) -> dict[str, Any]:
             type_.input_keys,
             type_.listed_inputs,
             type_.default_keys.get("input_keys", ()),
+            type_.secret_keys,
         ),
         "outputs": _keys(
             state.output_keys,
             type_.output_keys,
             type_.listed_outputs,
             type_.default_keys.get("output_keys", ()),
+            type_.secret_keys,
         ),
         "transitions": tuple(
             Transition(outcome=key.text, target=target.text, span=key.span, target_span=target.span)

@@ -102,7 +102,7 @@ FIELD_DOCS: Mapping[str, str] = {
     "doc": "What it does, in a sentence: shown in pictures.",
     "params": "Constants for look-ups ([params, x] or [[x]]) here and in everything inside.",
     "userdata": "Data that is there before the machine starts. Short form `key: value`,"
-    " long form `key: {type: T, value: V}`.",
+    " long form `key: {type: T, value: V}`; with `secret: true`, traces and pages hide the value.",
     "input_keys": "Userdata keys that are read: [a, b], or with types {a: float, b: Pose}.",
     "output_keys": "Userdata keys that are written: [a, b], or with types {a: float, b: Pose}.",
     "outcomes": "What it can end with.",
@@ -194,6 +194,7 @@ KEY_FACTS: Mapping[str, str] = {
     "role": "What the key means to the state (docs/state_types.md, Facts).",
     "frame": "The frame of the pose, or the variable that names it.",
     "optional": "The state has the key only if the script lists it.",
+    "secret": "Whether its value is hidden in traces, pages and reports.",
     **VALUE_FACTS,
 }
 """What an interface can state about a key, with descriptions."""

@@ -151,6 +151,7 @@ def _read_interface(
         ),
         prints_itself=_prints_itself(code.get("python", ""), library),
         optional=optional,
+        secret_keys=_secret_keys(sections, report),
     )
 
 
@@ -197,6 +198,18 @@ def _frame_variables(
     for word in words:
         _check_declared(sections, "variables", word, report)
     return tuple(word.text for word in words)
+
+
+def _secret_keys(sections: Mapping[str, Section], report: Report) -> frozenset[str]:
+    """The keys with `secret: true`. Another value than true or false is reported."""
+    return frozenset(
+        str(entry.key.value)
+        for part in ("input_keys", "output_keys")
+        for entry in sections[part]
+        if isinstance(entry.value, Map)
+        and (flag := entry.value.get("secret")) is not None
+        and as_flag(flag.value, report)
+    )
 
 
 def _listed_roles(section: Section, report: Report) -> dict[str, KeyRole]:
@@ -454,6 +467,7 @@ def _key(name: str, tree: Tree, report: Report) -> Key:
         role=role,
         limits=limits,
         frame=_text(tree, "frame"),
+        secret=_is_set(tree, "secret"),
         span=tree.span,
     )
 

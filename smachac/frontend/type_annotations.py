@@ -10,7 +10,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend.errors.script import Owner, bad_type, unknown_variable
-from smachac.frontend.fields import as_pairs, is_long_form
+from smachac.frontend.fields import PRESET_FIELDS, as_pairs, is_long_form
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
 
@@ -105,9 +105,6 @@ def words_of(tree: Tree) -> list[str]:
         return _WORD.findall(tree.value)
     return []
 
-
-PRESET_FIELDS = ("type", "value", "doc")
-"""The fields of the long form of userdata."""
 
 _OTHER_FIELDS = {
     "typ": "type",

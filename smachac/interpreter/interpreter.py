@@ -48,8 +48,10 @@ from smachac.ir.nodes import (
     StateMachine,
 )
 from smachac.ir.recursion import deep_recursion
+from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import PREEMPTED, containers, leads_to_child, outcome_names, walk
 from smachac.runtime.tracing.gate import Gate
+from smachac.runtime.tracing.writer import SECRET
 
 MAX_STEPS = 1_000_000
 """Default limit on the states that one run enters."""
@@ -116,6 +118,7 @@ class Interpreter:
         gate: Gate | None = None,
     ) -> None:
         self._root = machine.root
+        self._secret = secret_keys(machine) if on_event else {}
         self._behaviour = behaviour
         self._on_event = on_event
         self._max_steps = max_steps
@@ -254,7 +257,9 @@ class Interpreter:
 
         def on_write(key: str, value: object) -> None:
             if self._on_event is not None:
-                self.emit("write", path, key=key, value=trace_value(value))
+                hidden = key in self._secret.get(path, ())
+                shown = SECRET if hidden else trace_value(value)
+                self.emit("write", path, key=key, value=shown)
 
         view = Userdata(
             leaf,

@@ -128,6 +128,7 @@ class Key:
     role: KeyRole = field(default="", compare=False, repr=False)
     frame: str = field(default="", compare=False, repr=False)
     limits: Limits | None = field(default=None, compare=False, repr=False)
+    secret: bool = field(default=False, compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
@@ -153,6 +154,7 @@ class Preset:
     type: Type = ANY
     span: Span = field(compare=False, repr=False)
     given: tuple[Given, ...] = field(default=(), compare=False, repr=False)
+    secret: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -425,6 +427,7 @@ class StateType:
     the simulated world. `adds_frames`: the variables of which the first that has a value names a
     frame that the state adds to that world; None: not known. `listed_inputs`
     and `listed_outputs` are the roles of keys that a script adds, by name; `"*"` is any other name.
+    `secret_keys` are the names of the keys with `secret: true`, also of those that a script adds.
     """
 
     name: str
@@ -452,6 +455,7 @@ class StateType:
     listed_inputs: Mapping[str, KeyRole] = field(default_factory=dict)
     listed_outputs: Mapping[str, KeyRole] = field(default_factory=dict)
     default_keys: Mapping[str, tuple[Key, ...]] = field(default_factory=dict)
+    secret_keys: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

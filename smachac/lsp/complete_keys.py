@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable
 
+from smachac.frontend.fields import PRESET_FIELDS
 from smachac.ir.types import ANY, WORDS
 from smachac.lsp.place import KEY, VALUE, Body
 from smachac.lsp.word import Completion, Request
@@ -108,7 +109,7 @@ def userdata(here: Request) -> Iterable[Completion]:
     if place.role == VALUE and place.inner[1:] == ("type",):
         return types(here)
     if place.role == KEY and place.inner:
-        left = [each for each in ("type", "value", "doc") if each not in place.siblings]
+        left = [each for each in PRESET_FIELDS if each not in place.siblings]
         return [Completion(word=each, kind="field", text=f"{each}: ") for each in left]
     if place.role != KEY:
         return []

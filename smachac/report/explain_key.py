@@ -11,10 +11,12 @@ from smachac.analysis.def_use import Status, Use, around, key_status, path_witho
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
+from smachac.ir.nodes import Preset
 from smachac.ir.printer import print_data
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
 from smachac.report.outline import STATUS, Paragraph, at, place, way
+from smachac.runtime.tracing.writer import SECRET
 
 MOST_READERS = 100
 """Limit on the readers of a key whose paths are computed; the others are only named."""
@@ -104,12 +106,18 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
         container=paths.get(path, path),
         key=key,
         type=context.types.keys.get((path, key), ANY),
-        value=print_data(preset.value.data) if preset else "",
+        value=_value(context, path, preset) if preset else "",
         given=outer is None and key in scope.inputs,
         inside=inside,
         uses=tuple(_use_status(context, use, key, followed) for use in found),
         span=container.span,
     )
+
+
+def _value(context: Context, path: str, preset: Preset) -> str:
+    """The initial value of a key of the container at a path, as the report shows it."""
+    secret = preset.key in context.secret_keys.get(path, ())
+    return SECRET if secret else print_data(preset.value.data)
 
 
 def _use_status(context: Context, use: Use, key: str, followed: frozenset[str]) -> UseStatus:

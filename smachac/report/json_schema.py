@@ -71,6 +71,7 @@ PRESET: Schema = {
         "type": TYPE,
         "value": {},
         "doc": {"type": "string"},
+        "secret": {"type": "boolean", "description": schema.KEY_FACTS["secret"]},
     },
 }
 """The long form of a userdata key."""
@@ -217,12 +218,12 @@ def interface_schema() -> Schema:
             },
         }
 
-    flag, text = {"type": "boolean"}, {"type": "string"}
-    number = {"type": "number"}
+    flag, text, number = ({"type": each} for each in ("boolean", "string", "number"))
     common: Schema = {
         "type": TYPE,
         "doc": text,
         "optional": flag,
+        "secret": flag,
         "failure": flag,
         "frame": text,
         "min": number,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from smachac.ir.nodes import Concurrence, Leaf, Machine, Node
+from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import containers, remapping, walk
 
 
@@ -36,10 +37,12 @@ def _keys(child: Node) -> tuple[set[str], set[str]]:
 
 
 def deterministic_reads(machine: Machine) -> dict[str, tuple[str, ...]]:
-    """The inputs of each leaf, by path, whose values do not depend on the order of branches."""
+    """The inputs of each leaf, by path, whose values do not depend on the order of branches.
+    Secret ones are left out."""
+    secret = secret_keys(machine)
     loose = tuple(f"{path}/" for path in contended_keys(machine))
     return {
-        path: tuple(key.name for key in node.inputs)
+        path: tuple(key.name for key in node.inputs if key.name not in secret.get(path, ()))
         for path, node in walk(machine.root)
         if isinstance(node, Leaf) and node.inputs and not path.startswith(loose)
     }

@@ -17,6 +17,7 @@ from smachac.interpreter.scenario import (
 )
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.secret_keys import SecretKeys, secret_keys
 from smachac.ir.traversal import walk
 from smachac.runtime.tracing.compare import Difference, difference
 from smachac.runtime.tracing.writer import trace_value
@@ -38,7 +39,8 @@ class TestCase:
     leaves that run their own code (`live`); the inputs that the other leaves record (`reads`); the
     userdata of the machine; the limit on visits of leaves (`most`); whether a request to stop comes
     before the start (`stopped`); the values that replace those that only Python computes
-    (`samples`), which targets without Python code do not have."""
+    (`samples`), which targets without Python code do not have; the keys whose values traces hide,
+    by path (`secret`)."""
 
     __test__ = False  # pytest: not a test class
 
@@ -47,6 +49,7 @@ class TestCase:
     reads: Mapping[str, Sequence[str]]
     userdata: Mapping[str, object]
     most: int
+    secret: SecretKeys
     stopped: bool = False
     samples: Sequence[Sample] = ()
 
@@ -64,6 +67,7 @@ def test_cases(
     leaves run their own code.
     """
     reads, userdata = deterministic_reads(machine), sample_inputs(machine)
+    secret = secret_keys(machine)
     leaves = [path for path, node in walk(machine.root) if isinstance(node, Leaf)]
     cases = []
     scripted_reads = {path: keys for path, keys in reads.items() if path not in live}
@@ -80,6 +84,7 @@ def test_cases(
                 most=path.visits,
                 stopped=path.stopped,
                 samples=samples,
+                secret=secret,
             )
         )
     return cases

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from operator import itemgetter
 from typing import Any
 
 from smachac.runtime.messages import message_of
 from smachac.runtime.tracing.gate import Gate
-from smachac.runtime.tracing.writer import Event, Recorder
+from smachac.runtime.tracing.writer import SECRET, Event, Recorder
 
 
 class PathEvents:
@@ -49,11 +49,13 @@ class InstrumentedState:
         recorder: Recorder,
         others: Mapping[int, InstrumentedState],
         gate: Gate | None = None,
+        secret: Mapping[str, Set[str]] = {},
     ) -> None:
         self.state = state
         self.recorder = recorder
         self._others = others
         self._gate = gate
+        self._secret = secret
         self.places: list[tuple[InstrumentedState | None, str]] = []
         self.path = ""
         self.failed = False
@@ -143,8 +145,11 @@ class InstrumentedState:
             return here.traced_userdata
         any_key = here.parent is None or here.parent._is_iterator
         prepared: dict[str, Any] = {}
+        secret = self._secret.get(here.path, frozenset())
 
         def written(key: str, value: object) -> None:
+            if key in secret:
+                value = SECRET
             if key in prepared:
                 self.recorder.record(prepared[key], value)
             elif any_key or key in self.state.get_registered_output_keys():

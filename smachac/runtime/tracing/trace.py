@@ -16,7 +16,7 @@ from __future__ import annotations
 import copy
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from itertools import count
 from typing import Any, NamedTuple
 
@@ -73,6 +73,7 @@ def attach(
     clock: Callable[[], float] = time.monotonic,
     paths: Mapping[str, str] = {},
     gate: Gate | None = None,
+    secret: Mapping[str, Set[str]] = {},
 ) -> Callable[..., None]:
     """Trace a built machine: `observe` is called with every event from now on.
 
@@ -84,14 +85,15 @@ def attach(
     labels make. `observe` is called by the threads of the machine, one call at a time.
     If a call raises, the error is printed to stderr, the machine continues, and no more calls are
     made. A sink, as a `TraceWriter` is one, is not called: it receives events that are prepared at
-    their first use. `gate` lets a debugger stop the machine between two states.
+    their first use. `gate` lets a debugger stop the machine between two states. `secret` are the
+    keys of states, by path, whose values are shown as `SECRET`.
     """
     recorder = Recorder(observe, sources, clock, paths)
     instrumented: dict[int, InstrumentedState] = {}
     for parent, label, state in _walk(machine, name):
         known = instrumented.get(id(state))
         if known is None:
-            known = InstrumentedState(state, recorder, instrumented, gate)
+            known = InstrumentedState(state, recorder, instrumented, gate, secret)
             instrumented[id(state)] = known
         known.places.append((None if parent is None else instrumented[id(parent)], label))
     if gate is not None:

@@ -15,6 +15,9 @@ from smachac.runtime.messages import described
 Event = dict[str, Any]
 Observer = Callable[[Event], None]
 
+SECRET = "(secret)"
+"""What a trace shows in place of the value of a secret key."""
+
 NO_VALUE: object = object()
 """Stands for the value in an event that is not a write."""
 

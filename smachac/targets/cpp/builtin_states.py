@@ -173,7 +173,8 @@ class _BuiltInLeaf:
         """The statement that writes a key; `make` gives the value for the type of the key."""
         outer = self.bound(key)
         value = make(self.scope.key(outer))
-        line = f"run.write({cpp_literal(key)}, {self.scope.object(outer)}, {value});"
+        hidden = ", true" if outer in self.scope.secret else ""
+        line = f"run.write({cpp_literal(key)}, {self.scope.object(outer)}, {value}{hidden});"
         return _Statements(lines=(line,), uses_userdata=True, uses_run=True)
 
     def function(self, code: Expression, wanted: Type | None = None) -> Printed:

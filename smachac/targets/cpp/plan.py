@@ -13,6 +13,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateType
 from smachac.ir.script_paths import script_paths
+from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 from smachac.targets import comment
@@ -34,7 +35,7 @@ class ContainerScope:
 
     `keys` are the types of its keys by name. `sure` are the keys that hold a value whenever one of
     its states starts. `shared` are the keys that have no object of their own: they are those of the
-    container around.
+    container around. `secret` are the keys whose values traces hide.
     """
 
     path: str
@@ -42,6 +43,7 @@ class ContainerScope:
     keys: Mapping[str, Type]
     sure: frozenset[str]
     shared: frozenset[str] = frozenset()
+    secret: AbstractSet[str] = frozenset()
 
     def key(self, name: str) -> Type:
         """The type of a key. Raises UnportableError where the container cannot have it."""
@@ -109,13 +111,18 @@ def plan(machine: Machine) -> Plan:
         keys.setdefault(path, {})[key] = plain(type_)
     scopes: dict[str, ContainerScope] = {}
     found = Plan(machine=machine, scopes=scopes, paths=script_paths(machine.root))
+    secret = secret_keys(machine)
     catching: set[str] = set()
     for path, node in containers(machine.root):
         around = scopes.get(path.rpartition("/")[0])
         if node.catches or path.rpartition("/")[0] in catching:
             catching.add(path)
         scope = ContainerScope(
-            path=path, node=node, keys=keys.get(path, {}), sure=_sure(node, around)
+            path=path,
+            node=node,
+            keys=keys.get(path, {}),
+            sure=_sure(node, around),
+            secret=secret.get(path, frozenset()),
         )
         written = _written(node, machine.state_types)
         scope = replace(scope, shared=_shared(scope, around, written, path in catching))

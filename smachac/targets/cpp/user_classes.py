@@ -103,9 +103,13 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
         *([STOP] if stops(type_) else []),
     ]
     call = f"{state}.execute({', '.join(arguments)})"
+
+    def hidden(key: Key) -> str:
+        return ", true" if names.get(key.name, key.name) in scope.secret else ""
+
     if outs:
         told = [
-            f"smachac::Output{{{cpp_literal(key.name)}, {out}}}"
+            f"smachac::Output{{{cpp_literal(key.name)}, {out}{hidden(key)}}}"
             for key, out in zip(type_.output_keys, outs, strict=True)
         ]
         call = f"run.wrote({call}, {', '.join(told)})"

@@ -6,11 +6,12 @@ docs/targets.md describes the fields.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any
 
 from smachac.analysis.context import Context
+from smachac.analysis.secret_values import secret_values
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.ir import graph, nodes
@@ -19,7 +20,9 @@ from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Machine, Node
 from smachac.ir.outcome_names import fails, successes
 from smachac.ir.properties import in_words
 from smachac.ir.script_paths import name_in_script, role_in_words
+from smachac.ir.secret_keys import SecretKeys
 from smachac.ir.traversal import remapping
+from smachac.runtime.tracing.writer import SECRET
 from smachac.targets.dot.edges import items
 
 VERSION = 1
@@ -41,6 +44,7 @@ def machine_model(
     """
     context = Context(machine)
     shown = context.script_paths
+    hidden = [flow.span for flow in secret_values(context.types, context.secret_keys)]
     by_node: dict[str, list[int]] = {}
     for index, item in enumerate(findings):
         if item.finding.node is not None:
@@ -53,7 +57,7 @@ def machine_model(
         "root": machine.root.name,
         "live": live,
         "nodes": [
-            _node(path, node, context, shown, by_node.get(path, []))
+            _node(path, node, context, shown, by_node.get(path, []), hidden)
             for path, node in context.states
         ],
         "edges": [edge for path, node in context.containers for edge in _edges(path, node)],
@@ -71,7 +75,12 @@ def machine_model(
 
 
 def _node(
-    path: str, node: Node, context: Context, shown: Mapping[str, str], found: list[int]
+    path: str,
+    node: Node,
+    context: Context,
+    shown: Mapping[str, str],
+    found: list[int],
+    hidden: Sequence[Span],
 ) -> dict[str, Any]:
     file, line = place_in_script(node.span)
     children = () if isinstance(node, Leaf) else node.children
@@ -88,7 +97,7 @@ def _node(
         "doc": node.doc,
         "file": file,
         "line": line,
-        "snippet": snippet(node.span),
+        "snippet": snippet(node.span, hidden),
         "outcomes": [
             {
                 "name": each.name,
@@ -98,8 +107,8 @@ def _node(
             }
             for each in node.outcomes
         ],
-        "inputs": _keys(path, node, node.inputs, context.types.inputs),
-        "outputs": _keys(path, node, node.outputs, context.types.outputs),
+        "inputs": _keys(path, node, node.inputs, context.types.inputs, context.secret_keys),
+        "outputs": _keys(path, node, node.outputs, context.types.outputs, context.secret_keys),
         "findings": found,
         "tags": list(node.tags),
     }
@@ -115,7 +124,11 @@ def _initial(path: str, node: Node) -> str | None:
 
 
 def _keys(
-    path: str, node: Node, keys: Sequence[Key], types: Mapping[tuple[str, str], Any]
+    path: str,
+    node: Node,
+    keys: Sequence[Key],
+    types: Mapping[tuple[str, str], Any],
+    secret: SecretKeys,
 ) -> list[dict[str, Any]]:
     """Keys of a state: `key` is the key of the container around it that each refers to."""
     names = remapping(node)
@@ -125,6 +138,7 @@ def _keys(
             "key": names.get(key.name, key.name),
             "type": str(types.get((path, key.name), key.type)),
             "doc": key.doc,
+            **({"secret": True} if key.name in secret.get(path, ()) else {}),
         }
         for key in keys
     ]
@@ -139,7 +153,9 @@ def _of_container(path: str, node: Node, context: Context) -> dict[str, Any]:
             {
                 "key": preset.key,
                 "type": str(context.types.keys.get((path, preset.key), preset.type)),
-                "value": " ".join(preset.value.span.text.split())[:SNIPPET_COLUMNS],
+                "value": SECRET
+                if preset.key in context.secret_keys.get(path, ())
+                else " ".join(preset.value.span.text.split())[:SNIPPET_COLUMNS],
             }
             for preset in node.userdata
         ]
@@ -217,24 +233,42 @@ def place_in_script(span: Span) -> tuple[str | None, int | None]:
     return _file(span.source.name), span.line
 
 
-def snippet(span: Span) -> str:
-    """The lines of the script that describe a state: those indented deeper than its first one."""
+def snippet(span: Span, hidden: Sequence[Span] = ()) -> str:
+    """The lines of the script that describe a state: those indented deeper than its first one.
+    Values of secret keys (`hidden`) are not shown."""
     if span.source is NOWHERE.source:
         return ""
     first = span.line
     start = _indentation(span.source, first)
-    lines = [span.source.line(first)]
+    shown = _without(span.source, hidden)
+    lines = [shown(first)]
     number = first + 1
     while number <= len(span.source.line_starts) and len(lines) <= SNIPPET_LINES:
         text = span.source.line(number)
         if text.strip() and _indentation(span.source, number) <= start:
             break
-        lines.append(text)
+        lines.append(shown(number))
         number += 1
     while not lines[-1].strip() and len(lines) > 1:
         lines.pop()
     kept = [line[start : start + SNIPPET_COLUMNS] for line in lines[:SNIPPET_LINES]]
     return "\n".join([*kept, "…"] if len(lines) > SNIPPET_LINES else kept)
+
+
+def _without(source: Source, hidden: Sequence[Span]) -> Callable[[int], str]:
+    """The lines of a file by number, with `SECRET` in place of the hidden parts."""
+    parts = [each for each in hidden if each.source is source]
+
+    def shown(number: int) -> str:
+        text, begin = source.line(number), source.line_starts[number - 1]
+        for each in sorted(parts, key=lambda part: -part.start):
+            indented = len(text) - len(text.lstrip(" "))
+            start, end = max(each.start - begin, indented), min(each.end - begin, len(text))
+            if start < end:
+                text = text[:start] + SECRET + text[end:]
+        return text
+
+    return shown
 
 
 def _indentation(source: Source, number: int) -> int:

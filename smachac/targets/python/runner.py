@@ -20,6 +20,7 @@ from typing import Any
 
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
+from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import walk
 from smachac.robots.faults import Fault
 from smachac.runtime.smach.failures import one_line
@@ -100,7 +101,16 @@ def execute(
                 name, shown = machine.root.name, script_paths(machine.root)
                 at = places(machine)
                 emits.append(
-                    trace.attach(root, name, observe, at, clock=_clock(), paths=shown, gate=gate)
+                    trace.attach(
+                        root,
+                        name,
+                        observe,
+                        at,
+                        clock=_clock(),
+                        paths=shown,
+                        gate=gate,
+                        secret=secret_keys(machine),
+                    )
                 )
             built.append(root)
 

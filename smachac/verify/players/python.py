@@ -98,7 +98,7 @@ def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -
         machine.userdata[key] = value
     strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
     trace.script(machine, name, case.rows, strict)
-    trace.attach(machine, name, events.append, sources)
+    trace.attach(machine, name, events.append, sources, secret=case.secret)
     if case.stopped:
         machine.request_preempt()
     with suppress(Exception):

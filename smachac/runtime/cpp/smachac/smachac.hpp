@@ -549,12 +549,14 @@ private:
   bool early_ = false;
 };
 
-/// An output of a state: its name in the state, and the key.
+/// An output of a state: its name in the state, and the key. Traces hide the value of a secret one.
 template <class T> struct Output {
   const char *name;
   Key<T> &key;
+  bool secret = false;
 };
 template <class T> Output(const char *, Key<T> &) -> Output<T>;
+template <class T> Output(const char *, Key<T> &, bool) -> Output<T>;
 
 #if defined(__cpp_exceptions)
 /// The error of a run that ends with an exception of a state: has the path of the state and its
@@ -692,7 +694,7 @@ struct Run {
   template <class Outcome, class... T> Outcome wrote(Outcome outcome, Output<T>...) {
     return outcome;
   }
-  template <class T, class U> void write(const char *, Key<T> &key, U &&value) {
+  template <class T, class U> void write(const char *, Key<T> &key, U &&value, bool = false) {
     key = convert<T>(std::forward<U>(value));
   }
   /// Called in SMACHAC_CATCH where the script makes the exception of the state its outcome. An
@@ -794,9 +796,10 @@ public:
     (wrote_one(outputs), ...);
     return outcome;
   }
-  template <class T, class U> void write(const char *name, Key<T> &key, U &&value) {
+  template <class T, class U>
+  void write(const char *name, Key<T> &key, U &&value, bool secret = false) {
     key = convert<T>(std::forward<U>(value));
-    wrote_one(Output<T>{name, key});
+    wrote_one(Output<T>{name, key, secret});
   }
   template <class State> void caught(const Place *places, State state) {
     caught_at(places[static_cast<std::size_t>(state)]);
@@ -872,7 +875,7 @@ private:
   }
   template <class T> void wrote_one(Output<T> output) {
     if (output.key.fresh() && observer_.wants_writes()) {
-      const std::string value = json(output.key.get());
+      const std::string value = output.secret ? "\"(secret)\"" : json(output.key.get());
       const Place place = stop.running_.back(); // only this thread changes `running_`
       observer_.tell({"write", place, nullptr, nullptr, output.name, value.c_str()});
     }
