@@ -81,24 +81,26 @@ class Context:
         self, fact: Callable[..., Iterable[T]], given: tuple[object, ...], *, leaves: bool
     ) -> tuple[T, ...]:
         found: list[T] = []
-        stack: list[tuple[str, Node, int | None]] = [
-            (self.machine.root.name, self.machine.root, None)
-        ]
-        while stack:
-            path, node, begin = stack.pop()
-            if begin is not None:  # all below this container has been visited
-                self._facts[fact, path] = node, tuple(found[begin:])
-            elif isinstance(node, Leaf):
-                found.extend(fact(path, node, *given))
+        begun: list[tuple[int, str, Node, int]] = []
+        states, ends = self.states, self._subtree_ends
+        at = 0
+        while at < len(states):
+            path, node = states[at]
+            if isinstance(node, Leaf):
+                if leaves:
+                    found.extend(fact(path, node, *given))
+                at += 1
             elif (known := self._known.get((fact, path))) is not None and known[0] is node:
                 self._facts[fact, path] = known
                 found.extend(cast("tuple[T, ...]", known[1]))
+                at = ends[at]
             else:
-                stack.append((path, node, len(found)))
+                begun.append((ends[at], path, node, len(found)))
                 found.extend(fact(path, node, *given))
-                for child in reversed(node.children):
-                    if leaves or not isinstance(child, Leaf):
-                        stack.append((f"{path}/{child.name}", child, None))
+                at += 1
+            while begun and begun[-1][0] == at:  # all below this container has been visited
+                _, path, node, begin = begun.pop()
+                self._facts[fact, path] = node, tuple(found[begin:])
         return tuple(found)
 
     @cached_property
@@ -107,9 +109,24 @@ class Context:
         return tuple(traversal.walk(self.machine.root))
 
     @cached_property
+    def _subtree_ends(self) -> list[int]:
+        """For each of `states`, the index after the last node below it."""
+        ends = [0] * len(self.states)
+        following: list[int] = []  # the ends of the siblings that follow, the next one last
+        for at in range(len(ends) - 1, -1, -1):
+            node = self.states[at][1]
+            end = at + 1
+            if not isinstance(node, Leaf) and node.children:
+                end = following[-len(node.children)]
+                del following[-len(node.children) :]
+            ends[at] = end
+            following.append(end)
+        return ends
+
+    @cached_property
     def containers(self) -> tuple[tuple[str, Container], ...]:
         """The containers with their paths, parents before children."""
-        return tuple(traversal.containers(self.machine.root))
+        return tuple((path, node) for path, node in self.states if not isinstance(node, Leaf))
 
     @cached_property
     def linear(self) -> tuple[tuple[str, Linear], ...]:
