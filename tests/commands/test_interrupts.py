@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -20,7 +21,7 @@ count = 0
 
 def interrupt(event, arguments):
     global count
-    if event == "import" and "smachac.commands.cli" in sys.modules:
+    if event == "import" and (count or arguments[0].startswith("smachac.commands")):
         count += 1
         if count == at:
             signal.raise_signal(signal.SIGINT)
@@ -29,15 +30,27 @@ sys.addaudithook(interrupt)
 if not at:
     atexit.register(lambda: print(count, file=sys.stderr))
 """
-"""A module `sitecustomize` that sends SIGINT at the n-th import, counted from the import of the
-command line on; the number 0 prints how many there are."""
+"""A module `sitecustomize` that sends SIGINT at the n-th import, counted from the first import of
+the program itself on; the number 0 prints how many there are."""
+
+MODULE = ("-m", "smachac")
 
 
-def interrupted(folder: Path, at: int, words: list[str]) -> subprocess.CompletedProcess[str]:
+def console_script() -> tuple[str, str]:
+    """What the installed script `smachac` runs."""
+    toml = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+    project = toml.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    module, function = project["scripts"]["smachac"].split(":")
+    return "-c", f"import sys\nfrom {module} import {function}\nsys.exit({function}())"
+
+
+def interrupted(
+    folder: Path, at: int, words: list[str], program: tuple[str, str] = MODULE
+) -> subprocess.CompletedProcess[str]:
     (folder / "sitecustomize.py").write_text(HOOK)
     path = os.pathsep.join([str(folder), str(ROOT)])
     return subprocess.run(
-        [sys.executable, "-m", "smachac", *words],
+        [sys.executable, *program, *words],
         env={**os.environ, "PYTHONPATH": path, "INTERRUPT_AT": str(at)},
         cwd=folder,
         capture_output=True,
@@ -52,12 +65,12 @@ def moments(folder: Path, words: list[str]) -> int:
 
 
 def expect_no_traceback(folder: Path, words: list[str], step: int) -> None:
-    """Interrupt a command at every `step`-th import, of which the first two are of cli.py itself:
-    at most the last ones come when the command has ended."""
+    """Interrupt a command at every `step`-th import: at most the last ones come when the command
+    has ended."""
     last = moments(folder, words)
     assert last > 10
     codes = []
-    for at in range(3, last + 1, step):
+    for at in range(1, last + 1, step):
         ended = interrupted(folder, at, words)
         codes.append(ended.returncode)
         if ended.returncode:
@@ -70,6 +83,12 @@ def expect_no_traceback(folder: Path, words: list[str], step: int) -> None:
 
 def test_at_every_import_of_help(tmp_path: Path) -> None:
     expect_no_traceback(tmp_path, ["--help"], 1)
+
+
+def test_at_the_first_imports_of_the_console_script(tmp_path: Path) -> None:
+    for at in range(1, 12):
+        ended = interrupted(tmp_path, at, ["--version"], console_script())
+        assert (ended.returncode, ended.stderr) == (130, "interrupted\n")
 
 
 @pytest.mark.parametrize(
