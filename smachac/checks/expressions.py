@@ -14,7 +14,7 @@ from smachac.checks.types import written
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import guesser, in_quotes, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import (
     attribute_place,
@@ -26,8 +26,8 @@ from smachac.ir.code_places import (
 from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
 from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Expression, Leaf, Node, Struct
-from smachac.ir.traversal import expressions, outcome_names
+from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct
+from smachac.ir.traversal import expressions, outcome_names, values
 
 MAX_LEVELS = 500
 """The most levels of an expression; Python compiles no more than about 1,000 frames deep."""
@@ -45,6 +45,10 @@ def bad_expression(context: Context) -> Iterator[Finding]:
 
     The generated program would not start, or would stop at the first visit of the state, with the
     robot in the middle of its task.
+
+    Exactly: a list or mapping of YAML that Python reads as a comprehension, such as
+    `[2 * n for n in range(3)]`, is a text in a list, and no code. It is reported if its element
+    uses the variable of the loop, or if its items are the result of a call.
 
     Wrong:
         name: sm
@@ -90,8 +94,52 @@ def _bad_expressions(path: str, node: Node) -> Iterator[Finding]:
                 node=path,
                 edits=_cures(expression, found),
             )
+    yield from _bare_comprehensions(path, node)
     if isinstance(node, Leaf):
         yield from _missing_code(node, path)
+
+
+def _bare_comprehensions(path: str, node: Node) -> Iterator[Finding]:
+    """The lists and mappings of YAML that are comprehensions in Python."""
+    for value in values(node):
+        data = value.data
+        if isinstance(data, tuple | Struct) and _has_loop(data):
+            text = " ".join(value.span.text.split())
+            if _is_comprehension(python_tree(text)):
+                what = "a list" if isinstance(data, tuple) else "a mapping"
+                yield Finding(
+                    span=value.span,
+                    message=f"`{text}` is {what} with a text for YAML, and no code",
+                    arguments=(text,),
+                    help=f"write it in quotes and backticks: {in_quotes(f'`{text}`')}",
+                    effect="the text is used as it is: nothing computes the values",
+                    related=calls(node, value.span),
+                    node=path,
+                    edits=(Edit(span=value.span, text=in_quotes(f"`{text}`")),),
+                )
+
+
+def _has_loop(data: tuple[Data, ...] | Struct) -> bool:
+    """Whether a text in a list or mapping may have the loop of a comprehension."""
+    parts = data if isinstance(data, tuple) else [part for _, part in data.entries]
+    return any(isinstance(part, str) and " for " in part for part in parts)
+
+
+def _is_comprehension(tree: ast.expr | None) -> bool:
+    """Whether code is certainly a comprehension: `[look for cup in kitchen]` is prose."""
+    match tree:
+        case (
+            ast.ListComp(elt=element, generators=loops) | ast.SetComp(elt=element, generators=loops)
+        ):
+            elements = [element]
+        case ast.DictComp(key=key, value=element, generators=loops):
+            elements = [key, element]
+        case _:
+            return False
+    used = {each.id for part in elements for each in ast.walk(part) if isinstance(each, ast.Name)}
+    targets = (each for loop in loops for each in ast.walk(loop.target))
+    bound = {each.id for each in targets if isinstance(each, ast.Name)}
+    return bool(used & bound) or any(isinstance(loop.iter, ast.Call) for loop in loops)
 
 
 def _slips(text: str, compares: bool) -> list[Slip]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple, TypeGuard
@@ -25,10 +26,12 @@ from smachac.checks.messages import calls, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
 from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
+from smachac.ir.code_places import python_tree
 from smachac.ir.expressions import Lambda, Name, parse_expression, parts
 from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Leaf, Node, StateMachine, Transition
+from smachac.ir.nodes import Expression, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.traversal import leads_to_child, outcome_names, remapping, walk
 
@@ -52,7 +55,8 @@ def trap(context: Context) -> Iterator[Finding]:
     """From this state no outcome of the container can be reached.
 
     The robot repeats the same states, or waits in one of them, until somebody stops it by force.
-    A machine that must run without end has `forever: true`.
+    A loop over items without an end, such as `itertools.count()`, is a trap too if no outcome of
+    its state ends the loop. A machine that must run without end has `forever: true`.
 
     Wrong:
         name: sm
@@ -88,6 +92,45 @@ def trap(context: Context) -> Iterator[Finding]:
             first = region[0]
             witness = [*way(path, graph, before, first), *circle(path, region, steps)[1:]]
             yield _trapped(path, container, children[first], region, witness)
+    for path, loop in context.containers:
+        if isinstance(loop, nodes.Iterator) and loop.items is not None:
+            yield from _endless_items(path, loop, loop.items.data)
+
+
+def _endless_items(path: str, loop: nodes.Iterator, data: nodes.Data) -> Iterator[Finding]:
+    """A loop over items without an end, in which no outcome of the state ends the loop."""
+    if not isinstance(data, Expression) or "itertools." not in data.text:
+        return
+    going_on = frozenset([*loop.loop_outcomes, PREEMPTED])
+    leaving = any(
+        (isinstance(child, Leaf) and child.open) or not going_on.issuperset(outcome_names(child))
+        for child in loop.children
+    )
+    if not leaving and _has_no_end(python_tree(data.text)):
+        yield Finding(
+            span=loop.items_span,
+            message=f"`{loop.name}` never ends: `{data.text}` has no last item, and no outcome of"
+            f" {listed([child.name for child in loop.children])} ends the loop",
+            arguments=(loop.name, data.text),
+            help="write items with an end, such as `range(10)`, or let an outcome end the loop",
+            related=calls(loop, loop.items_span),
+            node=path,
+        )
+
+
+def _has_no_end(tree: ast.expr | None) -> bool:
+    """Whether code computes items without an end: `itertools.count()`, `cycle` or `repeat`."""
+    match tree:
+        case ast.Lambda(body=body):
+            return _has_no_end(body)
+        case ast.Call(
+            func=ast.Attribute(value=ast.Name(id="itertools"), attr=name),
+            args=arguments,
+            keywords=named,
+        ):
+            bounded = len(arguments) > 1 or any(each.arg in ("times", None) for each in named)
+            return name in ("count", "cycle") or (name == "repeat" and not bounded)
+    return False
 
 
 def _trapped(

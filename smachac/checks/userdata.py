@@ -91,9 +91,21 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
     for missing in context.missing_keys("unset", "nowhere"):
+        if missing.cause == "nowhere" and _is_dropped(missing):
+            continue  # SM308 reports the cause
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])
             yield _unset(missing, witness, users, guesses, context.types.inputs)
+
+
+def _is_dropped(missing: Missing) -> bool:
+    """Whether the code of a state sets the key, which its interface does not declare."""
+    return any(
+        word.text == missing.key
+        for child in missing.scope.container.children
+        if isinstance(child, nodes.Leaf) and child.class_facts is not None
+        for word in child.class_facts.writes
+    )
 
 
 def _item_help(container: Container, reader: Node) -> str | None:

@@ -25,7 +25,7 @@ _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 def are_opposite(one: str, other: str) -> bool:
     """Whether one of two names is the negation of the other."""
-    if one.casefold() == other.casefold():
+    if one.casefold().replace("_", "") == other.casefold().replace("_", ""):
         return False
     first, second = _words(one), _words(other)
     return _negated(first, second) != _negated(second, first)

@@ -42,6 +42,7 @@ from smachac.frontend.params import (
     fill_in,
     is_flat,
     is_too_deep,
+    look_up_word,
     size_up_to,
 )
 from smachac.frontend.properties import properties_of
@@ -261,7 +262,9 @@ class _Resolver:
             return _unknown(name, fields.get("transitions", ()), around)
         if "states" in entries and owner != "state":
             inside = _Environment(around.source, scope, around.calls, around.depth + 1)
-            children = self.children(entries["states"].value, owner, inside)
+            children = self.children(name, entries["states"].value, owner, inside)
+        elif owner != "state":
+            children = (_no_states(name, around),)  # SM005 or SM003 was reported
         self.uses.params(params, begin, self.report, around.via)
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
@@ -319,11 +322,21 @@ class _Resolver:
         self.report.append(too_big(span, message, help, arguments=("levels",)))
         return Entry(entry.key, known_wrong(span))
 
-    def children(self, tree: Tree, owner: FieldOwner, around: _Environment) -> tuple[State, ...]:
-        """The states of a list. An Iterator has one, which uses the keys of the Iterator."""
+    def children(
+        self, name: Word, tree: Tree, owner: FieldOwner, around: _Environment
+    ) -> tuple[State, ...]:
+        """The states of a list. An Iterator has one, which uses the keys of the Iterator. A value
+        that is no list of states is reported; in its place is an unknown state."""
         items = tree.items if isinstance(tree, Seq) else ()
+        if look_up_word(tree) is not None:
+            help = "write the states here, or call a sub-script: `- NAME: {script: ...}`"
+            message, arguments = "`states` cannot be a look-up", ("states", "look-up")
+            self.report.append(wrong_shape(tree.span, message, help, arguments=arguments))
+            return (_no_states(name, around),)
         if not isinstance(tree, Seq):
             wrong(tree, "states", self.report)
+            if not isinstance(tree, Map) or not tree.entries:
+                return (_no_states(name, around),)
         if isinstance(tree, Map):
             items = tuple(Map((each,), each.key.span) for each in tree.entries)
         found: list[State] = []
@@ -627,6 +640,12 @@ def _unknown(name: Word, transitions: Pairs, around: _Environment) -> State:
     """A state that cannot be read: only its name and its transitions are known."""
     type_ = StateType(name="", open=True)
     return State(name=name, owner="state", type=type_, transitions=transitions, via=around.via)
+
+
+def _no_states(container: Word, around: _Environment) -> State:
+    """An unknown state in place of the states of a container, which were reported as missing or
+    wrong: then no consequence of it is reported."""
+    return _unknown(Word("STATES", container.span), (), around)
 
 
 def sub_script_state(

@@ -14,6 +14,7 @@ from smachac.ir.nodes import (
     Node,
     Struct,
     Transition,
+    Value,
 )
 from smachac.ir.nodes import Iterator as IteratorNode
 from smachac.ir.outcome_names import PREEMPTED as PREEMPTED
@@ -70,10 +71,16 @@ def leads_to_child(transition: Transition, children: frozenset[str]) -> bool:
 
 def expressions(node: Node) -> Iterator[Expression]:
     """The expressions in the values of one node, in the order of the script."""
+    for value in values(node):
+        yield from expressions_in(value.data)
+
+
+def values(node: Node) -> Iterator[Value]:
+    """The values of one node that may contain code, in the order of the script."""
     for entry in node.variables if isinstance(node, Leaf) else node.userdata:
-        yield from expressions_in(entry.value.data)
+        yield entry.value
     if isinstance(node, IteratorNode) and node.items is not None:
-        yield from expressions_in(node.items.data)
+        yield node.items
 
 
 def expressions_in(data: Data) -> Iterator[Expression]:

@@ -262,6 +262,12 @@ states:
         ("states:\n  - FIND", "initial: FIND\nstates:\n  FIND", ["SM004 FIND"]),
         ("states:", "initial: MOVE\nstates:\n  - MOVE", ["SM004 MOVE"]),
         ("states:", "initial: MOVE\nstates:", ["SM205 MOVE"]),
+        (FLAT.partition("states:")[2], " []\n", ["SM205 sm"]),
+        (FLAT.partition("states:")[2], "\n", ["SM004 "]),
+        (FLAT.partition("states:")[2], " {}\n", ["SM004 {}"]),
+        (FLAT.partition("states:")[2], " FIND\n", ["SM004 FIND"]),
+        (FLAT.partition("states:")[2], " [params, x]\n", ["SM004 [params, x]"]),
+        (FLAT.partition("outcomes: [done, failed]\n")[2], "", ["SM005 sm"]),
     ],
 )
 def test_a_wrong_shape_is_one_finding(before: str, after: str, expected: list[str]) -> None:
@@ -371,3 +377,14 @@ def test_a_misspelt_type_is_one_finding() -> None:
     text = FIELDS.replace("template: Find", "template: Find\n      speed: 1.5")
     usual = found(text, Find=interface % "float")
     assert sorted(found(text, Find=interface % "flaot")) == sorted([*usual, "SM017 flaot"])
+
+
+def test_a_misspelt_output_of_an_interface_is_one_finding() -> None:
+    misspelt = SEES.replace("{grasp", "{gasp").replace("[grasp]", "[gasp]")
+    files = {
+        "main.yml": SEEN,
+        "templates/Find.yml": misspelt + 'code: {python: "sees:Find"}\n',
+        "sees.py": SEEING,
+    }
+    codes = [each.code for each in analysed(files).report if each.severity is Severity.ERROR]
+    assert codes == ["SM308"]

@@ -6,6 +6,7 @@ from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.parser import parse_machine
 from tests.support.typed_machines import with_state_types
+from tests.trust.project_text import analysed
 
 CODES = ("SM311", "SM312", "SM504")
 
@@ -162,3 +163,32 @@ def test_other_code_is_judged_by_itself() -> None:
         " `1 + 'a'` adds `int` and `str`",
         " `-ud.xs` uses `int[1]` as a number",
     ]
+
+
+@pytest.mark.parametrize(
+    ("written", "bare"),
+    [
+        ("[2 * k for k in steps]", True),
+        ("[f(j, k) for j, k in steps]", True),
+        ("[0 for _ in range(3)]", True),
+        ("{k: f(k) for k in steps}", True),
+        ("['2 * k for k in steps']", False),
+        ("'`[2 * k for k in range(3)]`'", False),
+        ("[look for cup in kitchen]", False),
+        ("[wait for it]", False),
+    ],
+)
+def test_a_comprehension_without_quotes(written: str, bare: bool) -> None:
+    text = f"""\
+name: sm
+template: Base
+outcomes: [succeeded]
+userdata: {{data: {written}}}
+states:
+  - SHOW:
+      template: PrintUserdataState
+      input_keys: [data]
+      transitions: {{succeeded: succeeded}}
+"""
+    codes = [each.code for each in analysed({"main.yml": text}).report]
+    assert codes == (["SM016"] if bare else [])

@@ -12,6 +12,7 @@ from smachac.ir.nodes import Leaf, Node, StateMachine
 from smachac.ir.types import Type
 from tests.support.ir_machines import iterator, leaf, machine, value
 from tests.support.rule_findings import blocking, found, looping, one, report
+from tests.trust.project_text import analysed
 
 RETRY = {"ok": "done", "failed": "A"}
 
@@ -151,3 +152,41 @@ def test_a_condition_in_python_can_change_by_itself() -> None:
     code = replace(ask.variables[0], value=value({"again": "`lambda ud: clock() < ud.n`"}))
     root = machine("sm", "done", leaf("A", {"ok": "ASK"}), replace(ask, variables=(code,)))
     assert found(root, "SM213") == []
+
+
+LOOP = """\
+name: sm
+template: Base
+outcomes: [done, failed, preempted]
+userdata: {n: 3}
+states:
+  - WORK:
+      template: ScriptedState
+      outcomes: [succeeded, aborted]
+      for_each: {item: i, in: ITEMS, on: [ON]}
+      transitions: {succeeded: done, aborted: failed, preempted: preempted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("items", "on", "expected"),
+    [
+        ("itertools.count()", "succeeded, aborted", ["SM202 itertools.count()"]),
+        ("'`itertools.count(1, 2)`'", "succeeded, aborted", ["SM202 '`itertools.count(1, 2)`'"]),
+        ("itertools.repeat(1)", "succeeded, aborted", ["SM202 itertools.repeat(1)"]),
+        (
+            "'`lambda ud: itertools.cycle([1])`'",
+            "succeeded, aborted",
+            ["SM202 '`lambda ud: itertools.cycle([1])`'"],
+        ),
+        ("itertools.count()", "succeeded", []),
+        ("'`itertools.repeat(1, 2)`'", "succeeded, aborted", []),
+        ("'`itertools.repeat(1, times=2)`'", "succeeded, aborted", []),
+        ("'`itertools.chain([1], [2])`'", "succeeded, aborted", []),
+        ("range(3)", "succeeded, aborted", []),
+    ],
+)
+def test_items_without_an_end(items: str, on: str, expected: list[str]) -> None:
+    text = LOOP.replace("ITEMS", items).replace("[ON]", f"[{on}]")
+    traps = [each for each in analysed({"main.yml": text}).report if each.code == "SM202"]
+    assert [f"SM202 {each.span.text}" for each in traps] == expected

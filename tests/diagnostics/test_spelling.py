@@ -82,6 +82,7 @@ def test_an_opposite_is_no_suggestion(word: str, name: str) -> None:
     ("word", "name"),
     [
         ("nto_found", "not_found"),
+        ("nogrip", "no_grip"),
         ("not_fuond", "not_found"),
         ("no_fond", "no_found"),
         ("unreachble", "unreachable"),

@@ -196,15 +196,15 @@ def unknown_variable(
             help=f"did you mean `{sure}`?" if sure else "remove it, or use it in the template",
             severity=Severity.WARNING,
         )
+    foreign = None if sure else FOREIGN.get(word.text)
     return Finding(
         span=word.span,
         message=f"`{word.text}` is not a {owner.part} of {owner.text}",
         arguments=(word.text, owner.name),
-        help=(None if sure else FOREIGN.get(word.text))
-        or _variable_help(word.text, sure, names, own)
-        or variables,
+        help=foreign or _variable_help(word.text, sure, names, own) or variables,
         edits=respelt(word, sure),
         severity=severity,
+        effect="SMACH or FlexBE has such a field, smachac has not" if foreign else None,
     )
 
 
