@@ -9,7 +9,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
-from smachac.checks.messages import did_you_mean
+from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.robot import (
     at,
     is_simulated,
@@ -181,7 +181,7 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
     effect="the state fails at its first visit",
 )
 def unknown_name(context: Context) -> Iterator[Finding]:
-    """A value names a limb, a model or a body that does not exist.
+    """A value names a limb, a model or a body that does not exist, or a limb without a gripper.
 
     The state fails at its first visit, often after the robot has moved other parts of the task.
 
@@ -189,7 +189,8 @@ def unknown_name(context: Context) -> Iterator[Finding]:
     say what its values are names of. Limbs are those of a built-in robot. In the simulation, models
     are the built-in ones, unless the state names a file, and bodies are those that LoadModelState
     adds; there an unknown name is an error. Where code of the user may add bodies, they are not
-    checked. Names of frames and joints are SM505.
+    checked. A state whose type has `role: grip` needs a limb whose description has a gripper. Names
+    of frames and joints are SM505.
 
     Wrong:
         name: sm
@@ -231,6 +232,33 @@ def unknown_name(context: Context) -> Iterator[Finding]:
             if name not in known[role]:
                 help = did_you_mean(guess(name)) or _things_in_words(role, known[role])
                 yield at(flow, f"there is no {role} `{name}`", help, (name,), severity=severity)
+    yield from _missing_grippers(context, severity)
+
+
+def _missing_grippers(context: Context, severity: Severity | None) -> Iterator[Finding]:
+    """The states that open or close the gripper of an arm that has none."""
+    robot = context.machine.robot
+    without = [arm.name for arm in robot.arms if arm.limb.gripper is None] if robot else []
+    if robot is None or not without:
+        return
+    for path, leaf in context.states:
+        held = variable_of(leaf, "grip") if isinstance(leaf, Leaf) else None
+        if held is None or not isinstance(leaf, Leaf):
+            continue
+        limb = variable_of(leaf, "limb")
+        named = limb.value.data if limb is not None else None
+        if named is None and len(robot.arms) == 1:
+            named = without[0]
+        if named in without:
+            yield Finding(
+                span=limb.value.span if limb is not None and limb.value.data else leaf.span,
+                message=f"`{leaf.name}` moves the gripper of the limb `{named}`, which has none",
+                arguments=(leaf.name, str(named)),
+                help=f"describe its `gripper` in `{robot.description}`, or remove the state",
+                related=calls(leaf, leaf.span),
+                severity=severity,
+                node=path,
+            )
 
 
 def _known_things(context: Context) -> Mapping[str, frozenset[str]]:

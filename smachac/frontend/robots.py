@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import NOWHERE, Source, Span, Word
+from smachac.diagnostics.spelling import guesser
 from smachac.frontend.data_files import plain, span_at
 from smachac.frontend.errors.references import bad_robot
 from smachac.frontend.loader import Library
@@ -31,9 +32,12 @@ SUFFIXES = (".urdf", ".xml", ".xacro")
 """The endings of URDF files; a description ends with `.yml`, any other text is a robot's name."""
 
 
+NO_SCENE = "without the scene, names of bodies are not checked, and no simulated world is built"
+
+
 def robot_of(base: State, source: Source, library: Library, report: Report) -> Robot | None:
     """The robot of a script; None if it names none, or one that only its base type defines."""
-    reader = _Reader(source, library, report)
+    reader = _Reader(source, library, report, base.scene)
     scene = reader.scene(base.scene) if base.scene is not None else None
     if base.robot is not None:
         found = reader.named(base.robot, base.type)
@@ -69,8 +73,10 @@ def built_in_robot(name: str, library: Library) -> Robot | None:
 class _Reader:
     """Reads the files that one script names; mistakes are reported."""
 
-    def __init__(self, source: Source, library: Library, report: Report) -> None:
-        self.source, self.library, self.report = source, library, report
+    def __init__(
+        self, source: Source, library: Library, report: Report, scene: Word | None = None
+    ) -> None:
+        self.source, self.library, self.report, self.scene_word = source, library, report, scene
 
     def named(self, word: Word, base: StateType) -> Robot | None:
         """The robot that a script names."""
@@ -100,7 +106,10 @@ class _Reader:
         arguments: tuple[str, ...],
         related: tuple[Related, ...] = (),
     ) -> None:
-        self.report.append(bad_robot(word, message, help, related, arguments=arguments))
+        effect = NO_SCENE if word is self.scene_word else None
+        self.report.append(
+            bad_robot(word, message, help, related, arguments=arguments, effect=effect)
+        )
 
     def file(self, word: Word) -> Source | None:
         """The file that a word names; reported if there is none."""
@@ -110,6 +119,10 @@ class _Reader:
             folders = self.library.script_folders(self.source.name)
             searched = ", ".join(f"`{folder}`" for folder in folders)
             help = f"give its path relative to a folder that is searched: {searched}"
+            stem, dot, ending = word.text.rpartition(".")
+            near = guesser(self.library.script_names(self.source.name))(stem)
+            if near is not None and dot + ending in DESCRIPTIONS:
+                help = f"did you mean `{near}{dot}{ending}`? (searched in {searched})"
             message = f"the file `{word.text}` was not found"
             self.wrong(word, message, help, ("file", word.text))
         return found

@@ -510,6 +510,8 @@ def bad_class(
     if fault.near is not None:
         written = fault.kind == "no list" or fault.near.startswith('"')
         help = f"write `{fault.near}`" if written else f"did you mean `{fault.near}`?"
+        if fault.kind == "no execute":
+            help = f"rename `{fault.near}` to `execute`"
     return Finding(
         span=fault.name.span,
         message=message,

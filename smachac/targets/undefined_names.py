@@ -27,6 +27,9 @@ from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
 from smachac.ir.traversal import expressions
 
+FUNCTIONS = tuple(name for name in dir(builtins) if name.islower() and name[0] != "_")
+"""The built-in functions and types of Python."""
+
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
 _WORDS = re.compile(r"[^\W\d]\w*")
@@ -179,7 +182,8 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
     near = guesser([*own, *keys])(word) if own and not _is_called(use) else None
     if near is not None:
         return NameFix(f"did you mean `{near if near in own else f'{own[0]}.{near}'}`?")
-    return None
+    near = guesser(FUNCTIONS)(word)
+    return NameFix(f"did you mean `{near}`?") if near is not None else None
 
 
 def _is_called(use: _Use) -> bool:

@@ -123,7 +123,7 @@ def test_a_correct_class() -> None:
         (changed(("range(userdata.tries):", "range(userdata.tries)")),
          ["SM608 cell/find.py:12 "], None),
         (changed(("def execute", "def excute")), ["SM609 cell/find.py:4 FindPart"],
-         "did you mean `excute`?"),
+         "rename `excute` to `execute`"),
         (changed((LISTS, "")), ["SM609 cell/find.py:5 __init__"], None),
         (changed((HEAD, "class FindPart:\n")), ["SM609 cell/find.py:4 FindPart"], None),
         (changed(("(self, speed)", "(self)"), ("= speed", "= 1")),

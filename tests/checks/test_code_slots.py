@@ -186,6 +186,7 @@ def shown(slot: str, code: str) -> list[tuple[str, str]]:
         ("callback", "'lambda ud: ud.n.x + 1'", ("SM311", "x")),
         ("callback", "'lambda ud: 1 + ud.n / 0'", ("SM311", "ud.n / 0")),
         ("callback", "'lambda ud: [1, 2][5]'", ("SM311", "[1, 2][5]")),
+        ("callback", "'lambda ud: lenn(ud.seen)'", ("SM019", "lenn")),
         ("callback", "'lambda ud: ud.n && 1'", ("SM016", "&&")),
         ("condition", "'lambda ud: ud.n = 1'", ("SM016", "=")),
     ],

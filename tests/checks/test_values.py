@@ -347,3 +347,55 @@ def test_limbs_of_a_robot_with_two_arms() -> None:
     files = grip("arm: {names: limb}", "arm: lefft", more="robot: baxter")
     assert seen(files) == [("SM521", "lefft")]
     assert seen(grip("arm: {names: limb}", "arm: left", more="robot: baxter")) == []
+
+
+GRIPS = """\
+name: sm
+template: PyBulletBase
+robot: arm.yml
+outcomes: [done, failed]
+states:
+  - GRIP:
+      template: GripperState
+      command: close
+      limb: LIMB
+      transitions: {succeeded: READ, aborted: failed, preempted: failed}
+  - READ:
+      template: ReadBodyPoseState
+      body: base
+      transitions: {succeeded: done, aborted: failed}
+"""
+ARMS = """\
+name: arms
+urdf: arm.urdf
+arms:
+  bare: {joints: [shoulder], tool: hand, home: [0.0]}
+  grip:
+    joints: [elbow]
+    tool: hand
+    home: [0.0]
+    gripper: {joints: {finger: {open: 0.04}}, width: {open: 0.08, closed: 0.0}}
+"""
+JOINT = """\
+<joint name="NAME" type="KIND"><parent link="base"/><child link="LINK"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+"""
+LINKS = (("shoulder", "revolute", "hand"), ("elbow", "revolute", "lower"),
+         ("finger", "prismatic", "pad"))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("limb", "expected"), [("bare", ["SM521 bare", "SM521 base"]), ("grip", ["SM521 base"])]
+)
+def test_an_arm_without_a_gripper(limb: str, expected: list[str]) -> None:
+    links = "".join(f'<link name="{name}"/>' for name in ("base", "hand", "lower", "pad"))
+    joints = "".join(
+        JOINT.replace("NAME", name).replace("KIND", kind).replace("LINK", link)
+        for name, kind, link in LINKS
+    )
+    files = {
+        "main.yml": GRIPS.replace("LIMB", limb),
+        "arm.yml": ARMS,
+        "arm.urdf": f'<robot name="arms">{links}{joints}</robot>',
+    }
+    assert [f"{code} {text}" for code, text in seen(files)] == expected

@@ -165,3 +165,21 @@ def test_several_robots() -> None:
     assert robot.limb_names == ("near", "far")
     assert [len(limb) for limb in robot.limbs] == [7, 2]
     assert robot.description == "two.yml"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "help", "effect"),
+    [
+        ("robot: arm.yml", "robot: amr.yml", "did you mean `arm.yml`?", "without a description"),
+        ("scene: table.yml", "scene: tabel.yml", "did you mean `table.yml`?", "without the scene"),
+    ],
+)
+def test_a_file_with_nearly_the_name(
+    tmp_path: Path, before: str, after: str, help: str, effect: str
+) -> None:
+    path = project(tmp_path)
+    path.write_text(path.read_text().replace(before, after))
+    (item,) = [item for item in smachac.check(path) if item.code == "SM018"]
+    assert item.help is not None
+    assert item.help.startswith(help)
+    assert (item.finding.effect or item.kind.effect).startswith(effect)

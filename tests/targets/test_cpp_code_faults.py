@@ -85,3 +85,15 @@ def test_what_cannot_be_judged(text: str) -> None:
 
 def test_a_header_elsewhere_can_be_installed() -> None:
     assert found() == []
+
+
+@pytest.mark.parametrize(("header", "known"), [("grsap.hpp", True), ("skills.hpp", False)])
+def test_a_header_without_a_folder(header: str, known: bool) -> None:
+    files = {
+        "main.yml": SCRIPT,
+        "templates/Grasp.yml": INTERFACE.replace("arm/grasp.hpp", header),
+        "grasp.hpp": CLASS,
+    }
+    report = analyse(Source("main.yml", SCRIPT), memory_library(files, BUILT_IN), []).report
+    expected = ["SM608 did you mean `grasp.hpp`?"] if known else []
+    assert [f"{item.code} {item.help}" for item in report] == expected

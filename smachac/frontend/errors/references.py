@@ -290,6 +290,7 @@ def bad_robot(
     related: tuple[Related, ...] = (),
     *,
     arguments: tuple[str, ...],
+    effect: str | None = None,
 ) -> Finding:
     """The robot of a script is not known, or its description cannot be read.
 
@@ -330,7 +331,14 @@ def bad_robot(
           </joint>
         </robot>
     """
-    return Finding(span=word.span, message=message, arguments=arguments, help=help, related=related)
+    return Finding(
+        span=word.span,
+        message=message,
+        arguments=arguments,
+        help=help,
+        related=related,
+        effect=effect,
+    )
 
 
 @problem(

@@ -141,14 +141,15 @@ def _absent(code: ClassCode, fault: ClassFault | None) -> Declared | None:
 def absent_header(header: str, library: Library) -> ClassFault | None:
     """The fault that a header is in no searched folder; None where it can be an installed one.
 
-    It is certain if its folder has other headers.
+    It is certain if its folder has other headers; without a folder, if one of them has nearly the
+    same name.
     """
     folder, _, file = header.rpartition("/")
     others = [each for each in library.code_names(folder) if each.endswith((".hpp", ".h", ".hh"))]
-    if not folder or not others:
-        return None
     near = guesser(others)(file)
-    meant = f"{folder}/{near}" if near is not None else None
+    if not others or (not folder and near is None):
+        return None
+    meant = f"{folder}/{near}" if folder and near is not None else near
     return ClassFault(kind="no module", name=Word(header, NOWHERE), near=meant)
 
 
