@@ -288,7 +288,7 @@ class _Judge:
         text += f"`{type_text(one)}` never equals `{type_text(other)}`"
         help = f"compare with a value of the type `{type_text(one)}`"
         if {*kinds(one), *kinds(other)} == {"number", "text"}:
-            help += ", or convert one of them: `float(...)` gives a number, `str(...)` text"
+            help += "; if the text contains a number, `float(...)` converts it"
         return Fault(kind="comparison", expr=expr, what=text, keys=keys, help=help)
 
     def units(self, expr: Expr, one: Type, other: Type, left: Expr, right: Expr) -> Iterator[Fault]:

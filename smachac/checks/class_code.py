@@ -398,7 +398,10 @@ def never_returned(context: Context) -> Iterator[Finding]:
 def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
     assert facts.execute is not None
     message = f"`execute` of `{leaf.type}` never returns `{outcome}`"
-    help = f"return `{outcome}` where it is meant, or remove it from the interface `{leaf.type}`"
+    help = (
+        f"return `{outcome}` where it is meant, or remove it from the interface `{leaf.type}`, from"
+        f" `__init__`, and from the transitions of `{leaf.name}`"
+    )
     if outcome == PREEMPTED:
         help = "check `self.preempt_requested()` while it works, and then return `preempted`"
         if not facts.checks_stop:

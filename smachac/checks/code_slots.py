@@ -242,8 +242,8 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
                 continue
         else:
             own = len(parameters(tree))
-            what = f"has {own or 'no'} argument{'s' * (own != 1)}, but the state passes {len(due)}"
-            what += f": {_names(due)}"
+            what = f"has {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
+            what += f" argument{'s' * (len(due) != 1)}: {_names(due)}"
             effect = None
         yield Finding(
             span=_head(slot, tree),
@@ -514,6 +514,8 @@ def _outcome_fault(context: Context, node: Node, slot: CodeSlot, result: ast.exp
         if not wanted:
             return None
         what = f"`{ast.unparse(result)}`, a `{wanted}`, which is not an outcome of `{node.name}`"
+        if wanted == "bool" and len(names) > 1:
+            help = f"write `'{names[0]}' if {ast.unparse(result)} else '{names[1]}'`"
         return Fault(what, help, True, OUTCOME_EFFECT)
     if result.value is None or result.value in names:
         return None

@@ -35,7 +35,7 @@ from smachac.ir.traversal import remapping
     "SM305",
     "dead-key",
     Severity.WARNING,
-    effect="the value has no effect: a state that should read it uses another key",
+    effect="the value has no effect: no state uses it",
 )
 def dead_key(context: Context) -> Iterator[Finding]:
     """A userdata key is set, but nothing in its container reads it.
@@ -92,7 +92,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 span=span,
                 message=f"`{key}` is set, but nothing in {where} reads it",
                 arguments=(key,),
-                help=f"remove it, or add it to the `output_keys` of {where}",
+                help=f"remove it, add it to the `input_keys` of the state that uses it, or to the"
+                f" `output_keys` of {where}",
                 related=calls(node, span),
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
@@ -220,17 +221,21 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
 
 def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:
     span = key.span if not isinstance(node, Leaf) else place_of(node, key)
-    use = "reads" if role == "input" else "sets"
+    verb = "read" if role == "input" else "set"
     effect = "a state that reads the key afterwards finds it unset, or with an older value"
-    other = f"let a state inside set `{key.name}`"
     if role == "input":
-        effect = "the caller must provide a key that has no effect"
-        other = f"let a state inside read `{key.name}`"
+        effect = "the container around it must set a key that has no effect"
+    if isinstance(node, Leaf):
+        nothing = f"none of its functions {verb}s it"
+        other = f"{verb} it in one of them as `ud.{key.name}`"
+    else:
+        nothing = f"no state in `{node.name}` {verb}s it"
+        other = f"add it to the `{role}_keys` of the state in `{node.name}` that {verb}s it"
     return Finding(
         span=span,
-        message=f"`{key.name}` is declared as an {role} key, but nothing inside {use} it",
+        message=f"`{node.name}` declares the {role} key `{key.name}`, but {nothing}",
         arguments=(role, key.name),
-        help=f"remove `{key.name}` from the `{role}_keys`, or {other}",
+        help=f"remove `{key.name}` from the `{role}_keys` of `{node.name}`, or {other}",
         effect=effect,
         related=calls(node, span),
         node=path,
@@ -470,7 +475,8 @@ def _undeclared_accesses(
                 " input keys",
                 arguments=(key,),
                 help=did_you_mean(guess(key))
-                or f"add `{key}` to the `input_keys` of `{leaf.name}`",
+                or f"add `{key}` to the `input_keys` of `{leaf.name}`, and set it before, for"
+                f" example in `userdata: {{{key}: ...}}`",
                 related=calls(leaf, code.span),
                 node=inner,
                 edits=respelt(Word(key, span), guess.sure(key)),

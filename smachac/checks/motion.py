@@ -153,7 +153,8 @@ def _wrong_frame(read: Read, child: Leaf, key: Key, frame: str, span: Span) -> F
         message=f"`{child.name}` reads `{read.key}` as a pose in the frame `{key.frame}`, but it is"
         f" given in `{frame}`",
         arguments=(key.name, frame, key.frame),
-        help=f"transform the pose to `{key.frame}` before",
+        help=f"add a state before `{child.name}` that transforms the pose from `{frame}` to"
+        f" `{key.frame}`, or correct the frame of one of the two",
         related=(*related, *calls(child, child.span)),
         node=f"{read.path}/{child.name}",
     )

@@ -149,7 +149,10 @@ def _cure(form: Form) -> str:
         case After(first=first, answer=answer):
             return f"lead each path from {either(first)} through {either(answer)}"
         case AtMost() | AlwaysEnds():
-            return "limit the number of tries, for example with `retry`, and leave the loop then"
+            return (
+                "limit the number of tries, for example with `retry: {on: [OUTCOME], max: 3}` in"
+                " place of the transition for this outcome, and add one for `exhausted`"
+            )
     return assert_never(form)
 
 

@@ -241,7 +241,8 @@ def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]
             message=f"{listed(names)} claim `{resource}` at the same time: they are branches of"
             f" `{container.name}`",
             arguments=(_as_written(own, origin), *names),
-            help=f"put {listed(names)} into one StateMachine, one after the other",
+            help=f"put {listed(names)} into one StateMachine, one after the other, or let one of"
+            " them use another resource",
             related=(*places, *_inner(child, origin, "claims"), *calls(child, child.span)),
             node=f"{path}/{child.name}",
         )

@@ -273,7 +273,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
     "no-initial",
     Severity.ERROR,
     firm=True,
-    effect="SMACH refuses to run such a container: none of its states runs",
+    effect="a container needs a state where it starts: SMACH stops it with an error",
 )
 def no_initial(context: Context) -> Iterator[Finding]:
     """A container has no states, or its initial state does not exist.
@@ -305,7 +305,7 @@ def no_initial(context: Context) -> Iterator[Finding]:
                 span=container.span,
                 message=f"`{container.name}` has no states",
                 arguments=(container.name,),
-                help="add a state: `- NAME: {template: ...}`",
+                help="write `states: [NAME: {template: TYPE, transitions: {OUTCOME: TARGET}}]`",
                 related=calls(container, container.span),
                 node=path,
             )

@@ -396,7 +396,7 @@ STAMPED = frozenset(["PoseStamped", "geometry_msgs/PoseStamped", "geometry_msgs/
     "SM505",
     "unknown-frame",
     Severity.WARNING,
-    effect="a state that uses this name fails, or waits for it in vain",
+    effect="a state that uses this name fails, or waits for it without end",
 )
 def unknown_frame(context: Context) -> Iterator[Finding]:
     """A value names a frame or a joint that the robot does not have.
@@ -457,13 +457,15 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             if name.removeprefix("/") in known or not name:
                 continue
             where = "the simulation" if simulated else f"the robot `{robot.name}`"
-            help = "add it to `frames: [...]` if it is not a frame of the robot"
+            help = f"write one of the robot's frames: {listed(sorted(known))}; if another program"
+            help += f" provides `{name}`, add it to `frames: [...]` of the script"
             if simulated:
                 help = f"its frames are {', '.join(f'`{each}`' for each in sorted(known))}"
             message = f"{where} has no frame `{name}`"
             severity = Severity.ERROR if simulated else None
             help = did_you_mean(guess(name)) or help
-            yield at(flow, message, help, (name,), severity=severity)
+            part = frame_place(flow.value)
+            yield at(flow, message, help, (name,), severity=severity, part=part)
 
 
 def _known(robot: Robot) -> frozenset[str]:
@@ -521,6 +523,13 @@ def frame_of(pose: Data) -> str | None:
     inner = dict(header.entries) if isinstance(header, Struct) else held
     name = inner.get("frame_id")
     return name if isinstance(name, str) else None
+
+
+def frame_place(pose: Data) -> tuple[str, ...]:
+    """The steps to the frame in a literal that `frame_of` reads; none for a text."""
+    if not isinstance(pose, Struct):
+        return ()
+    return ("header", "frame_id") if "header" in dict(pose.entries) else ("frame_id",)
 
 
 def _holds_frame(flow: TypeFlow) -> bool:

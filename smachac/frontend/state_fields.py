@@ -241,7 +241,7 @@ def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, repor
 
 def _check_qos(tree: Tree, report: Report) -> None:
     """The quality of service of a topic of ROS 2: a preset, a depth, or policies."""
-    from smachac.runtime.ros2_qos import faults
+    from smachac.runtime.ros2_qos import PRESETS, faults
 
     value: object = ()  # a list is none
     if isinstance(tree, Scalar):
@@ -251,6 +251,8 @@ def _check_qos(tree: Tree, report: Report) -> None:
     for fault in faults(value):
         help = "write a preset such as `sensor_data`, a depth, or policies such as"
         help += " `{reliability: best_effort, durability: volatile, depth: 5}`"
+        if isinstance(value, str):
+            help = did_you_mean(value, tuple(PRESETS)) or help
         report.append(wrong_shape(tree.span, fault, help, arguments=("qos", fault)))
 
 

@@ -207,7 +207,7 @@ def _tries(tree: Tree, report: Report) -> int:
     message = f"`max`, the number of tries, must be a whole number from 1 to {MOST_TRIES:,}"
     help = "write a whole number, such as `3`"
     if number is not None and number < 1:
-        help = "remove `retry` if one try is enough"
+        help = "write `max: 1` or more, or remove `retry` if one try is enough"
     report.append(wrong_shape(tree.span, message, help, arguments=("max",)))
     return UNKNOWN_TRIES
 

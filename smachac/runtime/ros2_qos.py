@@ -48,7 +48,9 @@ def faults(value: object) -> list[str]:
         return []
     if isinstance(value, str):
         known = ", ".join(PRESETS)
-        return [] if value in PRESETS else [f"qos: no preset `{value}`; there are {known}"]
+        return (
+            [] if value in PRESETS else [f"`qos` has no preset `{value}`; its presets are {known}"]
+        )
     if isinstance(value, Mapping):
         return [fault for key, each in value.items() for fault in _policy_faults(key, each)]
     return _policy_faults("depth", value)
@@ -58,11 +60,15 @@ def _policy_faults(key: object, value: object) -> list[str]:
     """What is wrong with one policy."""
     if key == "depth":
         is_depth = isinstance(value, int) and not isinstance(value, bool) and value > 0
-        return [] if is_depth else [f"qos: the depth is a positive number, not `{value}`"]
+        return [] if is_depth else [f"the depth of `qos` must be a positive number, not `{value}`"]
     if key == "preset":
         return faults(str(value))
     if key not in POLICIES:
         known = ", ".join([*POLICIES, "depth", "preset"])
-        return [f"qos: no policy `{key}`; there are {known}"]
+        return [f"`qos` has no policy `{key}`; its policies are {known}"]
     values = POLICIES[str(key)]
-    return [] if value in values else [f"qos: {key} is {' or '.join(values)}, not `{value}`"]
+    return (
+        []
+        if value in values
+        else [f"`{key}` of `qos` must be {' or '.join(values)}, not `{value}`"]
+    )

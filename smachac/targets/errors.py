@@ -425,7 +425,7 @@ def code_not_found(
     interface = f"in the `code` of `{state_type}.yml`"
     if fault.kind == "syntax":
         message = f"the code of `{state_type}` is not valid Python: {word.text}"
-        help = "correct the syntax: the state cannot run before"
+        help = "correct the syntax at the mark"
     elif fault.kind == "no module":
         file = "header" if target == "cpp" else "module"
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
@@ -551,7 +551,8 @@ def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, st
             )
         case "no constructor call":
             return f"`__init__` of `{name}` does not call `__init__` of `smach.State`", (
-                "call `super().__init__(outcomes=[...], input_keys=[...], output_keys=[...])`"
+                "begin it with `super().__init__(outcomes=[...], input_keys=[...],"
+                f" output_keys=[...])`, with the names in `{state_type}.yml`"
             )
         case "no outcomes":
             return f"the class `{name}` has no `__init__`, so the state has no outcomes", (
@@ -584,7 +585,10 @@ def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, st
         case "required parameter":
             return f"`__init__` of `{name}` requires `{word}`, which is not a variable of" + (
                 f" the interface `{state_type}`"
-            ), f"add `{word}` to the `variables` of the interface, or give it a default value"
+            ), (
+                f"give `{word}` a default value, or add it to the `variables` of"
+                f" `{state_type}.yml` and set it at the state"
+            )
     return f"`__init__` of `{name}` does not accept `{word}`, a variable of" + (
         f" the interface `{state_type}`"
     ), f"add the parameter `{word}` to `__init__`"

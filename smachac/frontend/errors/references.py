@@ -242,7 +242,8 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
               transitions: {done: done}
     """
     names = sorted(scope)
-    help = f"add `params: {{{word.text}: ...}}` to the state, or to a container around it"
+    help = f"add `{word.text}: ...` to the `params` of the state, of a container around it or of"
+    help += " the script"
     if names:
         others = f"{help}; in scope are {listed(names)}"
         help = did_you_mean(word.text, names) or others
@@ -345,7 +346,7 @@ def bad_robot(
     "SM605",
     "template-error",
     Severity.ERROR,
-    effect="no program is generated while a template fails",
+    effect="the code of the state is missing, so no program is generated",
 )
 def template_error(
     span: Span, message: str, help: str | None = None, names: tuple[str, ...] = ()

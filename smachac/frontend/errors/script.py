@@ -125,6 +125,8 @@ FOREIGN = {
     "class": "name the state type with `template:`",
     "initial_state": "write `initial:`",
     "io_keys": "list the keys in `input_keys` and in `output_keys`",
+    "on_error": "write `error: TARGET` in the `transitions` of the state, or `on_error: TARGET` at"
+    " the machine around it",
     "outcome_cb": "write rules in `outcome_map`",
     "parameters": "write each parameter as a variable of the state, or constants in `params`",
     "values": "write initial values in `userdata`",
@@ -250,7 +252,7 @@ def _number_before(word: Word) -> str:
     "SM004",
     "wrong-shape",
     Severity.ERROR,
-    effect="the meaning is not clear here, so no program is generated",
+    effect="the language does not allow this here, so no program is generated",
 )
 def wrong_shape(
     span: Span,
