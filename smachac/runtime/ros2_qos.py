@@ -48,9 +48,8 @@ def faults(value: object) -> list[str]:
         return []
     if isinstance(value, str):
         known = ", ".join(PRESETS)
-        return (
-            [] if value in PRESETS else [f"`qos` has no preset `{value}`; its presets are {known}"]
-        )
+        fault = f"`qos` has no preset `{value}`; its presets are {known}"
+        return [] if value in PRESETS else [fault]
     if isinstance(value, Mapping):
         return [fault for key, each in value.items() for fault in _policy_faults(key, each)]
     return _policy_faults("depth", value)
@@ -67,8 +66,5 @@ def _policy_faults(key: object, value: object) -> list[str]:
         known = ", ".join([*POLICIES, "depth", "preset"])
         return [f"`qos` has no policy `{key}`; its policies are {known}"]
     values = POLICIES[str(key)]
-    return (
-        []
-        if value in values
-        else [f"`{key}` of `qos` must be {' or '.join(values)}, not `{value}`"]
-    )
+    fault = f"`{key}` of `qos` must be {' or '.join(values)}, not `{value}`"
+    return [] if value in values else [fault]

@@ -253,7 +253,7 @@ LIMITED = "timeout: failed, failed: failed"
         ("retry: {on: [failed], max: three}", "exhausted: failed", "SM004",
          "write a whole number, such as `3`"),
         ("retry: {on: [failed], max: 0}", "exhausted: failed", "SM004",
-         "remove `retry` if one try is enough"),
+         "write `max: 1` or more, or remove `retry` if one try is enough"),
         ("retry: {on: [failed]}", "exhausted: failed", "SM005", None),
         ("retry: {max: 3}", "exhausted: failed", "SM005", None),
         ("retry: 3", "exhausted: failed", "SM004", None),

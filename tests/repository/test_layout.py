@@ -27,6 +27,7 @@ TOUCHES = {
     "smachac/runtime/tracing/writer.py": "reports that a trace broke off",
     "smachac/runtime/smach/log.py": "prints what SMACH prints",
     "smachac/runtime/smach_ros2/program.py": "prints why ROS refuses to start",
+    "smachac/__main__.py": "reports Ctrl-C before the command line is imported",
     "smachac/robots/files.py": "reads descriptions of robots and scenes",
     "smachac/sim/video.py": "writes films",
     "smachac/sweep/local.py": "drops what the runs print",
