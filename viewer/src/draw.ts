@@ -185,6 +185,7 @@ function drawPiece(graph: Graph, { piece, container, x, y, width, height }: Plac
       group.append(svg("text", text, piece.label));
     }
   }
+  if (piece.change) group.classList.add(piece.change);
   if (piece.failure) group.classList.add("failure");
   if (piece.success) group.classList.add("success");
   return group;
