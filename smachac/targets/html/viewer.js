@@ -25,6 +25,9 @@
 
   // src/model.ts
   var SIGNS = { added: "+", removed: "\u2212", changed: "~", same: "" };
+  function isNewer(next, shown) {
+    return (next.revision ?? 0) > (shown.revision ?? 0);
+  }
   function countOf(state, outcome) {
     return state && Object.hasOwn(state.outcomes, outcome) ? state.outcomes[outcome] : 0;
   }
@@ -230,13 +233,13 @@ ${target2}`;
     for (const edge of graph.inside.get(path) ?? []) {
       if (written.has(edge)) continue;
       for (const line of linesOf(container, edge, joined)) {
-        add2(line, edgeId(edge), withFigures(graph, edge, labelOf(container, edge, line)));
+        add2(line, edgeId(edge), withFigures(graph, edge, line, labelOf(container, edge, line)));
       }
     }
     return { path, pieces, lines: [...lines.values()] };
   }
-  function withFigures(graph, edge, label) {
-    if (edge.change) return `${SIGNS[edge.change]} ${label}`.trim();
+  function withFigures(graph, edge, line, label) {
+    if (line.change) return `${SIGNS[line.change]} ${label}`.trim();
     const state = edge.source === null ? void 0 : graph.model.statistics?.states[edge.source];
     if (!state || !edge.outcome) return label;
     return `${label} ${shareOf(state, edge.outcome)}`.trim();
@@ -258,33 +261,32 @@ ${target2}`;
       const exit = pieces.find((each) => each.id === exitId(rule.outcome));
       if (rule.when.length < 2 || !exit) return;
       const id = `join ${index}`;
+      const { change } = rule;
       const { failure = false, success } = exit;
-      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
+      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success, change });
       for (const [child, outcome] of rule.when) {
         const key = JSON.stringify([child, outcome, rule.outcome]);
-        joined.set(key, [...joined.get(key) ?? [], id]);
+        joined.set(key, [...joined.get(key) ?? [], { id, change }]);
       }
-      add2({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false }, "", "");
+      add2({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false, change }, "", "");
     });
     return joined;
   }
   function linesOf(container, edge, joined) {
     const { outcome, failure, implicit } = edge;
-    const look3 = { outcome, failure, implicit, ...edge.change ? { change: edge.change } : {} };
+    const look3 = { outcome, failure, implicit, change: edge.change };
     const from = edge.source ?? START;
     const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
     if (edge.kind === "loop") return [{ ...look3, from, to: START }];
     if (edge.kind === "exhausted") return [{ ...look3, outcome: "", failure: false, from: START, to }];
     if (edge.kind === "rule" && typeof edge.target !== "string") {
       const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
-      const bars = joined.get(key) ?? [];
-      const alone = (container.rules ?? []).some(
-        (rule) => rule.outcome === edge.target.outcome && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
+      const { outcome: result } = edge.target;
+      const alone = (container.rules ?? []).filter(
+        (rule) => rule.outcome === result && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
       );
-      return [
-        ...bars.map((bar) => ({ ...look3, from, to: bar })),
-        ...alone ? [{ ...look3, from, to }] : []
-      ];
+      const ends = [...joined.get(key) ?? [], ...alone.map(({ change }) => ({ id: to, change }))];
+      return ends.map(({ id, change = edge.change }) => ({ ...look3, from, to: id, change }));
     }
     if (edge.kind === "default") return [{ ...look3, failure: false, from, to }];
     return [{ ...look3, from, to }];
@@ -447,6 +449,7 @@ ${target2}`;
         group.append(svg("text", text, piece.label));
       }
     }
+    if (piece.change) group.classList.add(piece.change);
     if (piece.failure) group.classList.add("failure");
     if (piece.success) group.classList.add("success");
     return group;
@@ -3136,7 +3139,7 @@ ${name}`;
       if (await redraw(null)) showStart(TINY);
     }
     async function setModel(next) {
-      if ((next.revision ?? 0) <= (graph.model.revision ?? 0)) return;
+      if (!isNewer(next, graph.model)) return;
       const opened = [...open].map(newPath);
       graph = indexed(next);
       layouts = new Layouts(graph, compute, direction);
