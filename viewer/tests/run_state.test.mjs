@@ -88,6 +88,13 @@ test("a late reader: events from the middle of a run", () => {
   assert.equal(state.t, 9);
 });
 
+test("an end without an outcome, from the status of a node, counts for none", () => {
+  const state = folded([start("sm"), enter("sm/A", 1), { event: "exit", path: "sm/A", t: 3 }]);
+  const known = state.visited.get("sm/A");
+  assert.deepEqual([known.seconds, known.outcomes.size, known.lastOutcome], [2, 0, null]);
+  assert.deepEqual(activeLeaves(state), ["sm"]);
+});
+
 test("a copy does not change with the state", () => {
   const state = folded([start("sm"), enter("sm/A", 1), exit("sm/A", "ok", 2), write("sm/A", "n", 1, 2)]);
   const copy = copyState(state);
