@@ -1479,7 +1479,7 @@ ${to}`;
         break;
       case "exit":
       case "finish":
-        leave(state, path, event.outcome ?? "");
+        leave(state, path, event.outcome ?? null);
         if (event.event === "finish") end(state, event.outcome ?? null);
         break;
       case "transition":
@@ -1510,7 +1510,7 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
     const visited = state.visited.get(path);
     if (!visited) return;
     if (since !== void 0) visited.seconds += state.t - since;
-    count(visited.outcomes, outcome);
+    if (outcome !== null) count(visited.outcomes, outcome);
     visited.lastOutcome = outcome;
   }
   function end(state, outcome) {
@@ -1697,7 +1697,7 @@ ${place2.key}`;
         secret ||= declared.secret ?? false;
       }
       const around = here.parent === null ? void 0 : graph.nodes.get(here.parent);
-      if (!around || !declared && here !== node) return { scope: here.path, key: name, type, secret };
+      if (!around || !declared && (here !== node || isContainer(here))) return { scope: here.path, key: name, type, secret };
       name = declared?.key ?? name;
       here = around;
     }
@@ -1720,7 +1720,7 @@ ${place2.key}`;
       case "exit": {
         const kind = node?.parent ? graph.nodes.get(node.parent)?.kind : void 0;
         if (!event.forced && (kind === "machine" || kind === "sequence")) return null;
-        return { text: `${name} ends with ${event.outcome}${event.forced ? " (forced)" : ""}`, tone };
+        return { text: `${name} ends${withOutcome(event)}${event.forced ? " (forced)" : ""}`, tone };
       }
       case "transition": {
         const to = event.to ?? "";
@@ -1736,10 +1736,13 @@ ${place2.key}`;
       case "fault":
         return { text: `injected fault: ${event.fault}`, tone: "bad" };
       case "finish":
-        return { text: `${name} ends with ${event.outcome}`, tone };
+        return { text: `${name} ends${withOutcome(event)}`, tone };
       default:
         return { text: `${name}: ${event.event}`, tone: "" };
     }
+  }
+  function withOutcome({ outcome }) {
+    return outcome === void 0 ? "" : ` with ${outcome}`;
   }
   function seconds(t) {
     if (t < 1) return `${Math.round(t * 1e3)} ms`;
@@ -1969,6 +1972,10 @@ ${place2.key}`;
           break;
         case "dropped":
           this.recording.dropped += message.count;
+          break;
+        case "source":
+          this.link = message.waits;
+          this.changed();
           break;
         case "control":
           this.control.received(message);
