@@ -104,7 +104,7 @@ export interface StateStatistics {
 export interface Statistics {
   states: Record<Path, StateStatistics>;
   transitions: number;
-  never: { path: Path; text: string }[];
+  never: { path: Path; text: string; failure: boolean }[];
 }
 
 /** The differences of two machines that are drawn as one: each with the state that it is about. */
