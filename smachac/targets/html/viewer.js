@@ -539,7 +539,7 @@ ${target2}`;
       element.classList.toggle("active", active.has(path));
       element.classList.toggle("waiting", waiting.has(path));
       setBreakpoint(element, breakpoints.has(path));
-      setVisits(element, run?.visits?.get(path) ?? 0);
+      setVisits(element, run?.visits?.get(path) ?? 0, run?.times?.get(path) ?? "");
     }
     for (const { line, element } of picture.lines) {
       element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
@@ -560,11 +560,12 @@ ${target2}`;
     if (!is) mark?.remove();
     else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
   }
-  function setVisits(element, count2) {
+  function setVisits(element, count2, time) {
     element.classList.toggle("visited", count2 > 0);
     let mark = element.querySelector(":scope > .visits");
-    speakVisits(element, count2 < 2 ? "" : ` \xD7${count2}`);
-    if (count2 < 2) {
+    const text = [count2 < 2 ? "" : `\xD7${count2}`, time].filter(Boolean).join(" \xB7 ");
+    speakVisits(element, text && ` ${text}`);
+    if (!text) {
       mark?.remove();
       return;
     }
@@ -575,7 +576,7 @@ ${target2}`;
       mark.setAttribute("y", "10");
       element.append(" ", mark);
     }
-    mark.textContent = `\xD7${count2}`;
+    mark.textContent = text;
   }
   function speakVisits(element, visits) {
     const words = element.dataset["words"] ?? "";
@@ -2186,7 +2187,11 @@ ${place2.key}`);
     const visits = new Map(Object.entries(statistics.states).map(([path, each]) => [path, each.visits]));
     visits.delete(graph.model.root);
     const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
-    viewer.highlight({ active: [], taken, visits });
+    const times = new Map([...visits.keys()].flatMap((path) => {
+      const { mean } = statistics.states[path];
+      return mean ? [[path, seconds(mean)]] : [];
+    }));
+    viewer.highlight({ active: [], taken, visits, times });
     viewer.onMark((picture) => markNever(graph, statistics, picture));
     viewer.addSection({
       id: "statistics",
@@ -2237,15 +2242,17 @@ ${place2.key}`);
   }
   function neverTaken(viewer, { never, transitions }) {
     const taken = transitions - never.length;
-    const rows = never.map(({ path, text }) => {
+    const failures = never.filter(({ failure }) => failure).length;
+    const rows = never.map(({ path, text, failure }) => {
       const link2 = html("button", { type: "button", class: "link" }, text);
       link2.addEventListener("click", () => void viewer.select(path));
-      return html("li", {}, link2);
+      return html("li", {}, link2, failure ? html("span", { class: "failure" }, " failure") : null);
     });
     return html(
       "div",
       {},
       html("p", {}, `${taken} of ${transitions} transitions taken; grey and dotted: never`),
+      failures ? html("p", {}, `${failures} of the others ${failures === 1 ? "follows a failure that was" : "follow failures that were"} never exercised`) : null,
       rows.length ? html("ul", { class: "rows never-taken", "aria-label": "Transitions never taken" }, ...rows) : null
     );
   }
@@ -2524,6 +2531,10 @@ out `);
     "elk.layered.layering.strategy": "LONGEST_PATH",
     "elk.layered.thoroughness": "1"
   };
+  var BESIDE = {
+    DOWN: { "elk.spacing.nodeNode": "100" },
+    RIGHT: { "elk.layered.spacing.nodeNodeBetweenLayers": "100" }
+  };
   var Cancelled = class extends Error {
   };
   var Layouts = class {
@@ -2581,7 +2592,7 @@ out `);
       return { ...readLayout(content, done, title, this.direction), written };
     }
     async computed(content, placed) {
-      const graph = (fast) => elkGraph(content, placed, this.direction, fast);
+      const graph = (fast) => elkGraph(content, placed, this.direction, fast, Boolean(this.graph.model.statistics));
       if (content.lines.length > VERY_MANY || reach(content) > FAR) {
         return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
       }
@@ -2626,7 +2637,7 @@ out `);
       return start === void 0 || end2 === void 0 ? sum : sum + Math.abs(end2 - start);
     }, 0);
   }
-  function elkGraph(content, placed, direction, fast) {
+  function elkGraph(content, placed, direction, fast, figures2) {
     const options = fast ? FAST : ROOMY;
     const [before, after] = direction === "DOWN" ? ["NORTH", "SOUTH"] : ["WEST", "EAST"];
     const padding = direction === "DOWN" ? `bottom=0,right=${SIDE}` : `bottom=${SIDE},right=0`;
@@ -2661,6 +2672,7 @@ ${name}`;
       id: content.path,
       layoutOptions: {
         ...options,
+        ...figures2 ? BESIDE[direction] : {},
         "elk.direction": direction,
         "elk.padding": `[top=${TOP},left=${SIDE},${padding}]`
       },
