@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 from smachac.ir import graph
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node
 from smachac.ir.script_paths import script_paths
+from smachac.ir.secret_keys import SecretKeys, secret_keys
 from smachac.ir.traversal import remapping, walk
-from smachac.runtime.tracing.writer import Event, with_shown_paths
+from smachac.runtime.tracing.writer import SECRET, Event, with_shown_paths
 from smachac.verify.status_conformance import NO_STATE, status_of
 
 
@@ -78,6 +79,7 @@ class StatusEvents:
         self._machine: Machine | None = None
         self._nodes: dict[str, Node] = {}
         self._shown: Mapping[str, str] = {}
+        self._secret: SecretKeys = {}
         self._outcomes: dict[tuple[str, str, str], list[str]] = {}
         self._known: set[str] = set()
         self._active: dict[str, tuple[str, ...]] = {}
@@ -96,6 +98,7 @@ class StatusEvents:
         self._machine = machine
         self._nodes = dict(walk(machine.root))
         self._shown = script_paths(machine.root)
+        self._secret = secret_keys(machine)
         self._outcomes = {}
         for path, node in self._nodes.items():
             for edge in () if isinstance(node, Leaf) else graph.edges(node):
@@ -262,7 +265,8 @@ class StatusEvents:
             if key not in before or before[key] != value:
                 before[key] = value
                 path, name = self._writer(report, key)
-                self._emit("write", path, key=name, value=value)
+                hidden = key in self._secret.get(report.path, ())
+                self._emit("write", path, key=name, value=SECRET if hidden else value)
 
     def _writer(self, report: Report, key: str) -> tuple[str, str]:
         for label in self._active.get(report.path, ()):

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.diagnostics.source import NOWHERE
+from smachac.diagnostics.source import NOWHERE, Source
+from smachac.driver import analyse_script
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, StateMachine
 from smachac.ir.traversal import walk
 from smachac.runtime.container_tree import containers, more_status, status_fields
@@ -190,6 +191,25 @@ def test_values_are_written_by_the_state_that_has_ended() -> None:
     ]
     again = viewed(node.root, node.statuses, node.statuses)
     assert [line for line in short(again) if line.startswith("write")] == writes * 2
+
+
+def test_values_of_secret_keys_are_hidden() -> None:
+    script = Source(
+        "main.yml",
+        "name: sm\noutcomes: [done]\n"
+        "userdata: {pin: {type: int?, value: null, secret: true}, n: 1}\n"
+        "states:\n  - A: {template: ScriptedState, outcomes: [done], transitions: {done: done}}\n",
+    )
+    machine = analyse_script(script).machine
+    assert machine is not None
+    events = StatusEvents()
+    events.use(machine)
+    values = {"pin": 4711, "n": 1}
+    found = events.events([Report(stamp=1.0, path="sm", active=("A",), values=values)])
+    assert [line for line in short(list(found)) if line.startswith("write")] == [
+        "write sm pin '(secret)'",
+        "write sm n 1",
+    ]
 
 
 def test_a_heartbeat_made_before_a_change_that_is_known_is_no_news() -> None:
