@@ -46,9 +46,9 @@ test-browser: ## Install Chromium and what builds the viewer, and run the tests 
 	@scripts/setup.sh browser || test -z "$$SMACHAC_REQUIRE_ALL"
 	$(RUN) pytest -n 2 -m browser -rs $(ARGS)
 
-viewer: ## Build the viewer of the html target (viewer/) into smachac/targets/html
+viewer: ## Check, test and build the viewer of the html target (viewer/) into smachac/targets/html
 	@scripts/setup.sh browser
-	cd viewer && npm run --silent check && npm run --silent build
+	cd viewer && npm run --silent check && npm run --silent test && npm run --silent build
 
 test-lowest: ## Run core tests with the lowest versions of the dependencies that pyproject.toml states
 	@scripts/lowest.sh $(ARGS)

@@ -29,6 +29,7 @@ SCHEMAS: Mapping[str, str] = {
     "scenario": "scenarios for `run --mock`",
     "machine": "the output of the target `json`",
     "report": "the output of `check --format json`",
+    "diff": "the output of `diff --format json`",
 }
 """The names of the schemas, and the files that they describe."""
 
@@ -62,6 +63,13 @@ def schema_text(name: str) -> str:
     generated = generated_schemas(CODES)
     if name in generated:
         return json_text(generated[name]())
-    text = files("smachac.grammars").joinpath(f"{name}.schema.json").read_text("utf-8")
-    data: dict[str, Any] = json.loads(text)
+
+    def stored(name: str) -> dict[str, Any]:
+        text = files("smachac.grammars").joinpath(f"{name}.schema.json").read_text("utf-8")
+        data: dict[str, Any] = json.loads(text)
+        return data
+
+    data = stored(name)
+    if name == "diff":  # its findings are those of a report
+        data["definitions"] |= stored("report")["definitions"]
     return json_text(data)

@@ -16,7 +16,7 @@ from smachac.commands.output import OK, print_report, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from smachac.diagnostics.diagnostic import Report
@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from smachac.view.feed import Feed
     from smachac.view.live import LiveTrace
     from smachac.view.picture import Picture
+    from smachac.view.ros_topic import Topic
     from smachac.view.server import Do, Film, ViewServer
+    from smachac.view.statuses import StatusEvents
     from smachac.view.trace_file import TraceText
 
 EXAMPLES = """\
@@ -38,6 +40,7 @@ examples:
   smachac view main.yml --attach run.jsonl --film film.mp4   with the film of `run --record`
   smachac run main.yml --view                  watch a run, and control it
   smachac run main.yml --view=8123 --view-paused   wait before the first state
+  smachac view main.yml --attach ros:/patrol   the machine that runs in a ROS node
   smachac view --attach 8123                   open the page of a run at this port
 
 exit codes: 0 the page of a run was found, 2 wrong usage, 70 a bug in smachac, 130 interrupted
@@ -51,6 +54,10 @@ CHUNK = 1_000_000
 """The most bytes of a trace that are read at a time."""
 
 
+ROS = "ros:"
+"""What the name of a ROS topic follows in `--attach`."""
+
+
 class FilmError(Exception):
     """A file that is no film, or cannot be read; the message gives the reason."""
 
@@ -62,9 +69,10 @@ class PortError(Exception):
 def view_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", type=as_path, nargs="?", help=SCRIPT)
-    parser.add_argument("--attach", metavar="TRACE|PORT",
-                        help="show the events of this trace, or open the page of the run with"
-                        " --view=PORT")  # fmt: skip
+    parser.add_argument("--attach", metavar="TRACE|PORT|ros:NAME",
+                        help="show the events of this trace, or the run of the ROS node whose"
+                        " status has this topic, or open the page of the run with --view=PORT"
+                        )  # fmt: skip
     parser.add_argument("--film", type=as_path, metavar="FILE",
                         help="the film of the run with this trace (.gif or .mp4 of `run --record`)"
                         )  # fmt: skip
@@ -93,14 +101,15 @@ def view_command(arguments: Namespace) -> int:
     attach: str | None = arguments.attach
     if attach is not None and attach.isdecimal():
         return _open_run(int(attach), arguments)
+    ros = attach.removeprefix(ROS) if attach is not None and attach.startswith(ROS) else None
     if arguments.script is None:
         return usage("a script is needed: smachac view main.yml" + (
-            " --attach TRACE" if attach is not None else ""))  # fmt: skip
+            f" --attach {attach}" if attach is not None else ""))  # fmt: skip
     if not os.path.lexists(arguments.script):
         return usage(f"there is no file {arguments.script}")
     if arguments.script.is_dir():
         return usage(f"{arguments.script} is a folder: name a script")
-    trace = as_path(attach) if attach is not None else None
+    trace = as_path(attach) if attach is not None and ros is None else None
     if trace is not None and not trace.is_file():
         return usage(f"there is no trace {trace}, and it is no port")
     if trace is not None and (reason := _no_trace(trace)):
@@ -113,7 +122,25 @@ def view_command(arguments: Namespace) -> int:
             film = _film(arguments.film)
         except FilmError as error:
             return usage(str(error))
+    if ros is not None:
+        return _serve_node(arguments, ros)
     return _serve(arguments, trace, film)
+
+
+def _serve_node(arguments: Namespace, name: str) -> int:
+    """Serve the picture of a script and the run of a ROS node until Ctrl-C."""
+    from smachac.view.ros_topic import RosError, open_topic
+
+    try:
+        topic = open_topic(name)
+    except RosError as error:
+        return usage(str(error))
+    try:
+        return _serve(arguments, topic)
+    except RosError as error:
+        return usage(str(error))
+    finally:
+        topic.close()
 
 
 def _no_trace(path: Path) -> str:
@@ -144,28 +171,28 @@ def _film(path: Path) -> Film:
     raise FilmError(f"{path} is no film: --film takes a .gif or .mp4 that `run --record` has made")
 
 
-def _serve(arguments: Namespace, trace: Path | None, film: Film | None) -> int:
-    """Serve the picture of a script, and a trace with its film, until Ctrl-C."""
+def _serve(arguments: Namespace, attached: Path | Topic | None, film: Film | None = None) -> int:
+    """Serve the picture of a script, and a trace with its film or a ROS topic, until Ctrl-C.
+    Raises RosError."""
     from smachac.ir.recursion import deep_recursion
     from smachac.sim.video import RATE, SPEED
     from smachac.targets.html.page import FILM_ID
     from smachac.view.feed import Feed
     from smachac.view.picture import Picture
-    from smachac.view.trace_file import TraceText
 
     feed = Feed()
     data = None if film is None else {FILM_ID: {"type": film.type, "rate": RATE, "speed": SPEED}}
-    picture = Picture(feed, arguments.script.stem, editable=trace is None, data=data)
+    picture = Picture(feed, arguments.script.stem, editable=attached is None, data=data)
     script = ViewedScript(arguments, picture)
-    edits = edits_of_script(script) if trace is None else None
+    edits = edits_of_script(script) if attached is None else None
     try:
         server = _server(arguments.port, picture, feed, edits=edits, film=film)
     except PortError as error:
         return usage(str(error))
     script.check()
-    text = None if trace is None else _TraceFile(trace, TraceText(feed), picture)
-    if text is not None:
-        text.read()
+    run = None if attached is None else _run_of(attached, feed, picture)
+    if run is not None:
+        run.read()
     with deep_recursion():  # for all threads, so that none of them ends it for another one
         server.start()
         announce(server.url, open_page=not arguments.no_browser)
@@ -173,9 +200,21 @@ def _serve(arguments: Namespace, trace: Path | None, film: Film | None) -> int:
             gc.collect()  # automatic collection is off
             while not script.has_changed():
                 time.sleep(PAUSE)
-                if text is not None:
-                    text.read()
+                if run is not None:
+                    run.read()
             script.check()
+
+
+def _run_of(attached: Path | Topic, feed: Feed, picture: Picture) -> _TraceFile | _NodeRun:
+    """The run in a trace or on a ROS topic."""
+    from pathlib import PurePath
+
+    from smachac.view.statuses import StatusEvents
+    from smachac.view.trace_file import TraceText
+
+    if isinstance(attached, PurePath):
+        return _TraceFile(attached, TraceText(feed), picture)
+    return _NodeRun(attached, StatusEvents(), feed, picture)
 
 
 def edits_of_script(script: ViewedScript) -> Edits:
@@ -275,25 +314,60 @@ class _TraceFile:
             self._wrong = self._text.wrong
             words = "1 line is" if self._wrong == 1 else f"{self._wrong} lines are"
             print(f"{self._path}: {words} no event of a trace", file=sys.stderr)
-        unknown = self._unknown_place()
+        unknown = _unknown_place(self._text.places, self._picture)
         if unknown and not self._unknown:
             print(f"{self._path}: {unknown}", file=sys.stderr)
         self._unknown = unknown
 
-    def _unknown_place(self) -> str:
-        """What shows that the trace is of another machine, or of another version; else empty."""
-        model = self._picture.model
-        nodes = model["nodes"]
-        known = {each.get("shown", each["path"]) for each in nodes} | {
-            each["path"] for each in nodes
-        }
-        place = next((each for each in self._text.places if each not in known), "")
-        machine = place.partition("/")[0]
-        if not place:
-            return ""
-        if machine != model["root"]:
-            return f"this is the trace of the machine `{machine}`, not of `{model['root']}`"
-        return f"the script has no state {place}: it is not the version that ran"
+
+def _unknown_place(places: Iterable[str], picture: Picture) -> str:
+    """What shows that the run is of another machine, or of another version; else empty."""
+    model = picture.model
+    nodes = model["nodes"]
+    known = {each.get("shown", each["path"]) for each in nodes} | {each["path"] for each in nodes}
+    place = next((each for each in places if each not in known), "")
+    machine = place.partition("/")[0]
+    if not place:
+        return ""
+    if machine != model["root"]:
+        return f"this is the trace of the machine `{machine}`, not of `{model['root']}`"
+    return f"the script has no state {place}: it is not the version that ran"
+
+
+class _NodeRun:
+    """The run of a ROS node, from the statuses on a topic."""
+
+    def __init__(self, topic: Topic, statuses: StatusEvents, feed: Feed, picture: Picture) -> None:
+        self._topic, self._statuses = topic, statuses
+        self._feed, self._picture = feed, picture
+        self._known: dict[str, None] = {}
+        self._shown: str | None = None
+        self._unknown = ""
+
+    def read(self) -> None:
+        """Publish what is new. Raises RosError."""
+        from smachac.view.statuses import report_of
+        from smachac.view.trace_file import publish
+
+        reports = list(filter(None, map(report_of, self._topic.read())))
+        self._show_topic()
+        self._statuses.use(self._picture.machine)
+        events = self._statuses.events(reports)
+        publish(self._feed, events)
+        self._known |= dict.fromkeys(each["path"] for each in events)
+        unknown = _unknown_place(self._known, self._picture)
+        if unknown and not self._unknown:
+            print(f"{self._topic.topic}: {unknown}", file=sys.stderr)
+        self._unknown = unknown
+
+    def _show_topic(self) -> None:
+        """Print whether the topic exists; the page shows it too."""
+        if self._topic.topic == self._shown:
+            return
+        self._shown = self._topic.topic
+        waits = "" if self._shown else f"waits for the ROS topic {self._topic.awaited}"
+        self._feed.publish({"kind": "source", "waits": waits})
+        print(waits or f"shows the ROS topic {self._shown}", file=sys.stderr, flush=True)
 
 
 def _open_run(number: int, arguments: Namespace) -> int:

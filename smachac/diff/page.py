@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import PurePath
-from typing import Any
+from typing import Any, get_args
 
 from smachac.diff.comparison import Comparison
 from smachac.diff.picture import ADDED, REMOVED, SAME, Union, started
 from smachac.diff.report import change_text, summary
-from smachac.diff.states import State, StateName, States, outcome_of
-from smachac.ir.nodes import Concurrence, Leaf, Machine
+from smachac.diff.states import State, States
+from smachac.ir.nodes import Leaf, Machine, Origin
 from smachac.ir.outcome_names import fails, successes
-from smachac.targets.html.model import VERSION, place_in_script, snippet
+from smachac.targets.html.model import VERSION, edges_of, form_of, place_in_script, snippet
 from smachac.targets.html.page import render_page
+
+ORIGINS = frozenset(get_args(Origin))
+"""The kinds of edges that are transitions."""
 
 
 def render_difference_page(comparison: Comparison, machine: Machine) -> str:
@@ -68,8 +71,7 @@ def _node(union: Union, path: str) -> dict[str, Any]:
     state = union.shown[path]
     inner, outer = state.chain[-1], state.chain[0]
     file, line = place_in_script(state.span)
-    before, good = union.known.get(path, {}), successes(outer)
-    names = [name for kind, name in {**state.facts, **before} if kind == "outcome"]
+    good = successes(outer)
     children = union.children[path]
     first = [each for each in started(state) if each in children]
     return {
@@ -87,14 +89,14 @@ def _node(union: Union, path: str) -> dict[str, Any]:
         "snippet": snippet(state.span),
         "outcomes": [
             {"name": name, "failure": fails(outer, name), "success": name in good, "doc": ""}
-            for name in names
+            for name in union.outcomes(path)
         ],
         "inputs": [],
         "outputs": [],
         "findings": [],
         "tags": list(inner.tags),
         "change": union.look[path],
-    }
+    } | _form(union, path)
 
 
 def _kind(union: Union, state: State, path: str) -> str:
@@ -104,60 +106,55 @@ def _kind(union: Union, state: State, path: str) -> str:
     return "machine" if union.children[path] else "leaf"
 
 
+def _form(union: Union, path: str) -> dict[str, Any]:
+    """The fields of a container of its kind; each rule of a concurrence has its change."""
+    now = {} if union.look[path] == REMOVED else _form_in(union.shown[path], {})
+    was = _form_in(union.before[path], union.place) if path in union.before else {}
+    form = now or was
+    if "rules" not in form:
+        return form
+    new, old = now.get("rules", []), was.get("rules", [])
+    rules = [{**each, "change": SAME if each in old else ADDED} for each in new]
+    rules += [{**each, "change": REMOVED} for each in old if each not in new]
+    return {**form, "rules": rules}
+
+
+def _form_in(state: State, place: Mapping[str, str]) -> dict[str, Any]:
+    """The fields of a container; `place` has other paths for its states."""
+    inner = state.chain[-1]
+    form = {} if isinstance(inner, Leaf) else form_of(state.path, inner)
+    for rule in form.get("rules", ()):
+        rule["when"] = [[place.get(path, path), outcome] for path, outcome in rule["when"]]
+    return form
+
+
 def _edges(comparison: Comparison) -> Iterator[dict[str, Any]]:
     """The edges of both machines, each with its change."""
     before = {_key(each): each for each in _of_machine(comparison.before, comparison.place)}
     after = {_key(each): each for each in _of_machine(comparison.after, {})}
     for key, edge in {**after, **before}.items():
         change = SAME if key in before and key in after else ADDED if key in after else REMOVED
-        yield {**edge, "kind": "transition", "implicit": False, "change": change}
+        yield {**edge, "change": change}
 
 
 def _key(edge: Mapping[str, Any]) -> object:
-    return edge["container"], edge["source"], edge["outcome"], str(edge["target"])
+    return *(edge[name] for name in ("container", "source", "outcome", "kind")), str(edge["target"])
 
 
 def _of_machine(states: States, place: Mapping[str, str]) -> Iterator[dict[str, Any]]:
-    """The edges inside the containers of a machine; `place` has other paths for its states."""
+    """The edges inside the containers of a machine; `place` has other paths for its states. A
+    transition that the script does not write is the same as one that it writes."""
     for path, state in states.items():
-        here = place.get(path, path)
-        for target in started(state):
-            if target in states:
-                yield _edge(here, None, "", place.get(target, target))
-        node = state.chain[-1]
-        if isinstance(node, Concurrence):
-            for rule in node.rules:
-                for each in rule.when:
-                    child = f"{path}/{each.child}"
-                    source = place.get(child, child)
-                    yield _edge(here, source, each.outcome, {"outcome": rule.outcome})
-        if state.parent is None:
+        container = state.chain[-1]
+        if isinstance(container, Leaf):
             continue
-        around = place.get(state.parent, state.parent)
-        for (kind, name), value in state.facts.items():
-            if kind != "transition":
-                continue
-            first = value[0]
-            failure = fails(state.chain[0], name)
-            if not isinstance(first, StateName):
-                yield _edge(around, here, name, {"outcome": outcome_of(first)}, failure=failure)
-            elif first.path in states:
-                target = place.get(first.path, first.path)
-                yield _edge(around, here, name, target, failure=failure)
-
-
-def _edge(
-    container: str,
-    source: str | None,
-    outcome: str,
-    target: str | dict[str, str],
-    *,
-    failure: bool = False,
-) -> dict[str, Any]:
-    return {
-        "container": container,
-        "source": source,
-        "outcome": outcome,
-        "target": target,
-        "failure": failure,
-    }
+        for edge in edges_of(path, container):
+            source, target = edge["source"], edge["target"]
+            yield {
+                **edge,
+                "container": place.get(path, path),
+                "source": source and place.get(source, source),
+                "target": place.get(target, target) if isinstance(target, str) else target,
+                "kind": "transition" if edge["kind"] in ORIGINS else edge["kind"],
+                "implicit": edge["kind"] == "default",
+            }

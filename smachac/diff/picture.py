@@ -29,7 +29,7 @@ class Union:
         self.look = dict.fromkeys(comparison.after, ADDED)
         self.children = {path: list(state.children) for path, state in comparison.after.items()}
         self.place = comparison.place
-        self.known = {self.place[path]: each.facts for path, each in comparison.before.items()}
+        self.before = {self.place[path]: each for path, each in comparison.before.items()}
         changed = {each.path for each in comparison.changes if each.what != "transition"}
         for other in comparison.pairs.values():
             self.look[other] = CHANGED if other in changed else SAME
@@ -46,6 +46,13 @@ class Union:
         """The container around a state; None for a machine."""
         around = self.shown[path].parent
         return self.place[around] if around and self.look[path] == REMOVED else around
+
+    def outcomes(self, path: str) -> list[str]:
+        """The outcomes of a state, those of both machines."""
+        facts = dict(self.shown[path].facts)
+        if path in self.before:
+            facts |= self.before[path].facts
+        return [name for kind, name in facts if kind == "outcome"]
 
 
 class _Edge(NamedTuple):
@@ -106,15 +113,13 @@ def _box(union: Union, path: str) -> str:
 
 def _frame(union: Union, path: str) -> Iterator[str]:
     """The look of a cluster, its start mark and its outcomes."""
-    state = union.shown[path]
     line, fill = COLOURS[union.look[path]]
     back = CLUSTER_FILL if union.look[path] == SAME else fill
     look = {"style": "rounded,filled", "color": line, "fillcolor": back, "tooltip": path}
     yield f"graph{attributes(look, _title(union, path))}"
     yield f'"{node_id(path)}"{attributes(_START)}'
-    for kind, name in {**state.facts, **union.known.get(path, {})}:
-        if kind == "outcome":
-            yield f'"{_exit(path, name)}"{attributes(_EXIT, html(name))}'
+    for name in union.outcomes(path):
+        yield f'"{_exit(path, name)}"{attributes(_EXIT, html(name))}'
 
 
 def node_id(path: str) -> str:

@@ -1,17 +1,24 @@
-"""Containers and those below them: paths, active states, and userdata as a pickle."""
+"""Containers and those below them: paths, active states, outcomes, and userdata as a pickle and as
+JSON."""
 
 from __future__ import annotations
 
 import base64
 import pickle
 from collections.abc import Iterator
+from itertools import islice
+from typing import Any
 
 from smachac.runtime.smach import UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach.user_data import store
+from smachac.runtime.tracing.values import shown_value
 
 PROTOCOL = 2
 """The pickle protocol of userdata; SMACH's viewer reads it, in Python 2 too."""
+
+MOST_KEYS = 100
+"""The most keys of one container in a status."""
 
 
 def containers(path: str, container: Container) -> Iterator[tuple[str, Container]]:
@@ -35,6 +42,27 @@ def active_paths(path: str, container: Container) -> list[str]:
         inner = active_paths(below, child) if isinstance(child, Container) else []
         found += inner or ([below] if child is not None else [])
     return found
+
+
+def status_fields(path: str, container: Container, info: str) -> dict[str, Any]:
+    """The fields of a status of smach_msgs."""
+    return {
+        "path": path,
+        "initial_states": [str(label) for label in container.get_initial_states()],
+        "active_states": [str(label) for label in container.get_active_states()],
+        "local_data": pickled(container.userdata),
+        "info": info,
+    }
+
+
+def more_status(container: Container) -> dict[str, Any]:
+    """What a status as JSON has beside the fields of smach_msgs: the outcomes of the states that
+    have ended, and the values of keys, cut to a limited size."""
+    held = islice(dict(store(container.userdata)).items(), MOST_KEYS)
+    return {
+        "ended": container.get_child_outcomes(),
+        "userdata": {str(key): shown_value(value) for key, value in held},
+    }
 
 
 def pickled(userdata: UserData) -> str:

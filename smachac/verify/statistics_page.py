@@ -7,7 +7,9 @@ from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.ir.nodes import Machine
+from smachac.ir.outcome_names import fails
 from smachac.ir.script_paths import script_paths
+from smachac.ir.traversal import walk
 from smachac.targets.html.model import machine_model
 from smachac.targets.html.page import render_page
 from smachac.verify.coverage import Coverage
@@ -29,6 +31,7 @@ def statistics_html(
 def _data(machine: Machine, statistics: TraceStatistics, taken: Coverage) -> dict[str, Any]:
     """The field `statistics` of the viewer's model; states have their full paths."""
     shown = script_paths(machine.root)
+    nodes = dict(walk(machine.root))
     missing = taken.missing()
     return {
         "states": {
@@ -42,5 +45,12 @@ def _data(machine: Machine, statistics: TraceStatistics, taken: Coverage) -> dic
             for path, state in statistics.states.items()
         },
         "transitions": len(taken.items),
-        "never": [{"path": each.path, "text": item_text(each.renamed(shown))} for each in missing],
+        "never": [
+            {
+                "path": each.path,
+                "text": item_text(each.renamed(shown)),
+                "failure": each.kind != "rule" and fails(nodes[each.path], each.outcome),
+            }
+            for each in missing
+        ],
     }

@@ -85,6 +85,11 @@ class Picture:
         return True
 
     @property
+    def machine(self) -> Machine:
+        """The machine that is shown."""
+        return self._machine
+
+    @property
     def model(self) -> Mapping[str, Any]:
         """The model of the machine that is shown."""
         return self._model

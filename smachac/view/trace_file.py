@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 from smachac.targets.html.trace import read_event
@@ -37,17 +38,17 @@ class TraceText:
             events.append(event)
             if event["event"] in ("start", "enter"):
                 self.places[event["path"]] = None
-            if len(events) >= BATCH:
-                self._publish(events)
-        self._publish(events)
+        publish(self._feed, events)
 
     def restart(self) -> None:
         """The file begins anew."""
         self._rest = b""
         self.places.clear()
 
-    def _publish(self, events: list[Any]) -> None:
-        if events:
-            data = json.dumps({"kind": "trace", "events": events}).encode()
-            self._feed.append("trace", data, len(events))
-            events.clear()
+
+def publish(feed: Feed, events: Sequence[Any]) -> None:
+    """Publish events in messages of limited size."""
+    for start in range(0, len(events), BATCH):
+        part = events[start : start + BATCH]
+        data = json.dumps({"kind": "trace", "events": part}).encode()
+        feed.append("trace", data, len(part))

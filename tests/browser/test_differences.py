@@ -48,16 +48,22 @@ def states(page: Page, change: str) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("colours", ["light", "dark"])
-def test_both_machines_are_one_picture(browser: Browser, tmp_path: Path, colours: str) -> None:
+def difference_page(folder: Path, before: str, after: str) -> Path:
+    """The page of the differences of two scripts."""
     analyses = []
-    for name, text in (("old.yml", BEFORE), ("new.yml", AFTER)):
-        (tmp_path / name).write_text(text)
-        analyses.append(analyse_script(tmp_path / name))
+    for name, text in (("old.yml", before), ("new.yml", after)):
+        (folder / name).write_text(text)
+        analyses.append(analyse_script(folder / name))
     machine = analyses[1].machine
     assert machine is not None
-    path = tmp_path / "diff.html"
+    path = folder / "diff.html"
     path.write_text(render_difference_page(compare(*analyses), machine), "utf-8")
+    return path
+
+
+@pytest.mark.parametrize("colours", ["light", "dark"])
+def test_both_machines_are_one_picture(browser: Browser, tmp_path: Path, colours: str) -> None:
+    path = difference_page(tmp_path, BEFORE, AFTER)
     page, messages = browser.new_page(viewport={"width": 1440, "height": 900}), Messages()
     messages.watch(page)
     page.emulate_media(color_scheme=colours)  # type: ignore[arg-type]
@@ -84,4 +90,45 @@ def test_both_machines_are_one_picture(browser: Browser, tmp_path: Path, colours
     changes.get_by_role("button", name="sm/OLD (removed)").first.click()
     page.locator('.state.selected[data-path="sm/OLD (removed)"]').wait_for()
     assert "- state sm/OLD" in section.inner_text()
+    assert list(messages) == []
+
+
+CONCURRENCE = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [all, none]
+      default_outcome: none
+      outcome_map: {all: {A: ok, B: ok, C: ok}}
+      transitions: {all: done, none: failed}
+      states:
+        - A: {template: ScriptedState, outcomes: [ok, bad]}
+        - B: {template: ScriptedState, outcomes: [ok, bad]}
+        - C: {template: ScriptedState, outcomes: [ok, bad]}
+"""
+
+
+def joins(page: Page) -> list[str]:
+    found: list[str] = page.locator(".piece.join").evaluate_all(
+        "all => all.map(each => each.getAttribute('class').split(' ')[2])"
+    )
+    return found
+
+
+def test_rules_are_bars(browser: Browser, tmp_path: Path) -> None:
+    """One bar for a rule of both machines; one for each where its conditions differ."""
+    page, messages = browser.new_page(viewport={"width": 1440, "height": 900}), Messages()
+    messages.watch(page)
+    fewer = CONCURRENCE.replace("B: ok, C: ok}", "B: ok}")
+    for after, bars in ((CONCURRENCE, ["same"]), (fewer, ["added", "removed"])):
+        page.goto(difference_page(tmp_path, CONCURRENCE, after).as_uri())
+        page.wait_for_selector("html[data-ready]")
+        assert joins(page) == bars
+    SCREENSHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=SCREENSHOTS / "differences_of_rules.png")
+    lines = page.locator(".line.removed")
+    assert lines.count() == 4, "three conditions and the outcome of the former rule"
+    assert page.locator(".line.added").count() == 3
     assert list(messages) == []

@@ -350,6 +350,19 @@ def test_rows_cover_nothing(browser: Browser, tmp_path: Path, messages: Messages
         page.locator(f"{DONE} > g:not([transform='{first}'])").wait_for()
 
 
+def test_the_parts_of_the_viewer_that_need_no_page(browser: Browser) -> None:
+    """The types of all sources, and the tests in viewer/tests, run by Node."""
+    for name in ("check", "test"):
+        command = ["npm", "run", "--silent", name]
+        done = subprocess.run(
+            command, cwd=ROOT / "viewer", check=False, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+    texts = [path.read_text("utf-8") for path in (ROOT / "viewer/tests").glob("*.test.mjs")]
+    written = sum(text.count('\ntest("') for text in texts)
+    assert f"# pass {written}\n" in done.stdout, "each test is found"
+
+
 def test_committed_files_are_those_of_the_sources(browser: Browser, tmp_path: Path) -> None:
     command = ["node", "build.mjs", f"--outdir={tmp_path}"]
     subprocess.run(command, cwd=ROOT / "viewer", check=True)

@@ -23,7 +23,7 @@ SCRIPT = """\
 name: sm
 outcomes: [done, lost]
 states:
-  - A: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: B, bad: LATER}}
+  - A: {template: ScriptedState, outcomes: [ok, aborted], transitions: {ok: B, aborted: LATER}}
   - B:
       template: ScriptedState
       outcomes: [ok, constructor]
@@ -76,13 +76,16 @@ def never(page: Page) -> list[str | None]:
 def test_figures_are_at_states_and_transitions(browser: Browser, tmp_path: Path) -> None:
     page, messages = opened(browser, statistics_page(tmp_path, runs=4, lost=1))
     labels = page.locator(".label text").all_text_contents()
-    assert sorted(labels) == sorted(["ok 100 %", "bad 0 %", "ok 75 %", "constructor 25 %", "ok"])
-    assert page.locator('[data-path="sm/A"] .visits').text_content() == "\u00d74"
+    assert sorted(labels) == sorted(
+        ["ok 100 %", "aborted 0 %", "ok 75 %", "constructor 25 %", "ok"]
+    )
+    assert page.locator('[data-path="sm/A"] .visits').text_content() == "\u00d74 \u00b7 1.5 s"
     assert never(page) == ["sm/LATER"]
     assert page.locator(".line.never").count() == 2
     assert page.locator(".line.taken").count() == 4
     section = page.locator('[data-section="statistics"]')
     assert "3 of 5 transitions taken" in section.inner_text()
+    assert "1 of the others follows a failure that was never exercised" in section.inner_text()
     assert "done\n3 (75 %)" in section.inner_text()
     page.evaluate((ROOT / "viewer/node_modules/axe-core/axe.min.js").read_text("utf-8"))
     assert serious(page) == []

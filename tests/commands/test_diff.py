@@ -6,6 +6,7 @@ import json
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -195,14 +196,19 @@ def test_a_picture(capsys: pytest.CaptureFixture[str]) -> None:
     assert done.stderr == ""
 
 
+def model_of(page: str) -> Any:
+    """The model in a page."""
+    start = page.index('<script type="application/json" id="smachac-model">')
+    return json.loads(page[page.index(">", start) + 1 : page.index("</script>", start)])
+
+
 def test_a_page(capsys: pytest.CaptureFixture[str]) -> None:
     """A state with another container moves; the page has it once."""
     text = CHANGED.replace("  - PARK:", "  - WAIT: {template: SleepState, time: 1.0}\n  - PARK:")
     write("new.yml", text.replace("script: park", "template: ScriptedState, outcomes: [done]"))
     assert diff("main.yml", "new.yml", "--format", "html") == 1
     page = capsys.readouterr().out
-    start = page.index('<script type="application/json" id="smachac-model">')
-    model = json.loads(page[page.index(">", start) + 1 : page.index("</script>", start)])
+    model = model_of(page)
     nodes = {each["path"]: each for each in model["nodes"]}
     assert {path: each["change"] for path, each in nodes.items()} == {
         "sm": "same",
@@ -231,6 +237,49 @@ def test_a_page(capsys: pytest.CaptureFixture[str]) -> None:
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "bad.yml" in shown.err
+
+
+CONCURRENCE = """\
+name: sm
+template: Base
+outcomes: [done, lost]
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [done, lost]
+      default_outcome: lost
+      outcome_map: {done: {A: ok, B: ok}}
+      transitions: {done: done, lost: lost}
+      states:
+        - A: {template: ScriptedState, outcomes: [ok, bad]}
+        - B: {template: ScriptedState, outcomes: [ok, bad]}
+"""
+
+
+def test_a_page_has_the_rules_of_both_machines(capsys: pytest.CaptureFixture[str]) -> None:
+    write("main.yml", CONCURRENCE)
+    write("new.yml", CONCURRENCE.replace("B: ok}}", "C: ok}}").replace("- B:", "- C:"))
+    assert diff("main.yml", "main.yml", "--format", "html") == 0
+    model = model_of(capsys.readouterr().out)
+    (both,) = (each for each in model["nodes"] if each["path"] == "sm/BOTH")
+    when = [["sm/BOTH/A", "ok"], ["sm/BOTH/B", "ok"]]
+    assert both["rules"] == [{"outcome": "done", "when": when, "change": "same"}]
+    assert (both["join"], both["default"]) == ("all", "lost")
+    assert diff("main.yml", "new.yml", "--format", "html") == 1  # a renamed state
+    (both,) = (e for e in model_of(capsys.readouterr().out)["nodes"] if e["path"] == "sm/BOTH")
+    when = [["sm/BOTH/A", "ok"], ["sm/BOTH/C", "ok"]]
+    assert both["rules"] == [{"outcome": "done", "when": when, "change": "same"}]
+    write("new.yml", CONCURRENCE.replace("{A: ok, B: ok}", "{A: ok}"))
+    assert diff("main.yml", "new.yml", "--format", "html") == 1
+    model = model_of(capsys.readouterr().out)
+    (both,) = (each for each in model["nodes"] if each["path"] == "sm/BOTH")
+    found = [(each["change"], [path for path, _ in each["when"]]) for each in both["rules"]]
+    assert found == [("added", ["sm/BOTH/A"]), ("removed", ["sm/BOTH/A", "sm/BOTH/B"])]
+    edges = {(each["source"], each["outcome"], each["kind"]): each["change"]
+             for each in model["edges"]}  # fmt: skip
+    assert edges["sm/BOTH/A", "ok", "rule"] == "same"
+    assert edges["sm/BOTH/B", "ok", "rule"] == "removed"
+    assert edges["sm/BOTH/B", "bad", "default"] == "same"
 
 
 @pytest.mark.parametrize("format", ["dot", "html"])

@@ -125,7 +125,11 @@ def test_the_page_of_statistics(recorded: Path, capsys: pytest.CaptureFixture[st
     assert set(found["states"]) <= {node["path"] for node in model["nodes"]}
     assert found["states"]["sm/A"]["outcomes"] == {"ok": 2}
     assert found["transitions"] == 8
-    assert found["never"][0] == {"path": "sm/A", "text": "sm/A: bad -> sm:lost"}
+    assert found["never"][0] == {
+        "path": "sm/A",
+        "text": "sm/A: bad -> sm:lost",
+        "failure": False,
+    }
     assert len(found["never"]) == 5
     assert main(["stats", "main.yml", "run.jsonl", "--format", "html", "--success", "done"]) == 2
     assert "--success has no effect" in capsys.readouterr().err

@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+from smachac.commands.cli import main
+from smachac.view.ros_topic import candidates
 from smachac.view.server import HOST
 from tests.support.viewed import Viewed, starter
 
@@ -249,3 +251,31 @@ def test_a_port_in_use_is_wrong_usage(script: Path, start: Callable[..., Viewed]
         found = smachac(*words)
         assert found.returncode == 2
         assert f"port {view.port} cannot be used" in found.stderr
+
+
+def test_a_ros_topic_needs_ros(
+    script: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("smachac.view.ros_topic.find_spec", lambda name: None)
+    assert main(["view", str(script), "--attach", "ros:/patrol"]) == 2
+    message = capsys.readouterr().err
+    assert "a ROS topic needs rclpy or rospy" in message
+    assert message.count("\n") == 1
+    assert main(["view", "--attach", "ros:/patrol"]) == 2
+    assert "smachac view main.yml --attach ros:/patrol" in capsys.readouterr().err
+    assert main(["view", str(script), "--attach", "ros:/patrol", "--film", str(script)]) == 2
+    assert "--film needs the trace" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "topics"),
+    [
+        ("/patrol", ["/patrol/smach/container_status_json", "/patrol/smach/container_status"]),
+        ("a/b/", ["/a/b/smach/container_status_json", "/a/b/smach/container_status"]),
+        ("", ["/smach/container_status_json", "/smach/container_status"]),
+        ("/p/smach/container_status", ["/p/smach/container_status"]),
+        ("p/smach/container_status_json", ["/p/smach/container_status_json"]),
+    ],
+)
+def test_the_topics_of_a_name(name: str, topics: list[str]) -> None:
+    assert candidates(name) == topics

@@ -183,3 +183,41 @@ def test_a_leaf_has_nothing_to_look_into(graph: Graph) -> None:
     program = graph.start(text)
     assert program.end() == 1
     assert "InvalidStateError: a State has nothing to look into" in program.output
+
+
+VIEW = """
+import time
+from smachac.view.ros_topic import open_topic
+from smachac.view.statuses import StatusEvents, report_of
+
+topic, statuses = open_topic("sis"), StatusEvents()
+print("awaits", topic.awaited, flush=True)
+outcome = None
+while outcome is None:
+    reports = filter(None, map(report_of, topic.read()))
+    for event in statuses.events(reports):
+        print(event["event"], event["path"], event.get("outcome"), flush=True)
+        if event["event"] == "finish":
+            outcome = event["outcome"]
+    time.sleep(0.02)
+topic.close()
+"""
+
+
+def test_a_view_shows_the_run(graph: Graph) -> None:
+    """`smachac view --attach ros:sis`, without the page: the events of the statuses."""
+    view = graph.start(VIEW)
+    view.expect("awaits /sis/smach/container_status")
+    program = started(graph)
+    view.expect("enter ROOT/ONE")
+    program.say("on")
+    view.expect("exit ROOT/ONE")
+    view.expect("enter ROOT/INNER None")
+    view.expect("enter ROOT/INNER/TWO")
+    program.say("on")
+    view.expect("exit ROOT/INNER done")
+    view.expect("enter ROOT/BOTH/LEFT")
+    program.say("on")
+    view.expect("exit ROOT/BOTH done")
+    view.expect("finish ROOT finished")
+    assert view.end() == 0, view.output

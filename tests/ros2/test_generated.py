@@ -123,7 +123,10 @@ states:
       transitions: {succeeded: succeeded, aborted: aborted, preempted: preempted}
 """
 
-STATUS = ["active_states", "info", "initial_states", "local_data", "path", "stamp"]
+STATUS = [
+    *("active_states", "ended", "info", "initial_states", "local_data", "path", "stamp"),
+    "userdata",
+]
 STRUCTURE = [
     *("children", "container_outcomes", "internal_outcomes", "outcomes_from", "outcomes_to"),
     *("path", "stamp"),

@@ -6,7 +6,7 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from http.client import HTTPConnection
 from typing import Any
@@ -17,9 +17,15 @@ from smachac.view.server import HOST, TOKEN
 class Viewed:
     """A process of smachac that serves a view, and a reader of its stream."""
 
-    def __init__(self, *words: object) -> None:
+    def __init__(
+        self,
+        *words: object,
+        python: str = sys.executable,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "smachac", *map(str, words)],
+            [python, "-m", "smachac", *map(str, words)],
+            env=environment,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -98,8 +104,8 @@ def starter() -> Iterator[Callable[..., Viewed]]:
     """Starts processes, which end with the context."""
     begun: list[Viewed] = []
 
-    def started(*words: object) -> Viewed:
-        begun.append(Viewed(*words))
+    def started(*words: object, **options: Any) -> Viewed:
+        begun.append(Viewed(*words, **options))
         return begun[-1]
 
     yield started

@@ -88,10 +88,10 @@ def test_prepared_events_are_those_of_a_trace() -> None:
         [{"seq": 0, "event": "write", "path": "p", "key": "k", "value": None, "t": 0}]
     )
     both = trace.prepare([{"seq": 0, "event": name, "path": "p", "t": 0.0} for name in ("a", "b")])
-    seq = trace.put(enter, 1, 0.5, NO_VALUE)
-    seq = trace.put(write, seq, 1.0, [1, "a\nb%"])
+    trace.append((enter, 0.5, NO_VALUE))
+    trace.append((write, 1.0, [1, "a\nb%"]))
     trace.send({"kind": "control", "paused": True})
-    assert trace.put(both, seq, 2.0, NO_VALUE) == 5
+    trace.append((both, 2.0, NO_VALUE))
     trace({**event(5), "value": {1, 2}})
     assert received(reader) == []
     trace.publish_queued()
@@ -113,10 +113,10 @@ def test_the_machine_never_waits_and_what_the_queue_drops_is_counted() -> None:
     reader = feed.open()
     trace = LiveTrace(feed, most_queued=10)
     enter = trace.prepare([{"seq": 0, "event": "enter", "path": "sm/A", "t": 0.0}])
-    seq = trace.put(enter, 1, 0.0, NO_VALUE)
+    trace.append((enter, 0.0, NO_VALUE))
     trace.publish_queued()
     for _ in range(25):
-        seq = trace.put(enter, seq, 0.0, NO_VALUE)
+        trace.append((enter, 0.0, NO_VALUE))
     trace.publish_queued()
     first, dropped, last = received(reader)
     assert [each["seq"] for each in first["events"]] == [1]

@@ -27,6 +27,7 @@ export type Message =
   | { kind: "report"; broken: boolean; outdated: boolean; findings: Finding[] }
   | { kind: "trace"; events: TraceEvent[] }
   | { kind: "dropped"; count: number }
+  | { kind: "source"; waits: string }
   | ({ kind: "control" } & ControlStatus);
 
 export interface Listener {

@@ -7,11 +7,13 @@ import { isContainer, kindInWords, nearest } from "./model";
 import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitId, exitsInWords } from "./pieces";
 import { fitting, width } from "./text";
 
-/** What a run of the machine marks in the picture. `taken` are ids of edges (see `edgeId`). */
+/** What a run of the machine marks in the picture. `taken` are ids of edges (see `edgeId`), `times` the mean times
+ * of states in words. */
 export interface Highlight {
   active: Iterable<Path>;
   taken?: Iterable<string>;
   visits?: ReadonlyMap<Path, number>;
+  times?: ReadonlyMap<Path, string>;
   waiting?: Iterable<Path>;
   breakpoints?: Iterable<Path>;
 }
@@ -185,6 +187,7 @@ function drawPiece(graph: Graph, { piece, container, x, y, width, height }: Plac
       group.append(svg("text", text, piece.label));
     }
   }
+  if (piece.change) group.classList.add(piece.change);
   if (piece.failure) group.classList.add("failure");
   if (piece.success) group.classList.add("success");
   return group;
@@ -289,7 +292,7 @@ export function markRun(graph: Graph, picture: Picture, run: Highlight | null): 
     element.classList.toggle("active", active.has(path));
     element.classList.toggle("waiting", waiting.has(path));
     setBreakpoint(element, breakpoints.has(path));
-    setVisits(element, run?.visits?.get(path) ?? 0);
+    setVisits(element, run?.visits?.get(path) ?? 0, run?.times?.get(path) ?? "");
   }
   for (const { line, element } of picture.lines) {
     element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
@@ -314,11 +317,12 @@ function setBreakpoint(element: SVGGElement, is: boolean): void {
   else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
 }
 
-function setVisits(element: SVGGElement, count: number): void {
+function setVisits(element: SVGGElement, count: number, time: string): void {
   element.classList.toggle("visited", count > 0);
   let mark = element.querySelector<SVGTextElement>(":scope > .visits");
-  speakVisits(element, count < 2 ? "" : ` ×${count}`);
-  if (count < 2) {
+  const text = [count < 2 ? "" : `×${count}`, time].filter(Boolean).join(" · ");
+  speakVisits(element, text && ` ${text}`);
+  if (!text) {
     mark?.remove();
     return;
   }
@@ -330,7 +334,7 @@ function setVisits(element: SVGGElement, count: number): void {
     mark.setAttribute("y", "10");
     element.append(" ", mark);
   }
-  mark.textContent = `×${count}`;
+  mark.textContent = text;
 }
 
 /** Put the visits of a state behind the words of its box in its name for screen readers. */

@@ -102,6 +102,12 @@ const FAST: Record<string, string> = {
   "elk.layered.thoroughness": "1",
 };
 
+/** The space to the right of boxes for the figures of statistics. */
+const BESIDE: Record<Direction, Record<string, string>> = {
+  DOWN: { "elk.spacing.nodeNode": "100" },
+  RIGHT: { "elk.layered.spacing.nodeNodeBetweenLayers": "100" },
+};
+
 /** How a layout goes on: `placed` is called with the number of states that have their places, `cancelled`
  * before each container. */
 export interface Progress {
@@ -181,7 +187,7 @@ export class Layouts {
   }
 
   private async computed(content: Content, placed: Map<Path, Placed>): Promise<ElkNode> {
-    const graph = (fast: boolean): ElkNode => elkGraph(content, placed, this.direction, fast);
+    const graph = (fast: boolean): ElkNode => elkGraph(content, placed, this.direction, fast, Boolean(this.graph.model.statistics));
     if (content.lines.length > VERY_MANY || reach(content) > FAR) {
       return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
     }
@@ -234,7 +240,13 @@ function reach(content: Content): number {
 }
 
 /** The graph of a container for ELK. */
-function elkGraph(content: Content, placed: Map<Path, Placed>, direction: Direction, fast: boolean): ElkNode {
+function elkGraph(
+  content: Content,
+  placed: Map<Path, Placed>,
+  direction: Direction,
+  fast: boolean,
+  figures: boolean,
+): ElkNode {
   const options = fast ? FAST : ROOMY;
   const [before, after] = direction === "DOWN" ? (["NORTH", "SOUTH"] as const) : (["WEST", "EAST"] as const);
   const padding = direction === "DOWN" ? `bottom=0,right=${SIDE}` : `bottom=${SIDE},right=0`;
@@ -269,6 +281,7 @@ function elkGraph(content: Content, placed: Map<Path, Placed>, direction: Direct
     id: content.path,
     layoutOptions: {
       ...options,
+      ...(figures ? BESIDE[direction] : {}),
       "elk.direction": direction,
       "elk.padding": `[top=${TOP},left=${SIDE},${padding}]`,
     },

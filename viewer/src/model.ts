@@ -23,16 +23,17 @@ export interface Preset {
   value: string;
 }
 
-export interface Rule {
-  outcome: string;
-  when: [Path, string][];
-}
-
 /** What a comparison of two machines finds of a state or an edge. */
 export type Change = "added" | "removed" | "changed" | "same";
 
 /** The signs of changes, so that colours are not all that shows them. */
 export const SIGNS: Record<Change, string> = { added: "+", removed: "\u2212", changed: "~", same: "" };
+
+export interface Rule {
+  outcome: string;
+  when: [Path, string][];
+  change?: Change;
+}
 
 export interface StateNode {
   path: Path;
@@ -103,7 +104,7 @@ export interface StateStatistics {
 export interface Statistics {
   states: Record<Path, StateStatistics>;
   transitions: number;
-  never: { path: Path; text: string }[];
+  never: { path: Path; text: string; failure: boolean }[];
 }
 
 /** The differences of two machines that are drawn as one: each with the state that it is about. */
@@ -128,6 +129,11 @@ export interface Model {
   properties: Property[];
   statistics?: Statistics;
   differences?: Differences;
+}
+
+/** Whether a model that has arrived takes the place of the one that is shown: models may arrive in any order. */
+export function isNewer(next: Pick<Model, "revision">, shown: Pick<Model, "revision">): boolean {
+  return (next.revision ?? 0) > (shown.revision ?? 0);
 }
 
 /** How often a state ended with an outcome. */

@@ -14,6 +14,7 @@ export interface Piece {
   path?: Path;
   failure?: boolean;
   success?: boolean;
+  change?: Change;
 }
 
 /** A drawn line: all edges between two nodes with one look. `from` and `to` are ids of pieces. */
@@ -147,15 +148,15 @@ export function contentOf(
   for (const edge of graph.inside.get(path) ?? []) {
     if (written.has(edge)) continue;
     for (const line of linesOf(container, edge, joined)) {
-      add(line, edgeId(edge), withFigures(graph, edge, labelOf(container, edge, line)));
+      add(line, edgeId(edge), withFigures(graph, edge, line, labelOf(container, edge, line)));
     }
   }
   return { path, pieces, lines: [...lines.values()] };
 }
 
-/** A label with the sign of the change of its edge, or the frequency of its outcome, where there is one. */
-function withFigures(graph: Graph, edge: ModelEdge, label: string): string {
-  if (edge.change) return `${SIGNS[edge.change]} ${label}`.trim();
+/** A label with the sign of the change of its line, or the frequency of its outcome, where there is one. */
+function withFigures(graph: Graph, edge: ModelEdge, line: Drawn, label: string): string {
+  if (line.change) return `${SIGNS[line.change]} ${label}`.trim();
   const state = edge.source === null ? undefined : graph.model.statistics?.states[edge.source];
   if (!state || !edge.outcome) return label;
   return `${label} ${shareOf(state, edge.outcome)}`.trim();
@@ -173,24 +174,31 @@ function startPiece(container: StateNode): Piece {
   return { id: START, what: "start", label: "start", width: 12, height: 12 };
 }
 
+/** The bar of a rule, or the outcome to which a rule with one condition leads. */
+interface Join {
+  id: string;
+  change?: Change;
+}
+
 /** The joins of a concurrence: a bar for each rule with several conditions. */
 function joins(
   container: StateNode,
   pieces: Piece[],
   add: (line: Drawn, edge: string, label: string) => void,
-): Map<string, string[]> {
-  const joined = new Map<string, string[]>();
+): Map<string, Join[]> {
+  const joined = new Map<string, Join[]>();
   (container.rules ?? []).forEach((rule, index) => {
     const exit = pieces.find((each) => each.id === exitId(rule.outcome));
     if (rule.when.length < 2 || !exit) return;
     const id = `join ${index}`;
+    const { change } = rule;
     const { failure = false, success } = exit;
-    pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
+    pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success, change });
     for (const [child, outcome] of rule.when) {
       const key = JSON.stringify([child, outcome, rule.outcome]);
-      joined.set(key, [...(joined.get(key) ?? []), id]);
+      joined.set(key, [...(joined.get(key) ?? []), { id, change }]);
     }
-    add({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false }, "", "");
+    add({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false, change }, "", "");
   });
   return joined;
 }
@@ -199,27 +207,25 @@ function joins(
 function linesOf(
   container: StateNode,
   edge: ModelEdge,
-  joined: Map<string, string[]>,
+  joined: Map<string, Join[]>,
 ): Drawn[] {
   const { outcome, failure, implicit } = edge;
-  const look = { outcome, failure, implicit, ...(edge.change ? { change: edge.change } : {}) };
+  const look = { outcome, failure, implicit, change: edge.change };
   const from = edge.source ?? START;
   const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
   if (edge.kind === "loop") return [{ ...look, from, to: START }];
   if (edge.kind === "exhausted") return [{ ...look, outcome: "", failure: false, from: START, to }];
   if (edge.kind === "rule" && typeof edge.target !== "string") {
     const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
-    const bars = joined.get(key) ?? [];
-    const alone = (container.rules ?? []).some(
+    const { outcome: result } = edge.target;
+    const alone = (container.rules ?? []).filter(
       (rule) =>
-        rule.outcome === (edge.target as { outcome: string }).outcome &&
+        rule.outcome === result &&
         rule.when.length < 2 &&
         rule.when.every(([child, name]) => child === edge.source && name === edge.outcome),
     );
-    return [
-      ...bars.map((bar) => ({ ...look, from, to: bar })),
-      ...(alone ? [{ ...look, from, to }] : []),
-    ];
+    const ends: Join[] = [...(joined.get(key) ?? []), ...alone.map(({ change }) => ({ id: to, change }))];
+    return ends.map(({ id, change = edge.change }) => ({ ...look, from, to: id, change }));
   }
   if (edge.kind === "default") return [{ ...look, failure: false, from, to }];
   return [{ ...look, from, to }];

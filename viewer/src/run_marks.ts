@@ -116,7 +116,7 @@ export function placeOf(graph: Graph, node: StateNode, key: string): Omit<KeyVal
       secret ||= declared.secret ?? false;
     }
     const around = here.parent === null ? undefined : graph.nodes.get(here.parent);
-    if (!around || (!declared && here !== node)) return { scope: here.path, key: name, type, secret };
+    if (!around || (!declared && (here !== node || isContainer(here)))) return { scope: here.path, key: name, type, secret };
     name = declared?.key ?? name;
     here = around;
   }
@@ -145,7 +145,7 @@ export function inWords(graph: Graph, event: TraceEvent): { text: string; tone: 
     case "exit": {
       const kind = node?.parent ? graph.nodes.get(node.parent)?.kind : undefined;
       if (!event.forced && (kind === "machine" || kind === "sequence")) return null;
-      return { text: `${name} ends with ${event.outcome}${event.forced ? " (forced)" : ""}`, tone };
+      return { text: `${name} ends${withOutcome(event)}${event.forced ? " (forced)" : ""}`, tone };
     }
     case "transition": {
       const to = event.to ?? "";
@@ -161,10 +161,14 @@ export function inWords(graph: Graph, event: TraceEvent): { text: string; tone: 
     case "fault":
       return { text: `injected fault: ${event.fault}`, tone: "bad" };
     case "finish":
-      return { text: `${name} ends with ${event.outcome}`, tone };
+      return { text: `${name} ends${withOutcome(event)}`, tone };
     default:
       return { text: `${name}: ${event.event}`, tone: "" };
   }
+}
+
+function withOutcome({ outcome }: TraceEvent): string {
+  return outcome === undefined ? "" : ` with ${outcome}`;
 }
 
 /** A time in seconds, with as many digits as matter. */

@@ -106,7 +106,7 @@ export function advance(state: RunState, event: TraceEvent): RunState {
       break;
     case "exit":
     case "finish":
-      leave(state, path, event.outcome ?? "");
+      leave(state, path, event.outcome ?? null);
       if (event.event === "finish") end(state, event.outcome ?? null);
       break;
     case "transition":
@@ -132,13 +132,14 @@ function enter(state: RunState, path: string): void {
   else state.visited.set(path, { visits: 1, seconds: 0, outcomes: new Map(), lastOutcome: null });
 }
 
-function leave(state: RunState, path: string, outcome: string): void {
+/** A state ends; the outcome is null where the statuses of a ROS node do not show it. */
+function leave(state: RunState, path: string, outcome: string | null): void {
   const since = state.active.get(path);
   state.active.delete(path);
   const visited = state.visited.get(path);
   if (!visited) return;
   if (since !== undefined) visited.seconds += state.t - since;
-  count(visited.outcomes, outcome);
+  if (outcome !== null) count(visited.outcomes, outcome);
   visited.lastOutcome = outcome;
 }
 

@@ -120,6 +120,10 @@ class RunView {
       case "dropped":
         this.recording.dropped += message.count;
         break;
+      case "source":
+        this.link = message.waits;
+        this.changed();
+        break;
       case "control":
         this.control.received(message);
     }

@@ -15,7 +15,11 @@ export function showStatistics(viewer: Viewer): void {
   const visits = new Map(Object.entries(statistics.states).map(([path, each]) => [path, each.visits]));
   visits.delete(graph.model.root);
   const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
-  viewer.highlight({ active: [], taken, visits });
+  const times = new Map([...visits.keys()].flatMap((path) => {
+    const { mean } = statistics.states[path]!;
+    return mean ? [[path, seconds(mean)] as const] : [];
+  }));
+  viewer.highlight({ active: [], taken, visits, times });
   viewer.onMark((picture) => markNever(graph, statistics, picture));
   viewer.addSection({
     id: "statistics",
@@ -68,13 +72,15 @@ function figures(statistics: Statistics, path: Path): HTMLElement {
 /** The transitions that no run took, for the panel of the machine. */
 function neverTaken(viewer: Viewer, { never, transitions }: Statistics): HTMLElement {
   const taken = transitions - never.length;
-  const rows = never.map(({ path, text }) => {
+  const failures = never.filter(({ failure }) => failure).length;
+  const rows = never.map(({ path, text, failure }) => {
     const link = html("button", { type: "button", class: "link" }, text);
     link.addEventListener("click", () => void viewer.select(path));
-    return html("li", {}, link);
+    return html("li", {}, link, failure ? html("span", { class: "failure" }, " failure") : null);
   });
   return html("div", {},
     html("p", {}, `${taken} of ${transitions} transitions taken; grey and dotted: never`),
+    failures ? html("p", {}, `${failures} of the others ${failures === 1 ? "follows a failure that was" : "follow failures that were"} never exercised`) : null,
     rows.length ? html("ul", { class: "rows never-taken", "aria-label": "Transitions never taken" }, ...rows) : null);
 }
 

@@ -7,7 +7,7 @@ import { addTooltip, draw, markRun, markSelection } from "./draw";
 import type { Box, Direction, Scene } from "./layout";
 import { Cancelled, Layouts } from "./layout";
 import type { Graph, Model, Path } from "./model";
-import { ancestors, firstOpen, indexed, isContainer, nearest } from "./model";
+import { ancestors, firstOpen, indexed, isContainer, isNewer, nearest } from "./model";
 import { neighbour, readDirection } from "./navigation";
 import type { Section } from "./panel";
 import { fillPanel } from "./panel";
@@ -238,7 +238,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   }
 
   async function setModel(next: Model): Promise<void> {
-    if ((next.revision ?? 0) <= (graph.model.revision ?? 0)) return;
+    if (!isNewer(next, graph.model)) return;
     const opened = [...open].map(newPath);
     graph = indexed(next);
     layouts = new Layouts(graph, compute, direction);

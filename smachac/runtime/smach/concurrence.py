@@ -118,6 +118,10 @@ class Concurrence(Container):
         """The labels that still run; after an error, the failed ones are included."""
         return [] if self._branches is None else list(self._branches.active)
 
+    def get_child_outcomes(self) -> dict[str, str | None]:
+        """The labels that have ended in this run, with their outcomes."""
+        return dict(self._child_outcomes)
+
     def get_internal_edges(self) -> list[tuple[str, str, str | None]]:
         """(child outcome, label, outcome of the concurrence) for every entry of the map."""
         return [

@@ -161,6 +161,11 @@ class Container(State):
         """The labels that run now."""
         raise NotImplementedError
 
+    def get_child_outcomes(self) -> dict[str, str | None]:
+        """The outcomes of children that have ended, by label: in a callback, of those whose end is
+        its cause."""
+        return {}
+
     def get_internal_edges(self) -> Sequence[Sequence[str | None]]:
         """(outcome, label, target) for every outcome of every child."""
         raise NotImplementedError

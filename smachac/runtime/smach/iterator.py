@@ -44,6 +44,7 @@ class Iterator(Container):
         self._breaking: tuple[str, ...] = ()
         self._final: dict[Any, str] = {}
         self._active: State | None = None
+        self._last_outcome: str | None = None
         self._left_flagged = False
 
     # Construction
@@ -107,6 +108,10 @@ class Iterator(Container):
         """The child's label while the iterator runs."""
         return [self._label] if self._running.locked() else []
 
+    def get_child_outcomes(self) -> dict[str, str | None]:
+        """The child's label, and the outcome with which it ended last in this run."""
+        return {} if self._last_outcome is None else {self._label: self._last_outcome}
+
     def get_internal_edges(self) -> list[Sequence[str | None]]:
         """[outcome, label, label] for looping outcomes, else (outcome, label, renamed or None)."""
         if self._state is None:
@@ -131,6 +136,7 @@ class Iterator(Container):
             if self._left_flagged and self._state is not None and not settings.compat:
                 withdraw(self._state)
             self._left_flagged = False
+            self._last_outcome = None
             self.copy_input_keys(parent_ud)
             self.call_start_cbs()
             outcome = self._loop(iter(self._items() if callable(self._items) else self._items))
@@ -161,7 +167,7 @@ class Iterator(Container):
                 self._pass_on(state)
             if settings.loginfo is not quiet:
                 settings.loginfo(f"iterator running '{self._label}' for {item!r}")
-            outcome = self._run_child(state)
+            outcome = self._last_outcome = self._run_child(state)
             if self._preempt_requested:
                 with self._preempting:
                     self._active = None

@@ -62,6 +62,7 @@ class StateMachine(Container):
         self._current: _Step | None = None
         self._active: State | None = None
         self._preempted: State | None = None
+        self._last_end: tuple[str, str] | None = None
 
     # Construction
 
@@ -202,6 +203,10 @@ class StateMachine(Container):
         """The label that runs now, or ran last before an error; ['None'] when there is none."""
         return [str(None) if self._current is None else self._current.label]
 
+    def get_child_outcomes(self) -> dict[str, str | None]:
+        """The label that ended last, and its outcome. Only for callbacks."""
+        return {} if self._last_end is None else dict([self._last_end])
+
     def get_internal_edges(self) -> list[tuple[str, str, str | None]]:
         """(outcome, label, target) in the order of adding; target None: ends the machine."""
         return self._table.edges()
@@ -246,6 +251,7 @@ class StateMachine(Container):
             keys = self.userdata.keys()
             settings.loginfo(f"state machine starting in '{step.label}' with userdata {keys}")
         if self._start_cbs:
+            self._last_end = None
             self.call_start_cbs()
         outcome = self._walk(step)
         self.copy_output_keys(parent_ud)
@@ -274,13 +280,15 @@ class StateMachine(Container):
             except (KeyError, TypeError):
                 following = step.next[outcome] = self._follow(step.label, outcome)
             if following.state is None:
-                self._end(step.label, following.label)
+                self._end(step.label, outcome, following.label)
                 return following.label
             if settings.loginfo is not quiet:
                 settings.loginfo(f"transition '{step.label}':'{outcome}'-->'{following.label}'")
-            step = self._current = following
+            self._current = following
             if self._transition_cbs:
+                self._last_end = step.label, outcome
                 self.call_transition_cbs()
+            step = following
         return None
 
     def _step(self, label: str) -> _Step:
@@ -302,7 +310,7 @@ class StateMachine(Container):
         target = self._table.target(label, outcome)
         return _Step(outcome) if target is None else self._step(target)
 
-    def _end(self, label: str, outcome: str) -> None:
+    def _end(self, label: str, ended: str, outcome: str) -> None:
         """Settle the preempt request and run the termination callbacks."""
         self._current = None
         if self._preempt_requested:
@@ -312,6 +320,7 @@ class StateMachine(Container):
         if settings.loginfo is not quiet:
             settings.loginfo(f"state machine ending at '{label}' with outcome '{outcome}'")
         if self._termination_cbs:
+            self._last_end = label, ended
             self.call_termination_cbs([label], outcome)
 
     # Preemption

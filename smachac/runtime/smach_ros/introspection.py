@@ -8,7 +8,7 @@ import threading
 from typing import Any
 
 from smachac.runtime import smach
-from smachac.runtime.container_tree import containers, pickled
+from smachac.runtime.container_tree import containers, pickled, status_fields
 from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach.user_data import store
@@ -117,14 +117,7 @@ class _Reporter:
         """Publish the status of a container, if there are subscribers."""
         if not self._running or not self._statuses.get_num_connections():
             return
-        self._publish(
-            self._statuses,
-            path=path,
-            initial_states=[str(label) for label in container.get_initial_states()],
-            active_states=[str(label) for label in container.get_active_states()],
-            local_data=pickled(container.userdata),
-            info=info,
-        )
+        self._publish(self._statuses, **status_fields(path, container, info))
 
     def _publish(self, topic: Any, **fields: Any) -> None:
         message = topic.data_class(**fields)

@@ -16,7 +16,7 @@ from importlib import import_module
 from typing import Any
 
 from smachac.runtime import smach
-from smachac.runtime.container_tree import containers, pickled
+from smachac.runtime.container_tree import containers, more_status, pickled, status_fields
 from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach.user_data import store
@@ -61,6 +61,11 @@ class Format:
             INIT_TOPIC: "SmachContainerInitialStatusCmd",
         }
         return getattr(self._types, names[name]) if self._types else self._text
+
+    @property
+    def is_json(self) -> bool:
+        """Whether the messages are JSON texts, which may have more fields than smach_msgs."""
+        return self._types is None
 
     def encode(self, node: Any, name: str, fields: Mapping[str, Any]) -> Any:
         """The message with these fields."""
@@ -153,14 +158,10 @@ class ContainerProxy:
 
     def _publish_status(self, info: str = "") -> None:
         container = self._container
-        self._publish(
-            STATUS_TOPIC,
-            path=self._path,
-            initial_states=[str(label) for label in container.get_initial_states()],
-            active_states=[str(label) for label in container.get_active_states()],
-            local_data=pickled(container.userdata),
-            info=info,
-        )
+        fields = status_fields(self._path, container, info)
+        if self._format.is_json:
+            fields |= more_status(container)
+        self._publish(STATUS_TOPIC, **fields)
 
     def _publish(self, name: str, **fields: Any) -> None:
         if not self._running or not self._node.context.ok():

@@ -22,7 +22,15 @@ from typing import Any, NamedTuple
 
 from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.instrument import InstrumentedState, is_container
-from smachac.runtime.tracing.writer import Event, Observer, Recorder, Sink, TraceWriter, trace_value
+from smachac.runtime.tracing.writer import (
+    Event,
+    EventQueue,
+    Observer,
+    Recorder,
+    Sink,
+    TraceWriter,
+    trace_value,
+)
 
 __all__ = ["Event", "StrictScript", "TraceWriter", "Visit", "attach", "script", "trace_value"]
 
@@ -67,7 +75,7 @@ class StrictScript(NamedTuple):
 def attach(
     machine: Any,
     name: str,
-    observe: Observer | Sink,
+    observe: Observer | Sink | EventQueue,
     sources: Mapping[str, str] = {},
     *,
     clock: Callable[[], float] = time.monotonic,
@@ -85,8 +93,8 @@ def attach(
     labels make. `observe` is called by the threads of the machine, one call at a time.
     If a call raises, the error is printed to stderr, the machine continues, and no more calls are
     made. A sink, as a `TraceWriter` is one, is not called: it receives events that are prepared at
-    their first use. `gate` lets a debugger stop the machine between two states. `secret` are the
-    keys of states, by path, whose values are shown as `SECRET`.
+    their first use; so does a queue. `gate` lets a debugger stop the machine between two states.
+    `secret` are the keys of states, by path, whose values are shown as `SECRET`.
     """
     recorder = Recorder(observe, sources, clock, paths)
     instrumented: dict[int, InstrumentedState] = {}

@@ -18,6 +18,9 @@ MOST_INNER = 20
 DEEPEST = 6
 """The most levels of one value."""
 
+EXACT = 2**53
+"""The first integer that is cut: a page has no greater ones."""
+
 
 def shown_value(value: object) -> object:
     """A value as JSON, cut to a size that does not depend on the value's own.
@@ -25,6 +28,9 @@ def shown_value(value: object) -> object:
     An ellipsis stands for what is left out, with its number where that is known. Objects that JSON
     does not have are shown by their fields, else by their type: `repr` may be slow.
     """
+    kind = type(value)
+    if kind is bool or (kind is int and -EXACT < value < EXACT):  # type: ignore[operator]
+        return value
     return _copy(value, [MOST_PARTS], DEEPEST)
 
 
@@ -33,7 +39,7 @@ def _copy(value: object, budget: list[int], depth: int) -> object:
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, int):
-        return value if abs(value) < 2**53 else _cut(str(value) if value < 10**300 else "<int>")
+        return value if abs(value) < EXACT else _cut(str(value) if value < 10**300 else "<int>")
     if isinstance(value, float):
         return value if math.isfinite(value) else str(value)
     if isinstance(value, str):

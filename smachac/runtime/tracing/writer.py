@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from smachac.runtime.messages import described
+from smachac.runtime.tracing.values import shown_value
 
 Event = dict[str, Any]
 Observer = Callable[[Event], None]
@@ -33,6 +34,26 @@ class Sink(Protocol):
 
     def prepare(self, events: Sequence[Event]) -> Any: ...
     def put(self, prepared: Any, seq: int, t: float, value: object) -> int: ...
+
+
+@runtime_checkable
+class EventQueue(Protocol):
+    """A destination of events that receives them from several threads, without a lock.
+
+    `prepare` makes the constant part of events that happen at one moment, once. `append` receives
+    it each time, with the time (s) and the shown form of a written value, else `NO_VALUE`. It must
+    be atomic, and raise nothing. Events have no numbers.
+    """
+
+    append: Callable[[tuple[Any, float, object]], None]
+
+    def prepare(self, events: Sequence[Event]) -> Any: ...
+
+
+class Record(Protocol):
+    """Records prepared events, which happen now; `value` is that of a write."""
+
+    def __call__(self, prepared: Any, value: object = NO_VALUE, /) -> None: ...
 
 
 class TraceWriter:
@@ -107,17 +128,20 @@ class Recorder:
     """Numbers and times the events of all instrumented states, and passes them to a sink.
 
     Events of several threads are recorded one at a time. After an error of the sink, which is
-    printed to stderr, no more events are recorded.
+    printed to stderr, no more events are recorded. A queue receives them without a lock.
     """
 
     def __init__(
         self,
-        observe: Observer | Sink,
+        observe: Observer | Sink | EventQueue,
         sources: Mapping[str, str],
         clock: Callable[[], float],
         paths: Mapping[str, str] = {},
     ) -> None:
-        self._sink: Sink | None = observe if isinstance(observe, Sink) else ObserverSink(observe)
+        self._queue = observe if isinstance(observe, EventQueue) else None
+        self._sink: Sink | None = None
+        if not isinstance(observe, EventQueue):
+            self._sink = observe if isinstance(observe, Sink) else ObserverSink(observe)
         self._sources = sources
         self._paths = paths
         self._clock = clock
@@ -127,6 +151,9 @@ class Recorder:
         self._lock = threading.RLock()
         self._recording = False
         self._deferred: deque[tuple[Any, object]] = deque()
+        self.record: Record = self._record
+        if self._queue is not None:
+            self.record = self._to_queue(self._queue)
 
     def start(self) -> None:
         """Set the zero of the times to now."""
@@ -134,17 +161,28 @@ class Recorder:
 
     def prepare(self, *events: Event) -> Any:
         """The argument of `record` for events that happen at one moment."""
-        if self._sink is None:
+        destination = self._queue or self._sink
+        if destination is None:
             return None
-        return self._sink.prepare([self._with_frame(event) for event in events])
+        return destination.prepare([self._with_frame(event) for event in events])
 
     def _with_frame(self, event: Event) -> Event:
         place = self._sources.get(event["path"])
         shown = with_shown_paths(event, self._paths)
         return {"seq": 0, **shown, "t": 0.0, **({"src": place} if place else {})}
 
-    def record(self, prepared: Any, value: object = NO_VALUE) -> None:
-        """Record prepared events, which happen now; `value` is that of a write."""
+    def _to_queue(self, queue: EventQueue) -> Record:
+        """The function that appends events to a queue: it costs the machine least."""
+        append, clock = queue.append, self._clock
+
+        def record(prepared: Any, value: object = NO_VALUE, /) -> None:
+            if value is not NO_VALUE:
+                value = shown_value(value)
+            append((prepared, clock() - self._began, value))
+
+        return record
+
+    def _record(self, prepared: Any, value: object = NO_VALUE, /) -> None:
         with self._lock:
             if self._recording:
                 self._deferred.append((prepared, value))
@@ -160,7 +198,7 @@ class Recorder:
             finally:
                 self._recording = False
             while self._deferred:
-                self.record(*self._deferred.popleft())
+                self._record(*self._deferred.popleft())
 
     def emit(self, event: str, path: str, **more: object) -> None:
         """Record an event that occurs too rarely to be prepared once."""

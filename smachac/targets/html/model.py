@@ -60,7 +60,7 @@ def machine_model(
             _node(path, node, context, shown, by_node.get(path, []), hidden)
             for path, node in context.states
         ],
-        "edges": [edge for path, node in context.containers for edge in _edges(path, node)],
+        "edges": [edge for path, node in context.containers for edge in edges_of(path, node)],
         "findings": [finding_data(item) for item in findings],
         "properties": [
             {
@@ -160,23 +160,30 @@ def _of_container(path: str, node: Node, context: Context) -> dict[str, Any]:
             for preset in node.userdata
         ]
     }
-    match node:
+    return data | form_of(path, node)
+
+
+def form_of(path: str, container: Container) -> dict[str, Any]:
+    """The fields that only a kind of container has: how it starts its states, and how it ends."""
+    match container:
         case Concurrence():
-            data["join"] = node.join
-            data["default"] = node.default_outcome or None
-            data["rules"] = [
-                {
-                    "outcome": rule.outcome,
-                    "when": [[f"{path}/{each.child}", each.outcome] for each in rule.when],
-                }
-                for rule in node.rules
-            ]
-        case nodes.Iterator() if not node.sugar:
-            data["items"] = f"{node.item_key} {items(node)}"
-    return data
+            return {
+                "join": container.join,
+                "default": container.default_outcome or None,
+                "rules": [
+                    {
+                        "outcome": rule.outcome,
+                        "when": [[f"{path}/{each.child}", each.outcome] for each in rule.when],
+                    }
+                    for rule in container.rules
+                ],
+            }
+        case nodes.Iterator() if not container.sugar:
+            return {"items": f"{container.item_key} {items(container)}"}
+    return {}
 
 
-def _edges(path: str, container: Container) -> Iterator[dict[str, Any]]:
+def edges_of(path: str, container: Container) -> Iterator[dict[str, Any]]:
     """The edges inside a container. `source` is null for the edge from its start, `target` is a
     state, or an outcome of the container."""
     by_name = {child.name: child for child in container.children}

@@ -25,6 +25,9 @@
 
   // src/model.ts
   var SIGNS = { added: "+", removed: "\u2212", changed: "~", same: "" };
+  function isNewer(next, shown) {
+    return (next.revision ?? 0) > (shown.revision ?? 0);
+  }
   function countOf(state, outcome) {
     return state && Object.hasOwn(state.outcomes, outcome) ? state.outcomes[outcome] : 0;
   }
@@ -230,13 +233,13 @@ ${target2}`;
     for (const edge of graph.inside.get(path) ?? []) {
       if (written.has(edge)) continue;
       for (const line of linesOf(container, edge, joined)) {
-        add2(line, edgeId(edge), withFigures(graph, edge, labelOf(container, edge, line)));
+        add2(line, edgeId(edge), withFigures(graph, edge, line, labelOf(container, edge, line)));
       }
     }
     return { path, pieces, lines: [...lines.values()] };
   }
-  function withFigures(graph, edge, label) {
-    if (edge.change) return `${SIGNS[edge.change]} ${label}`.trim();
+  function withFigures(graph, edge, line, label) {
+    if (line.change) return `${SIGNS[line.change]} ${label}`.trim();
     const state = edge.source === null ? void 0 : graph.model.statistics?.states[edge.source];
     if (!state || !edge.outcome) return label;
     return `${label} ${shareOf(state, edge.outcome)}`.trim();
@@ -258,33 +261,32 @@ ${target2}`;
       const exit = pieces.find((each) => each.id === exitId(rule.outcome));
       if (rule.when.length < 2 || !exit) return;
       const id = `join ${index}`;
+      const { change } = rule;
       const { failure = false, success } = exit;
-      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success });
+      pieces.push({ id, what: "join", label: `all: ${rule.outcome}`, width: 64, height: 5, failure, success, change });
       for (const [child, outcome] of rule.when) {
         const key = JSON.stringify([child, outcome, rule.outcome]);
-        joined.set(key, [...joined.get(key) ?? [], id]);
+        joined.set(key, [...joined.get(key) ?? [], { id, change }]);
       }
-      add2({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false }, "", "");
+      add2({ from: id, to: exit.id, outcome: rule.outcome, failure, implicit: false, change }, "", "");
     });
     return joined;
   }
   function linesOf(container, edge, joined) {
     const { outcome, failure, implicit } = edge;
-    const look3 = { outcome, failure, implicit, ...edge.change ? { change: edge.change } : {} };
+    const look3 = { outcome, failure, implicit, change: edge.change };
     const from = edge.source ?? START;
     const to = typeof edge.target === "string" ? edge.target : exitId(edge.target.outcome);
     if (edge.kind === "loop") return [{ ...look3, from, to: START }];
     if (edge.kind === "exhausted") return [{ ...look3, outcome: "", failure: false, from: START, to }];
     if (edge.kind === "rule" && typeof edge.target !== "string") {
       const key = JSON.stringify([edge.source, edge.outcome, edge.target.outcome]);
-      const bars = joined.get(key) ?? [];
-      const alone = (container.rules ?? []).some(
-        (rule) => rule.outcome === edge.target.outcome && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
+      const { outcome: result } = edge.target;
+      const alone = (container.rules ?? []).filter(
+        (rule) => rule.outcome === result && rule.when.length < 2 && rule.when.every(([child, name]) => child === edge.source && name === edge.outcome)
       );
-      return [
-        ...bars.map((bar) => ({ ...look3, from, to: bar })),
-        ...alone ? [{ ...look3, from, to }] : []
-      ];
+      const ends = [...joined.get(key) ?? [], ...alone.map(({ change }) => ({ id: to, change }))];
+      return ends.map(({ id, change = edge.change }) => ({ ...look3, from, to: id, change }));
     }
     if (edge.kind === "default") return [{ ...look3, failure: false, from, to }];
     return [{ ...look3, from, to }];
@@ -447,6 +449,7 @@ ${target2}`;
         group.append(svg("text", text, piece.label));
       }
     }
+    if (piece.change) group.classList.add(piece.change);
     if (piece.failure) group.classList.add("failure");
     if (piece.success) group.classList.add("success");
     return group;
@@ -536,7 +539,7 @@ ${target2}`;
       element.classList.toggle("active", active.has(path));
       element.classList.toggle("waiting", waiting.has(path));
       setBreakpoint(element, breakpoints.has(path));
-      setVisits(element, run?.visits?.get(path) ?? 0);
+      setVisits(element, run?.visits?.get(path) ?? 0, run?.times?.get(path) ?? "");
     }
     for (const { line, element } of picture.lines) {
       element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
@@ -557,11 +560,12 @@ ${target2}`;
     if (!is) mark?.remove();
     else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
   }
-  function setVisits(element, count2) {
+  function setVisits(element, count2, time) {
     element.classList.toggle("visited", count2 > 0);
     let mark = element.querySelector(":scope > .visits");
-    speakVisits(element, count2 < 2 ? "" : ` \xD7${count2}`);
-    if (count2 < 2) {
+    const text = [count2 < 2 ? "" : `\xD7${count2}`, time].filter(Boolean).join(" \xB7 ");
+    speakVisits(element, text && ` ${text}`);
+    if (!text) {
       mark?.remove();
       return;
     }
@@ -572,7 +576,7 @@ ${target2}`;
       mark.setAttribute("y", "10");
       element.append(" ", mark);
     }
-    mark.textContent = `\xD7${count2}`;
+    mark.textContent = text;
   }
   function speakVisits(element, visits) {
     const words = element.dataset["words"] ?? "";
@@ -1476,7 +1480,7 @@ ${to}`;
         break;
       case "exit":
       case "finish":
-        leave(state, path, event.outcome ?? "");
+        leave(state, path, event.outcome ?? null);
         if (event.event === "finish") end(state, event.outcome ?? null);
         break;
       case "transition":
@@ -1507,7 +1511,7 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
     const visited = state.visited.get(path);
     if (!visited) return;
     if (since !== void 0) visited.seconds += state.t - since;
-    count(visited.outcomes, outcome);
+    if (outcome !== null) count(visited.outcomes, outcome);
     visited.lastOutcome = outcome;
   }
   function end(state, outcome) {
@@ -1694,7 +1698,7 @@ ${place2.key}`;
         secret ||= declared.secret ?? false;
       }
       const around = here.parent === null ? void 0 : graph.nodes.get(here.parent);
-      if (!around || !declared && here !== node) return { scope: here.path, key: name, type, secret };
+      if (!around || !declared && (here !== node || isContainer(here))) return { scope: here.path, key: name, type, secret };
       name = declared?.key ?? name;
       here = around;
     }
@@ -1717,7 +1721,7 @@ ${place2.key}`;
       case "exit": {
         const kind = node?.parent ? graph.nodes.get(node.parent)?.kind : void 0;
         if (!event.forced && (kind === "machine" || kind === "sequence")) return null;
-        return { text: `${name} ends with ${event.outcome}${event.forced ? " (forced)" : ""}`, tone };
+        return { text: `${name} ends${withOutcome(event)}${event.forced ? " (forced)" : ""}`, tone };
       }
       case "transition": {
         const to = event.to ?? "";
@@ -1733,10 +1737,13 @@ ${place2.key}`;
       case "fault":
         return { text: `injected fault: ${event.fault}`, tone: "bad" };
       case "finish":
-        return { text: `${name} ends with ${event.outcome}`, tone };
+        return { text: `${name} ends${withOutcome(event)}`, tone };
       default:
         return { text: `${name}: ${event.event}`, tone: "" };
     }
+  }
+  function withOutcome({ outcome }) {
+    return outcome === void 0 ? "" : ` with ${outcome}`;
   }
   function seconds(t) {
     if (t < 1) return `${Math.round(t * 1e3)} ms`;
@@ -1967,6 +1974,10 @@ ${place2.key}`;
         case "dropped":
           this.recording.dropped += message.count;
           break;
+        case "source":
+          this.link = message.waits;
+          this.changed();
+          break;
         case "control":
           this.control.received(message);
       }
@@ -2176,7 +2187,11 @@ ${place2.key}`);
     const visits = new Map(Object.entries(statistics.states).map(([path, each]) => [path, each.visits]));
     visits.delete(graph.model.root);
     const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
-    viewer.highlight({ active: [], taken, visits });
+    const times = new Map([...visits.keys()].flatMap((path) => {
+      const { mean } = statistics.states[path];
+      return mean ? [[path, seconds(mean)]] : [];
+    }));
+    viewer.highlight({ active: [], taken, visits, times });
     viewer.onMark((picture) => markNever(graph, statistics, picture));
     viewer.addSection({
       id: "statistics",
@@ -2227,15 +2242,17 @@ ${place2.key}`);
   }
   function neverTaken(viewer, { never, transitions }) {
     const taken = transitions - never.length;
-    const rows = never.map(({ path, text }) => {
+    const failures = never.filter(({ failure }) => failure).length;
+    const rows = never.map(({ path, text, failure }) => {
       const link2 = html("button", { type: "button", class: "link" }, text);
       link2.addEventListener("click", () => void viewer.select(path));
-      return html("li", {}, link2);
+      return html("li", {}, link2, failure ? html("span", { class: "failure" }, " failure") : null);
     });
     return html(
       "div",
       {},
       html("p", {}, `${taken} of ${transitions} transitions taken; grey and dotted: never`),
+      failures ? html("p", {}, `${failures} of the others ${failures === 1 ? "follows a failure that was" : "follow failures that were"} never exercised`) : null,
       rows.length ? html("ul", { class: "rows never-taken", "aria-label": "Transitions never taken" }, ...rows) : null
     );
   }
@@ -2514,6 +2531,10 @@ out `);
     "elk.layered.layering.strategy": "LONGEST_PATH",
     "elk.layered.thoroughness": "1"
   };
+  var BESIDE = {
+    DOWN: { "elk.spacing.nodeNode": "100" },
+    RIGHT: { "elk.layered.spacing.nodeNodeBetweenLayers": "100" }
+  };
   var Cancelled = class extends Error {
   };
   var Layouts = class {
@@ -2571,7 +2592,7 @@ out `);
       return { ...readLayout(content, done, title, this.direction), written };
     }
     async computed(content, placed) {
-      const graph = (fast) => elkGraph(content, placed, this.direction, fast);
+      const graph = (fast) => elkGraph(content, placed, this.direction, fast, Boolean(this.graph.model.statistics));
       if (content.lines.length > VERY_MANY || reach(content) > FAR) {
         return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
       }
@@ -2616,7 +2637,7 @@ out `);
       return start === void 0 || end2 === void 0 ? sum : sum + Math.abs(end2 - start);
     }, 0);
   }
-  function elkGraph(content, placed, direction, fast) {
+  function elkGraph(content, placed, direction, fast, figures2) {
     const options = fast ? FAST : ROOMY;
     const [before, after] = direction === "DOWN" ? ["NORTH", "SOUTH"] : ["WEST", "EAST"];
     const padding = direction === "DOWN" ? `bottom=0,right=${SIDE}` : `bottom=${SIDE},right=0`;
@@ -2651,6 +2672,7 @@ ${name}`;
       id: content.path,
       layoutOptions: {
         ...options,
+        ...figures2 ? BESIDE[direction] : {},
         "elk.direction": direction,
         "elk.padding": `[top=${TOP},left=${SIDE},${padding}]`
       },
@@ -3136,7 +3158,7 @@ ${name}`;
       if (await redraw(null)) showStart(TINY);
     }
     async function setModel(next) {
-      if ((next.revision ?? 0) <= (graph.model.revision ?? 0)) return;
+      if (!isNewer(next, graph.model)) return;
       const opened = [...open].map(newPath);
       graph = indexed(next);
       layouts = new Layouts(graph, compute, direction);
