@@ -27,6 +27,9 @@ SCHEMAS: Mapping[str, str] = {
     "interface": "interfaces of state types",
     "project": "smachac.toml",
     "scenario": "scenarios for `run --mock`",
+    "robot": "descriptions of robots",
+    "scene": "scenes: the bodies in the simulated world",
+    "faults": "faults for `run --faults`",
     "machine": "the output of the target `json`",
     "report": "the output of `check --format json`",
 }

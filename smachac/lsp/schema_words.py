@@ -1,4 +1,4 @@
-"""Completion and hover in interfaces, scenarios and project files, from their JSON Schemas."""
+"""Completion and hover in the files that are no scripts, from their JSON Schemas."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _words(kind: FileKind, place: WordPlace, then: str, quoted: str) -> Iterator
         for value in known:
             word = str(value)
             values.setdefault(word, Completion(word=word, kind="value", text=quoted.format(word)))
-        if each.get("type") == "boolean":
+        if "boolean" in each.get("type", ()):
             values |= {word: Completion(word=word, kind="value") for word in ("true", "false")}
     yield from values.values()
     for name, part in _properties(schemas):
@@ -79,17 +79,26 @@ def schema_hover(view: View, offset: int) -> tuple[str, WordPlace] | None:
     if part is None or "description" not in part:
         return None
     lines = [f"**{steps[-1]}**", str(part["description"])]
-    if "enum" in part:
-        lines.append(f"One of {', '.join(f'`{each}`' for each in part['enum'])}.")
-    if isinstance(part.get("default"), str):
-        lines.append(f"Default: `{part['default']}`.")
+    for each in _alternatives(part):
+        if "enum" in each:
+            lines.append(f"One of {', '.join(f'`{word}`' for word in each['enum'])}.")
+    if "default" in part and not isinstance(part["default"], bool):
+        lines.append(f"Default: `{_shown(part['default'])}`.")
     return "\n\n".join(lines), place
 
 
+def _shown(value: object) -> str:
+    """A value as YAML in one line."""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(_shown(each) for each in value)}]"
+    return str(value)
+
+
 def _alternatives(schema: Schema) -> Iterator[Schema]:
-    """A schema, and those of which one must hold."""
+    """A schema, those of which one must hold, and those of both cases of a condition."""
     yield schema
-    for each in schema.get("anyOf", ()):
+    cases = (schema[key] for key in ("then", "else") if key in schema)
+    for each in (*schema.get("anyOf", ()), *cases):
         yield from _alternatives(each)
 
 
@@ -106,6 +115,8 @@ def _below(schema: Schema, step: str) -> list[Schema]:
     if step in schema.get("properties", {}):
         return [schema["properties"][step]]
     others = schema.get("items" if step == ITEM else "additionalProperties")
+    if isinstance(others, list):
+        return others
     return [others] if isinstance(others, dict) else []
 
 
