@@ -16,7 +16,7 @@ async function activate(context) {
   const options = {
     documentSelector: [
       { scheme: "file", language: "yaml" },
-      { scheme: "file", pattern: "**/smachac.toml" },
+      { scheme: "file", pattern: "**/{smachac,pyproject}.toml" },
     ],
     synchronize: {
       fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{yml,yaml,toml,py,hpp}"),

@@ -19,6 +19,7 @@ from smachac.batch import Batch, check_scripts
 from smachac.diagnostics.diagnostic import Report, in_order
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES, Analysis, Previous, read_machine
+from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library, find_project
 from smachac.frontend.loader import Library
@@ -235,7 +236,7 @@ class Session:
 
     def kind(self, path: str) -> FileKind:
         """The kind of a file, from its name, its folder and its text."""
-        if Path(path).name == "smachac.toml":
+        if Path(path).name in PROJECT_FILES:
             return "project"
         if self.is_interface(path):
             return "interface"

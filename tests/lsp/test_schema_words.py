@@ -253,3 +253,88 @@ def test_a_station_has_parts(tmp_path: Path) -> None:
     session.change(path, STATION.replace("panda", "pandda"))
     (found,) = session.check(path)[path]
     assert found.finding.help == "did you mean `panda`?"
+
+
+PYPROJECT = """\
+[project]
+name = "robot"
+
+[tool.smachac]
+ros = 2
+
+[tool.ruff]
+line-length = 100
+"""
+
+
+def at_mark(folder: Path, name: str, marked: str) -> tuple[Session, str, str, int]:
+    """A session with a text whose `|` is the cursor; with the path, the text and the offset."""
+    offset = marked.index("|")
+    text = marked.replace("|", "", 1)
+    path = os.path.realpath(folder / name)
+    session = Session([folder])
+    session.change(path, text)
+    return session, path, text, offset
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words", "absent"),
+    [
+        ("smachac.toml", "severity = {|}", ["SM301"], ["scripts"]),
+        ("smachac.toml", 'severity = {SM301 = "off", SM3|}', ["SM302"], ["SM301"]),
+        ("smachac.toml", 'severity = {SM3|, SM301 = "off"}', ["SM302"], ["SM301"]),
+        ("smachac.toml", 'severity = {SM301 = "off", SM302 = "|"}', ["warning"], ["SM301"]),
+        ("smachac.toml", "severity = {SM301 = |", ["warning"], ["scripts"]),
+        ("smachac.toml", "severity.SM3|", ["SM301"], ["scripts"]),
+        ("smachac.toml", 'severity.SM301 = "off"\nseverity.SM3|', ["SM302"], ["SM301"]),
+        ("smachac.toml", 'severity.SM301 = "|"', ["off"], ["SM301"]),
+        ("pyproject.toml", PYPROJECT.replace("ros = 2", "s|"), ["scripts", "ros"], ["name"]),
+        ("pyproject.toml", PYPROJECT.replace("ros = 2", "ros = 2\n|"), ["scripts"], ["ros"]),
+        ("pyproject.toml", '[tool.smachac.severity]\nSM301 = "|"', ["off"], ["scripts"]),
+        ("pyproject.toml", '[tool]\nsmachac.severity = {SM301 = "|"}', ["off"], ["scripts"]),
+    ],
+)
+def test_words_of_project_files(
+    name: str, text: str, words: list[str], absent: list[str], tmp_path: Path
+) -> None:
+    session, path, plain, offset = at_mark(tmp_path, name, text)
+    found = {each.word for each in complete(plain, offset, path, session.view(path))}
+    assert {*words} <= found
+    assert not {*absent} & found
+
+
+@pytest.mark.parametrize("old", ['name = "robot"', "line-length = 100", "[project]"])
+def test_other_tables_of_a_pyproject_have_no_words(old: str, tmp_path: Path) -> None:
+    marked = PYPROJECT.replace(old, f"{old[:3]}|{old[3:]}")
+    session, path, text, offset = at_mark(tmp_path, "pyproject.toml", marked)
+    view = session.view(path)
+    assert view is not None
+    assert complete(text, offset, path, view) == []
+    assert hover_at(view, path, offset, Facts(view.library, path, {})) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "part"),
+    [
+        ("smachac.toml", 'severity = {SM3|01 = "off"}', "read-before-write"),
+        ("smachac.toml", 'seve|rity = {SM301 = "off"}', "Severities by code"),
+        ("smachac.toml", 'severity.SM3|01 = "off"', "read-before-write"),
+        ("pyproject.toml", PYPROJECT.replace("ros", "r|os"), "The version of ROS"),
+    ],
+)
+def test_hover_in_project_files(name: str, text: str, part: str, tmp_path: Path) -> None:
+    session, path, _, offset = at_mark(tmp_path, name, text)
+    view = session.view(path)
+    assert view is not None
+    found = hover_at(view, path, offset, Facts(view.library, path, {}))
+    assert found is not None
+    assert part in found[0]
+
+
+def test_findings_in_a_pyproject(tmp_path: Path) -> None:
+    wrong = PYPROJECT.replace("ros = 2", "rso| = 2")
+    session, path, text, _ = at_mark(tmp_path, "pyproject.toml", wrong)
+    (found,) = session.check(path)[path]
+    assert (found.code, text[found.span.start : found.span.end]) == ("SM007", "rso")
+    session.change(path, PYPROJECT.replace("[tool.smachac]", "[tool.other]"))
+    assert session.check(path) == {path: []}
