@@ -8,7 +8,7 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-ros test-ros2 test-browser test-lowest check golden docs viewer bench build clean
+.PHONY: help demo test test-all test-ros test-ros2 test-browser test-vscode test-lowest check golden docs viewer bench build clean
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
@@ -45,6 +45,10 @@ test-browser: ## Install Chromium and what builds the viewer, and run the tests 
 	@scripts/setup.sh dev
 	@scripts/setup.sh browser || test -z "$$SMACHAC_REQUIRE_ALL"
 	$(RUN) pytest -n 2 -m browser -rs $(ARGS)
+
+test-vscode: ## Install code-server, and try the VS Code extension in it; never part of the tests
+	@scripts/setup.sh dev
+	@scripts/vscode_test.sh
 
 viewer: ## Check, test and build the viewer of the html target (viewer/) into smachac/targets/html
 	@scripts/setup.sh browser
@@ -85,4 +89,4 @@ build: ## Make the source archive and the wheel in dist/
 	$(RUN) build --outdir dist
 
 clean: ## Remove everything that the other targets made
-	rm -rf .venv .venv-lowest .venv-ros2 viewer/node_modules out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv .venv-lowest .venv-ros2 viewer/node_modules editors/vscode/node_modules editors/vscode/out editors/vscode/smachac.vsix out dist build smachac.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -16,7 +16,7 @@ async function activate(context) {
   const options = {
     documentSelector: [
       { scheme: "file", language: "yaml" },
-      { scheme: "file", pattern: "**/smachac.toml" },
+      { scheme: "file", pattern: "**/{smachac,pyproject}.toml" },
     ],
     synchronize: {
       fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{yml,yaml,toml,py,hpp}"),
@@ -104,7 +104,7 @@ function page(webview, media) {
   return `<!DOCTYPE html>
 <html><head><meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="${policy}">
-<style>body { background: white } .node, .cluster { cursor: pointer } svg { max-width: 100% }</style>
+<style>body { background: white } .node, .cluster { cursor: pointer } svg { max-width: 100%; height: auto }</style>
 </head><body><div id="picture"></div>
 <script src="${source("viz-global.js")}"></script><script src="${source("picture.js")}"></script>
 </body></html>`;

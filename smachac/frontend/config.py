@@ -25,6 +25,9 @@ SETTINGS: Mapping[str, str] = {
 }
 """The settings of a project file, with their descriptions."""
 
+PROJECT_FILES = ("smachac.toml", "pyproject.toml")
+"""The names of project files; the first one in a folder counts."""
+
 FOLDERS = ("scripts", "templates", "code")
 """The settings that name search folders."""
 

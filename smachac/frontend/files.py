@@ -15,7 +15,13 @@ from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, did_you_mean
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.frontend.config import FOLDERS, Project, folder_place, read_project
+from smachac.frontend.config import (
+    FOLDERS,
+    PROJECT_FILES,
+    Project,
+    folder_place,
+    read_project,
+)
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import SUFFIXES, Library, Ros
 from smachac.frontend.yaml_tree import Tree, parse
@@ -226,7 +232,7 @@ def find_project(
     """
     disk = disk or Disk()
     for folder in (main.parent, *_parents(main.parent)):
-        for name in ("smachac.toml", "pyproject.toml"):
+        for name in PROJECT_FILES:
             path = folder / name
             if disk.is_file(path):
                 if not lies_inside(path, folder):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TypeVar
+from pathlib import PurePath
+from typing import Literal, TypeAlias, TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import NOWHERE, Source, Span, Word
@@ -20,6 +21,7 @@ from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
 from smachac.robots import description
 from smachac.robots.description import Description, Part, Station, limb_names
+from smachac.robots.faults import read_file as read_faults
 from smachac.robots.fields import DataError, guess
 from smachac.robots.files import BUILT_IN
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
@@ -68,6 +70,22 @@ def built_in_robot(name: str, library: Library) -> Robot | None:
     if name not in BUILT_IN:
         return None
     return _Reader(Source("", ""), library, []).built_in(Word(name, NOWHERE))
+
+
+DataKind: TypeAlias = Literal["robot", "scene", "faults"]
+"""The kinds of files of data."""
+
+
+def check_data_file(source: Source, kind: DataKind, library: Library, report: Report) -> None:
+    """Check a file of data in itself: a mistake is reported at its place in the file."""
+    word = Word(PurePath(source.name).name, Span(source, 0, 0))
+    reader = _Reader(source, library, report)
+    if kind == "robot":
+        reader.described(word, source)
+    elif kind == "scene":
+        reader.data(word, source, read_scene, "scene")
+    else:
+        reader.data(word, source, read_faults, "list of faults")
 
 
 class _Reader:
@@ -175,8 +193,11 @@ class _Reader:
     def mistake(self, word: Word, tree: Tree, error: DataError, what: str) -> None:
         message = f"`{word.text}` does not describe a {what}: {error.message}"
         span = span_at(tree, error.place)
-        related = (Related(span=span, message="found here"),)
         arguments = (what, word.text, ".".join(map(str, error.place)))
+        if span.source.name == self.source.name:  # a file checked in itself
+            self.wrong(Word(word.text, span), message, error.help, arguments)
+            return
+        related = (Related(span=span, message="found here"),)
         self.wrong(word, message, error.help, arguments, related)
 
     def scene(self, word: Word) -> tuple[tuple[Body, ...], Tree] | None:

@@ -15,25 +15,26 @@ from smachac.lsp import (
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import FIELD, STATE, place_at
 from smachac.lsp.repair import MARK, with_mark
-from smachac.lsp.schema_words import schema_words
+from smachac.lsp.schema_words import TOML_WORD, schema_words
 from smachac.lsp.session import View
 from smachac.lsp.word import Completion, Request
 
 WORD = re.compile(r"[\w.<>/-]*")
 
 
-def word_range(text: str, offset: int) -> tuple[int, int]:
+def word_range(text: str, offset: int, word: re.Pattern[str] = WORD) -> tuple[int, int]:
     """The range of the word at an offset; empty if there is none."""
     start = offset
-    while start > 0 and WORD.fullmatch(text[start - 1]):
+    while start > 0 and word.fullmatch(text[start - 1]):
         start -= 1
-    found = WORD.match(text, offset)
+    found = word.match(text, offset)
     return start, found.end() if found is not None else offset
 
 
 def complete(text: str, offset: int, path: str, view: View | None) -> list[Completion]:
     """The words that fit at an offset of a text, in the order of their likelihood."""
-    start, end = word_range(text, offset)
+    is_project = view is not None and view.kind == "project"
+    start, end = word_range(text, offset, TOML_WORD if is_project else WORD)
     if view is not None and view.kind != "script":
         return schema_words(text, start, end, view)
     marked = with_mark(text, start, end, path)

@@ -1,11 +1,13 @@
-"""Completion and hover in interfaces, scenarios and project files, from their JSON Schemas."""
+"""Completion and hover in the files that are no scripts, from their JSON Schemas."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import PurePath
 
+from smachac.diagnostics.source import Source
 from smachac.driver import CODES
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.lsp.repair import with_mark
@@ -36,7 +38,7 @@ def schema_of(kind: FileKind) -> Schema:
 def schema_words(text: str, start: int, end: int, view: View) -> list[Completion]:
     """The words that fit in place of the text from `start` to `end`."""
     if view.kind == "project":
-        place = toml_place(text, start)
+        place = project_place(view.source, start)
         quoted = text[start - 1 : start] in ("'", '"')
         return [*_words(view.kind, place, " = ", "{}" if quoted else '"{}"')] if place else []
     marked = with_mark(text, start, end, view.source.name)
@@ -54,7 +56,7 @@ def _words(kind: FileKind, place: WordPlace, then: str, quoted: str) -> Iterator
         for value in known:
             word = str(value)
             values.setdefault(word, Completion(word=word, kind="value", text=quoted.format(word)))
-        if each.get("type") == "boolean":
+        if "boolean" in each.get("type", ()):
             values |= {word: Completion(word=word, kind="value") for word in ("true", "false")}
     yield from values.values()
     for name, part in _properties(schemas):
@@ -67,7 +69,7 @@ def schema_hover(view: View, offset: int) -> tuple[str, WordPlace] | None:
     """What a word of a file means, as Markdown, with its place; None if that is not known."""
     text = view.source.text
     if view.kind == "project":
-        place = toml_place(text, offset)
+        place = project_place(view.source, offset)
     else:
         place = yaml_place(view.library.parse(view.source, []), offset)
     if place is None:
@@ -79,17 +81,26 @@ def schema_hover(view: View, offset: int) -> tuple[str, WordPlace] | None:
     if part is None or "description" not in part:
         return None
     lines = [f"**{steps[-1]}**", str(part["description"])]
-    if "enum" in part:
-        lines.append(f"One of {', '.join(f'`{each}`' for each in part['enum'])}.")
-    if isinstance(part.get("default"), str):
-        lines.append(f"Default: `{part['default']}`.")
+    for each in _alternatives(part):
+        if "enum" in each:
+            lines.append(f"One of {', '.join(f'`{word}`' for word in each['enum'])}.")
+    if "default" in part and not isinstance(part["default"], bool):
+        lines.append(f"Default: `{_shown(part['default'])}`.")
     return "\n\n".join(lines), place
 
 
+def _shown(value: object) -> str:
+    """A value as YAML in one line."""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(_shown(each) for each in value)}]"
+    return str(value)
+
+
 def _alternatives(schema: Schema) -> Iterator[Schema]:
-    """A schema, and those of which one must hold."""
+    """A schema, those of which one must hold, and those of both cases of a condition."""
     yield schema
-    for each in schema.get("anyOf", ()):
+    cases = (schema[key] for key in ("then", "else") if key in schema)
+    for each in (*schema.get("anyOf", ()), *cases):
         yield from _alternatives(each)
 
 
@@ -106,6 +117,8 @@ def _below(schema: Schema, step: str) -> list[Schema]:
     if step in schema.get("properties", {}):
         return [schema["properties"][step]]
     others = schema.get("items" if step == ITEM else "additionalProperties")
+    if isinstance(others, list):
+        return others
     return [others] if isinstance(others, dict) else []
 
 
@@ -140,31 +153,81 @@ def yaml_place(tree: Tree | None, offset: int) -> WordPlace | None:
     return None
 
 
+_PART = r"""["']?[\w-]+["']?"""
 _HEADER = re.compile(r"^[ \t]*\[([^\[\]\n]*)\]", re.MULTILINE)
-_KEY = re.compile(r"""^[ \t]*["']?([\w-]+)["']?[ \t]*=""", re.MULTILINE)
-_WORD = re.compile(r"[\w-]*")
+_KEY = re.compile(rf"^[ \t]*({_PART}(?:\.{_PART})*)[ \t]*=", re.MULTILINE)
+_INLINE_KEY = re.compile(rf"[{{,][ \t]*({_PART}(?:\.{_PART})*)[ \t]*=")
+_DOTTED = re.compile(rf"[ \t]*((?:{_PART}\.)*)[\"']?")
+TOML_WORD = re.compile(r"[\w-]*")
+SETTINGS_TABLE = ("tool", "smachac")
+"""The table of a pyproject.toml with the settings that a smachac.toml has at its top."""
+
+
+def project_place(source: Source, offset: int) -> WordPlace | None:
+    """The place of the word at an offset of a project file; None outside of its settings."""
+    place = toml_place(source.text, offset)
+    if place is None or PurePath(source.name).name != "pyproject.toml":
+        return place
+    if place.steps[:2] != SETTINGS_TABLE:
+        return None
+    return replace(place, steps=place.steps[2:])
 
 
 def toml_place(text: str, offset: int) -> WordPlace | None:
-    """The place of the word at an offset of a project file, which has one key in a line."""
+    """The place of the word at an offset of a TOML file, whose values are in one line each."""
     line = text.rfind("\n", 0, offset) + 1
     before = text[line:offset]
     if before.lstrip().startswith(("[", "#")):
         return None
     start = offset
-    while start > line and _WORD.fullmatch(text[start - 1]):
+    while start > line and TOML_WORD.fullmatch(text[start - 1]):
         start -= 1
-    found = _WORD.match(text, offset)
+    found = TOML_WORD.match(text, offset)
     end = found.end() if found is not None else offset
     headers = [*_HEADER.finditer(text, 0, line)]
-    table = tuple(each.strip(" \"'") for each in headers[-1][1].split(".")) if headers else ()
+    table = _names(headers[-1][1]) if headers else ()
     key = _KEY.match(before)
-    if key is not None:
-        inside = before[key.end() :].lstrip()
-        steps = (*table, key[1], *([ITEM] if inside.startswith("[") else []))
-        return WordPlace(start=start, end=end, steps=steps, is_key=False)
-    top = headers[-1].end() if headers else 0
-    below = _HEADER.search(text, line)
-    others = _KEY.finditer(text, top, below.start() if below is not None else len(text))
-    names = frozenset(each[1] for each in others if not each.start() <= start <= each.end())
-    return WordPlace(start=start, end=end, steps=table, is_key=True, siblings=names)
+    if key is None:
+        top = headers[-1].end() if headers else 0
+        below = _HEADER.search(text, line)
+        others = _KEY.finditer(text, top, below.start() if below is not None else len(text))
+        return _key_place(text, line, (start, end), table, others)
+    steps = (*table, *_names(key[1]))
+    first = line + key.end()
+    while text[first:start].lstrip().startswith("{"):
+        last = max(text.rfind("{", first, start), text.rfind(",", first, start)) + 1
+        inner = _KEY.match(text[last:start])
+        if inner is None:
+            close = min(each for each in (text.find("}", start), text.find("\n", start), len(text))
+                        if each >= 0)  # fmt: skip
+            others = _INLINE_KEY.finditer(text, first, close)
+            return _key_place(text, last, (start, end), steps, others)
+        steps = (*steps, *_names(inner[1]))
+        first = last + inner.end()
+    in_list = text[first:start].lstrip().startswith("[")
+    return WordPlace(start=start, end=end, steps=(*steps, *([ITEM] if in_list else [])),
+                     is_key=False)  # fmt: skip
+
+
+def _key_place(
+    text: str,
+    first: int,
+    word: tuple[int, int],
+    table: tuple[str, ...],
+    others: Iterable[re.Match[str]],
+) -> WordPlace | None:
+    """The place of a key of a table, with the keys beside it; a dotted key begins at `first`."""
+    start, end = word
+    dotted = _DOTTED.fullmatch(text[first:start])
+    if dotted is None:
+        return None
+    prefix = _names(dotted[1].removesuffix("."))
+    beside = (_names(each[1]) for each in others if not each.start(1) <= start <= each.end(1))
+    names = frozenset(each[len(prefix)] for each in beside
+                      if len(each) > len(prefix) and each[: len(prefix)] == prefix)  # fmt: skip
+    return WordPlace(start=start, end=end, steps=(*table, *prefix), is_key=True, siblings=names)
+
+
+def _names(dotted: str) -> tuple[str, ...]:
+    """The names of a dotted key."""
+    return tuple(each.strip(" \t\"'") for each in dotted.split(".")) if dotted.strip() else ()

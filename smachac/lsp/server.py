@@ -484,7 +484,7 @@ def _changes(server: Server) -> None:
         source = server.session.source(path) if path is not None else None
         if path is None or source is None or server.session.disk.parse(source, []) is None:
             return None
-        if server.session.kind(path) in ("project", "scenario"):
+        if server.session.kind(path) not in ("script", "interface"):
             return None
         new = format_script(source)
         at = server.positions(source)

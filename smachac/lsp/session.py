@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,9 +19,11 @@ from smachac.batch import Batch, check_scripts
 from smachac.diagnostics.diagnostic import Report, in_order
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES, Analysis, Previous, read_machine
+from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.discovery import NothingFoundError, scripts_of
 from smachac.frontend.files import Disk, disk_library, find_project
 from smachac.frontend.loader import Library
+from smachac.frontend.robots import DataKind, check_data_file
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.yaml_tree import Map, Seq, Tree
 from smachac.ir.nodes import Machine
@@ -41,8 +43,19 @@ def collection_paused() -> Iterator[None]:
             gc.enable()
 
 
-FileKind: TypeAlias = Literal["script", "interface", "scenario", "project"]
+FileKind: TypeAlias = Literal[
+    "script", "interface", "scenario", "project", "robot", "scene", "faults"
+]
 """The kinds of files that are edited; a sub-script is a script."""
+
+KEYS_OF_KINDS: Mapping[str, FileKind] = {
+    "arms": "robot",
+    "urdf": "robot",
+    "parts": "robot",
+    "bodies": "scene",
+    "faults": "faults",
+}
+"""The keys by which a file is known that is no script: scripts have no such field."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,8 +63,8 @@ class View:
     """A text as the answers to questions about it need it, as far as it can be read.
 
     `source` has the offsets of the present text; its syntax errors are blanked. `context` has the
-    facts of the machine that uses the text: its own, or that of a script that calls it. Scenarios
-    and project files have no tree here.
+    facts of the machine that uses the text: its own, or that of a script that calls it. Only
+    scripts and interfaces have a tree here.
     """
 
     source: Source
@@ -209,6 +222,8 @@ class Session:
             return self._check_interface(path)
         if kind == "project":
             return self._check_project(path)
+        if kind == "robot" or kind == "scene" or kind == "faults":
+            return self._check_data(path, kind)
         roots = self.roots(path)
         batch = self._check_scripts(roots)
         if not any(path in (root, *batch.uses[root]) for root in batch.reports):
@@ -221,7 +236,7 @@ class Session:
 
     def kind(self, path: str) -> FileKind:
         """The kind of a file, from its name, its folder and its text."""
-        if Path(path).name == "smachac.toml":
+        if Path(path).name in PROJECT_FILES:
             return "project"
         if self.is_interface(path):
             return "interface"
@@ -230,6 +245,9 @@ class Session:
             entry = tree.entries[0]
             if entry.key.value == "states" and isinstance(entry.value, Map):
                 return "scenario"
+        for entry in tree.entries if isinstance(tree, Map) else ():
+            if str(entry.key.value) in KEYS_OF_KINDS:
+                return KEYS_OF_KINDS[str(entry.key.value)]
         return "script"
 
     def is_interface(self, path: str) -> bool:
@@ -256,6 +274,15 @@ class Session:
         """The findings in a project file."""
         report: Report = []
         find_project(Path(path), report, self.disk, CODES)
+        return {path: in_order(item for item in report
+                               if os.path.realpath(item.span.source.name) == path)}  # fmt: skip
+
+    def _check_data(self, path: str, kind: DataKind) -> dict[str, Report]:
+        """The findings in a file of data: a robot, a scene or faults."""
+        report: Report = []
+        source = self.disk.read(Path(path), report)
+        if source is not None:
+            check_data_file(source, kind, self._library(path), report)
         return {path: in_order(item for item in report
                                if os.path.realpath(item.span.source.name) == path)}  # fmt: skip
 
@@ -290,7 +317,7 @@ class Session:
         if source is None:
             return None
         kind = self.kind(path)
-        if kind in ("project", "scenario"):
+        if kind not in ("script", "interface"):
             library = self._library(path)
             return View(source=source, tree=None, library=library, context=None, kind=kind)
         tree = self.disk.parse(source, [])

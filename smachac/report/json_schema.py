@@ -1,5 +1,6 @@
 """JSON Schemas of the files that users write, for editors, generated from the tables of the front
-end: scripts, interfaces of state types, project files, scenarios.
+end (scripts, interfaces of state types, project files, scenarios) and of the room robots (robots,
+scenes, faults).
 
 Each schema accepts every file that the compiler accepts. The compiler checks more.
 """
@@ -19,6 +20,7 @@ from smachac.frontend.value_facts import NAMES
 from smachac.interpreter.scenario import STEP_FIELDS
 from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
 from smachac.ir.types import WORDS
+from smachac.robots import description, faults, scene
 
 Schema: TypeAlias = dict[str, Any]
 
@@ -96,7 +98,14 @@ def generated_schemas(codes: Mapping[str, Code]) -> dict[str, Callable[[], Schem
         "interface": interface_schema,
         "project": lambda: project_schema(codes),
         "scenario": scenario_schema,
+        "robot": lambda: _titled("A robot for smachac", description.SCHEMA),
+        "scene": lambda: _titled("A scene for smachac", scene.SCHEMA),
+        "faults": lambda: _titled("Faults for `smachac run --faults`", faults.SCHEMA),
     }
+
+
+def _titled(title: str, schema: Schema) -> Schema:
+    return {"$schema": DRAFT, "title": title, **schema}
 
 
 def script_schema() -> Schema:

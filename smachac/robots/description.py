@@ -11,7 +11,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from smachac.robots import fields
-from smachac.robots.fields import IDENTITY, DataError, Fields, Place, Pose, guess
+from smachac.robots.fields import (
+    IDENTITY,
+    DataError,
+    Field,
+    Fields,
+    Place,
+    Pose,
+    Shape,
+    Table,
+    guess,
+)
 
 DOWN: Pose = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 """The pose of a tool in the frame of a body that it grasps from above."""
@@ -114,156 +124,6 @@ class Station:
     base: Pose = IDENTITY
 
 
-def read(data: Any) -> Description | Station:
-    """The description in the data of a YAML file. Raises DataError."""
-    if isinstance(data, Mapping) and "parts" in data:
-        given = Fields(data, (), ("name", "base", "parts"))
-        return Station(
-            name=given.take("name", fields.text),
-            base=given.get("base", fields.pose, IDENTITY),
-            parts=given.take("parts", lambda each, place: fields.named(each, place, _part)),
-        )
-    given = Fields(data, (), ("name", "urdf", "base", "stand", "arms", "frames"))
-    return Description(
-        name=given.take("name", fields.text),
-        urdf=given.take("urdf", fields.text),
-        base=given.get("base", fields.pose, IDENTITY),
-        stand=given.get("stand", _stand, None),
-        limbs=given.take("arms", lambda each, place: fields.named(each, place, _limb)),
-        frames=given.get("frames", fields.texts, ()),
-    )
-
-
-def _part(name: str, data: Any, place: Place) -> Part:
-    fields.no_frame(name, place)
-    given = Fields(data, place, ("robot", "base"))
-    robot = given.take("robot", fields.text)
-    base = given.get("base", fields.pose, None)
-    return Part(name=name, robot=robot, base=base, place=(*place, "robot"))
-
-
-def _stand(data: Any, place: Place) -> Stand:
-    given = Fields(data, place, ("size", "centre"))
-    return Stand(
-        size=given.take("size", _footprint), centre=given.get("centre", _centre, (0.0, 0.0))
-    )
-
-
-def _footprint(data: Any, place: Place) -> tuple[float, float]:
-    x, y = _centre(data, place)
-    return fields.positive(x, (*place, 0)), fields.positive(y, (*place, 1))
-
-
-def _centre(data: Any, place: Place) -> tuple[float, float]:
-    x, y = _pair(data, place)
-    return fields.near(x, (*place, 0)), fields.near(y, (*place, 1))
-
-
-def _pair(data: Any, place: Place) -> tuple[float, float]:
-    found = fields.numbers(data, place)
-    if len(found) != 2:
-        raise DataError(f"two numbers are expected, not {len(found)}", place)
-    return found[0], found[1]
-
-
-_ARM = (
-    *("joints", "tool", "home", "grasp", "gripper", "tolerance", "efforts", "limits", "speeds"),
-)
-
-
-def _limb(name: str, data: Any, place: Place) -> Limb:
-    given = Fields(data, place, _ARM)
-    joints = given.take("joints", fields.texts)
-    for k, joint in enumerate(joints):
-        if joint in joints[:k]:
-            raise DataError(f"the joint `{joint}` is there twice", (*place, "joints", k))
-    tip, offset = given.take("tool", _tool)
-    home = given.take("home", fields.numbers)
-    limits: tuple[tuple[float, float], ...] = given.get("limits", _limits, ())
-    speeds: tuple[float, ...] = given.get("speeds", _speeds, ())
-    gripper = given.get("gripper", _gripper, None)
-    for key, found in (("home", home), ("limits", limits), ("speeds", speeds)):
-        if found and len(found) != len(joints):
-            message = f"`{key}` has {len(found)} items, but the arm has {len(joints)} joints"
-            raise DataError(message, (*place, key))
-    for k, (low, high) in enumerate(limits):
-        _inside(joints[k], home[k], UrdfJoint(low, high, turns=True), (*place, "home", k))
-    for finger in gripper.fingers if gripper is not None else ():
-        if finger.joint in joints:
-            spot = (*place, "gripper", "joints", finger.joint)
-            raise DataError(f"the joint `{finger.joint}` is one of the arm", spot)
-    return Limb(
-        name=name,
-        joints=joints,
-        tip=tip,
-        offset=offset,
-        home=home,
-        grasp=given.get("grasp", fields.pose, DOWN),
-        gripper=gripper,
-        settled=given.get("tolerance", fields.positive, 0.002),
-        efforts=given.get("efforts", _efforts, ()),
-        limits=limits,
-        speeds=speeds,
-    )
-
-
-def _tool(data: Any, place: Place) -> tuple[str, Pose]:
-    if isinstance(data, str):
-        return fields.text(data, place), IDENTITY
-    given = Fields(data, place, ("link", "offset"))
-    return given.take("link", fields.text), given.get("offset", fields.pose, IDENTITY)
-
-
-def _limits(data: Any, place: Place) -> tuple[tuple[float, float], ...]:
-    rows = enumerate(fields.items(data, place))
-    found = tuple(_pair(each, (*place, k)) for k, each in rows)
-    for k, (low, high) in enumerate(found):
-        if low > high:
-            message = f"the lowest position {low:g} is above the highest {high:g}"
-            raise DataError(message, (*place, k))
-    return found
-
-
-def _speeds(data: Any, place: Place) -> tuple[float, ...]:
-    rows = enumerate(fields.items(data, place))
-    return tuple(fields.positive(each, (*place, k)) for k, each in rows)
-
-
-def _efforts(data: Any, place: Place) -> tuple[tuple[str, float], ...]:
-    return fields.named(data, place, lambda name, each, at: (name, fields.positive(each, at)))
-
-
-def _gripper(data: Any, place: Place) -> Gripper:
-    given = Fields(data, place, ("joints", "width", "pads", "force", "anchored"))
-    closed, opened = given.take("width", _width)
-    return Gripper(
-        fingers=given.take("joints", lambda each, at: fields.named(each, at, _finger)),
-        width=(closed, opened),
-        pads=given.get("pads", fields.texts, ()),
-        force=given.get("force", fields.positive, 20.0),
-        anchored=given.get("anchored", fields.truth, False),
-    )
-
-
-def _width(data: Any, place: Place) -> tuple[float, float]:
-    given = Fields(data, place, ("open", "closed"))
-    opened, closed = given.take("open", fields.number), given.take("closed", fields.number)
-    if not 0.0 <= closed < opened:
-        raise DataError("a gripper is wider when it is open", place)
-    if opened > 1.0:
-        message = f"a gripper that opens {opened:g} m wide is larger than an arm"
-        raise DataError(message, (*place, "open"), "lengths are in metres, not in millimetres")
-    return closed, opened
-
-
-def _finger(name: str, data: Any, place: Place) -> Finger:
-    given = Fields(data, place, ("open", "closed"))
-    opened, closed = given.take("open", fields.number), given.get("closed", fields.number, 0.0)
-    if opened == closed:
-        raise DataError("the positions `open` and `closed` are the same", place)
-    return Finger(joint=name, opened=opened, closed=closed)
-
-
 @dataclass(frozen=True, slots=True)
 class UrdfJoint:
     """A joint of a URDF file: its limits (rad or m), and whether it turns."""
@@ -271,6 +131,290 @@ class UrdfJoint:
     lower: float
     upper: float
     turns: bool
+
+
+def _centre(data: Any, place: Place) -> tuple[float, float]:
+    x, y = _pair(data, place)
+    return fields.near(x, (*place, 0)), fields.near(y, (*place, 1))
+
+
+def _footprint(data: Any, place: Place) -> tuple[float, float]:
+    x, y = _centre(data, place)
+    return fields.positive(x, (*place, 0)), fields.positive(y, (*place, 1))
+
+
+@fields.shape(fields.row(2, fields.number.schema))
+def _pair(data: Any, place: Place) -> tuple[float, float]:
+    found = fields.numbers(data, place)
+    if len(found) != 2:
+        raise DataError(f"two numbers are expected, not {len(found)}", place)
+    return found[0], found[1]
+
+
+_STAND: Table = {
+    "size": Field(Shape(_footprint, fields.row(2, fields.EXTENT)), "The footprint in x and y (m)."),
+    "centre": Field(
+        Shape(_centre, fields.row(2, fields.near.schema)),
+        "The centre of the footprint in x and y (m), in the base frame.",
+        (0.0, 0.0),
+    ),
+}
+
+
+@fields.record(_STAND)
+def _stand(given: Fields) -> Stand:
+    return Stand(size=given["size"], centre=given["centre"])
+
+
+_FINGER: Table = {
+    "open": Field(fields.number, "The position when the gripper is open (m, or rad if it turns)."),
+    "closed": Field(
+        fields.number, "The position when the gripper is closed (m, or rad if it turns).", 0.0
+    ),
+}
+
+
+@fields.record(_FINGER)
+def _finger(given: Fields) -> Finger:
+    opened, closed = given["open"], given["closed"]
+    if opened == closed:
+        raise DataError("the positions `open` and `closed` are the same", given.place)
+    return Finger(joint=given.name, opened=opened, closed=closed)
+
+
+WIDEST = 1.0
+"""The largest width of a gripper (m): a larger one is written in millimetres."""
+
+_WIDTH: Table = {
+    "open": Field(
+        Shape(fields.number.read, {"type": "number", "exclusiveMinimum": 0, "maximum": WIDEST}),
+        "The width between the fingers when the gripper is open (m).",
+    ),
+    "closed": Field(
+        Shape(fields.number.read, {"type": "number", "minimum": 0, "exclusiveMaximum": WIDEST}),
+        "The width between the fingers when the gripper is closed (m).",
+    ),
+}
+
+
+@fields.record(_WIDTH)
+def _width(given: Fields) -> tuple[float, float]:
+    opened, closed = given["open"], given["closed"]
+    if not 0.0 <= closed < opened:
+        raise DataError("a gripper is wider when it is open", given.place)
+    if opened > WIDEST:
+        message = f"a gripper that opens {opened:g} m wide is larger than an arm"
+        place = (*given.place, "open")
+        raise DataError(message, place, "lengths are in metres, not in millimetres")
+    return closed, opened
+
+
+_GRIPPER: Table = {
+    "joints": Field(fields.values(fields.named(_finger)), "The joints of the fingers, by name."),
+    "width": Field(_width, "The width between the fingers (m)."),
+    "pads": Field(
+        fields.texts, "The links that touch a body; without it, the child links of the joints.", ()
+    ),
+    "force": Field(fields.positive, "The force of each finger (N, or N m if it turns).", 20.0),
+    "anchored": Field(
+        fields.truth,
+        "The contacts of the pads are stiff and do not creep, as with <friction_anchor/>.",
+        False,
+    ),
+}
+
+
+@fields.record(_GRIPPER)
+def _gripper(given: Fields) -> Gripper:
+    width = given["width"]
+    return Gripper(
+        fingers=given["joints"],
+        width=width,
+        pads=given["pads"],
+        force=given["force"],
+        anchored=given["anchored"],
+    )
+
+
+_TOOL: Table = {
+    "link": Field(fields.text, "The link of the tool frame."),
+    "offset": Field(
+        fields.pose, "The pose of the tool frame in the link: metres, and a quaternion.", IDENTITY
+    ),
+}
+
+
+@fields.record(_TOOL)
+def _tool_record(given: Fields) -> tuple[str, Pose]:
+    return given["link"], given["offset"]
+
+
+@fields.shape({"anyOf": [fields.text.schema, _tool_record.schema]})
+def _tool(data: Any, place: Place) -> tuple[str, Pose]:
+    if isinstance(data, str):
+        return fields.text(data, place), IDENTITY
+    return _tool_record(data, place)
+
+
+@fields.shape({**fields.texts.schema, "uniqueItems": True})
+def _joints(data: Any, place: Place) -> tuple[str, ...]:
+    joints = fields.texts(data, place)
+    for k, joint in enumerate(joints):
+        if joint in joints[:k]:
+            raise DataError(f"the joint `{joint}` is there twice", (*place, k))
+    return joints
+
+
+@fields.shape(_pair.schema)
+def _limit(data: Any, place: Place) -> tuple[float, float]:
+    low, high = _pair(data, place)
+    if low > high:
+        message = f"the lowest position {low:g} is above the highest {high:g}"
+        raise DataError(message, place)
+    return low, high
+
+
+_ARM: Table = {
+    "joints": Field(_joints, "The joints from the base to the hand."),
+    "tool": Field(_tool, "The tool frame: a link, or a link and an offset."),
+    "home": Field(fields.numbers, "The joint positions at the start (rad), one for each joint."),
+    "grasp": Field(
+        fields.pose,
+        "The pose of the tool in the frame of a cube that it grasps: metres, and a quaternion.",
+        DOWN,
+    ),
+    "gripper": Field(_gripper, "The gripper; an arm without one cannot grasp.", None),
+    "tolerance": Field(
+        fields.positive, "The tolerance of each joint at the end of a move (rad).", 0.002
+    ),
+    "efforts": Field(
+        fields.named(fields.positive),
+        "Largest torques of joints, by name (N m); they replace those of the URDF file.",
+        (),
+    ),
+    "limits": Field(
+        fields.each(_limit),
+        "[lowest, highest] position of each joint (rad): then the checker reads no URDF file.",
+        (),
+    ),
+    "speeds": Field(
+        fields.each(fields.positive), "The largest speed of each joint (rad/s), for `limits`.", ()
+    ),
+}
+
+
+@fields.record(_ARM)
+def _limb(given: Fields) -> Limb:
+    limb = Limb(
+        name=given.name,
+        joints=given["joints"],
+        tip=given["tool"][0],
+        offset=given["tool"][1],
+        home=given["home"],
+        limits=given["limits"],
+        speeds=given["speeds"],
+        gripper=given["gripper"],
+        grasp=given["grasp"],
+        settled=given["tolerance"],
+        efforts=given["efforts"],
+    )
+    count = len(limb.joints)
+    for key, size in (
+        ("home", len(limb.home)),
+        ("limits", len(limb.limits)),
+        ("speeds", len(limb.speeds)),
+    ):
+        if size != count and (size or key == "home"):
+            message = f"`{key}` has {size} items, but the arm has {count} joints"
+            raise DataError(message, (*given.place, key))
+    for k, (low, high) in enumerate(limb.limits):
+        joint = UrdfJoint(low, high, turns=True)
+        _inside(limb.joints[k], limb.home[k], joint, (*given.place, "home", k))
+    for finger in limb.gripper.fingers if limb.gripper is not None else ():
+        if finger.joint in limb.joints:
+            spot = (*given.place, "gripper", "joints", finger.joint)
+            raise DataError(f"the joint `{finger.joint}` is one of the arm", spot)
+    return limb
+
+
+_PART: Table = {
+    "robot": Field(
+        fields.text, "A built-in robot (panda, baxter, iiwa), or the file of a description."
+    ),
+    "base": Field(
+        fields.pose,
+        "The pose of its base in the frame `base` of the whole: metres, and a quaternion; without"
+        " it, that of its description.",
+        None,
+    ),
+}
+
+
+@fields.record(_PART)
+def _part(given: Fields) -> Part:
+    place = (*given.place, "robot")
+    return Part(name=given.name, robot=given["robot"], base=given["base"], place=place)
+
+
+_NAME = Field(fields.text, "The name of the robot.")
+_BASE = Field(
+    fields.pose,
+    "The pose of the base in the world: [[x, y, z], [qx, qy, qz, qw]] in metres, or [x, y, z].",
+    IDENTITY,
+)
+
+_STATION: Table = {
+    "name": _NAME,
+    "base": _BASE,
+    "parts": Field(
+        fields.values(fields.named(_part, reserved=fields.FRAMES)),
+        "Several robots in one world, by name.",
+    ),
+}
+
+
+@fields.record(_STATION)
+def _station(given: Fields) -> Station:
+    return Station(name=given["name"], base=given["base"], parts=given["parts"])
+
+
+_ROBOT: Table = {
+    "name": _NAME,
+    "urdf": Field(fields.text, "The URDF file: beside this file, or in PyBullet's data."),
+    "base": _BASE,
+    "stand": Field(_stand, "The box under the robot, from the floor to its base.", None),
+    "arms": Field(fields.values(fields.named(_limb)), "The arms, by name."),
+    "frames": Field(
+        fields.texts, "The names of the links, for a robot whose URDF file is not read.", ()
+    ),
+}
+
+
+@fields.record(_ROBOT)
+def _robot(given: Fields) -> Description:
+    return Description(
+        name=given["name"],
+        urdf=given["urdf"],
+        base=given["base"],
+        stand=given["stand"],
+        limbs=given["arms"],
+        frames=given["frames"],
+    )
+
+
+@fields.shape({"if": {"required": ["parts"]}, "then": _station.schema, "else": _robot.schema})
+def _whole(data: Any, place: Place) -> Description | Station:
+    several = isinstance(data, Mapping) and "parts" in data
+    return _station(data, place) if several else _robot(data, place)
+
+
+SCHEMA = _whole.schema
+"""The JSON Schema of a description."""
+
+
+def read(data: Any) -> Description | Station:
+    """The description in the data of a YAML file. Raises DataError."""
+    return _whole(data, ())
 
 
 def check(robot: Description, joints: Mapping[str, UrdfJoint], links: Collection[str]) -> None:

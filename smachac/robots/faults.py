@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from smachac.robots import fields as data
-from smachac.robots.fields import DataError, Fields, Place, guess
+from smachac.robots.fields import DataError, Field, Fields, Place, Shape, Table, guess
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,9 +36,10 @@ class Kind(NamedTuple):
     """
 
     target: str
-    value: Callable[[Any, Place], object] | None = None
+    value: Shape[Any] | None = None
 
 
+@data.shape({"type": "number", "minimum": 0})
 def _amount(value: Any, place: Place) -> float:
     found = data.number(value, place)
     if found < 0.0:
@@ -63,7 +64,30 @@ KINDS: Mapping[str, Kind] = {
 of `grip_force` a force (N), of `weak_joint` a torque (N m), of `sensor_noise` a standard deviation
 (m)."""
 
-_KEYS = tuple(each.name for each in fields(Fault))
+
+@data.shape({"enum": [*KINDS]})
+def _kind(content: Any, place: Place) -> str:
+    name = data.text(content, place)
+    if name not in KINDS:
+        raise DataError(f"no fault kind `{name}`", place, guess(name, KINDS))
+    return name
+
+
+@data.shape({})
+def _value(content: Any, place: Place) -> Any:
+    return content
+
+
+_FAULT: Table = {
+    "kind": Field(_kind, "What happens (docs/robots.md, Faults)."),
+    "target": Field(data.text, "The body, joint or arm; the only arm needs no name.", ""),
+    "value": Field(_value, "The parameter of the kind: a pose, or a number in N, N m or m.", None),
+    "at": Field(_amount, "The simulated time when it happens (s).", None),
+    "state": Field(data.text, "It happens when a state begins: its path, or the end of it.", None),
+    "probability": Field(data.probability, "The probability that it happens.", 1.0),
+    "each_time": Field(data.truth, "It can happen at every visit of the state.", False),
+}
+"""The keys of a fault, which are the fields of Fault."""
 
 
 def read(faults: Iterable[Fault | Mapping[str, Any]]) -> tuple[Fault, ...]:
@@ -73,20 +97,33 @@ def read(faults: Iterable[Fault | Mapping[str, Any]]) -> tuple[Fault, ...]:
     )
 
 
-def read_file(content: Any) -> tuple[Fault, ...]:
-    """The faults in the data of a YAML file: a list under `faults`. Raises DataError."""
-    given = Fields(content, (), ("faults",))
-    rows = given.take("faults", data.items)
-    return tuple(fault(each, ("faults", k)) for k, each in enumerate(rows))
+def _kind_schema(name: str, kind: Kind) -> data.Schema:
+    """What the JSON Schema of a fault demands for a kind."""
+    needed = [data.given("target")] if kind.target in ("body", "joint") else []
+    needed += [{"not": data.given("target")}] if not kind.target else []
+    if kind.value is None:
+        needed.append({"not": data.given("value")})
+    else:
+        needed.append({"required": ["value"], "properties": {"value": kind.value.schema}})
+    of_kind = {"required": ["kind"], "properties": {"kind": {"const": name}}}
+    return {"if": of_kind, "then": {"allOf": needed}}
 
 
-def fault(content: Any, place: Place) -> Fault:
-    """One fault. Raises DataError."""
-    given = Fields(content, place, _KEYS)
-    name = given.take("kind", data.text)
-    if name not in KINDS:
-        raise DataError(f"no fault kind `{name}`", (*place, "kind"), guess(name, KINDS))
-    kind = KINDS[name]
+_EACH_TIME = {"required": ["each_time"], "properties": {"each_time": {"const": True}}}
+
+
+@data.record(
+    _FAULT,
+    oneOf=[data.given("at"), data.given("state")],
+    allOf=[
+        *(_kind_schema(name, kind) for name, kind in KINDS.items()),
+        {"if": _EACH_TIME, "then": data.given("state")},
+    ],
+)
+def fault(given: Fields) -> Fault:
+    """One fault."""
+    name: str = given["kind"]
+    place, kind = given.place, KINDS[name]
     if ("at" in given) == ("state" in given):
         raise DataError(f"fault `{name}` needs either `at` or `state`", place)
     if kind.target in ("body", "joint") and "target" not in given:
@@ -95,15 +132,35 @@ def fault(content: Any, place: Place) -> Fault:
         raise DataError(f"fault `{name}` has no `target`", (*place, "target"))
     if kind.value is None and "value" in given:
         raise DataError(f"fault `{name}` has no `value`", (*place, "value"))
-    each_time = given.get("each_time", data.truth, False)
-    if each_time and "state" not in given:
+    if kind.value is not None and "value" not in given:
+        raise DataError("the key `value` is missing", place)
+    if given["each_time"] and "state" not in given:
         raise DataError("`each_time` needs `state`", (*place, "each_time"))
+    value = None if kind.value is None else kind.value(given["value"], (*place, "value"))
     return Fault(
         kind=name,
-        target=given.get("target", data.text, ""),
-        value=None if kind.value is None else given.take("value", kind.value),
-        at=given.get("at", _amount, None),
-        state=given.get("state", data.text, None),
-        probability=given.get("probability", data.probability, 1.0),
-        each_time=each_time,
+        target=given["target"],
+        value=value,
+        at=given["at"],
+        state=given["state"],
+        probability=given["probability"],
+        each_time=given["each_time"],
     )
+
+
+_FILE: Table = {"faults": Field(data.each(fault), "The faults.")}
+
+
+@data.record(_FILE)
+def _file(given: Fields) -> tuple[Fault, ...]:
+    found: tuple[Fault, ...] = given["faults"]
+    return found
+
+
+def read_file(content: Any) -> tuple[Fault, ...]:
+    """The faults in the data of a YAML file: a list under `faults`. Raises DataError."""
+    return _file(content, ())
+
+
+SCHEMA = _file.schema
+"""The JSON Schema of a file of faults."""

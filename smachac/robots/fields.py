@@ -1,4 +1,5 @@
-"""Reading of plain data (what a YAML file holds), with the place of the first mistake.
+"""Shapes of plain data (what a YAML file holds): each is read, with the place of the first mistake,
+and has a JSON Schema.
 
 A place is the path of keys and indices from the outermost value: `("arms", "left", "home", 2)`.
 """
@@ -7,11 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, Generic, NamedTuple, TypeAlias, TypeVar
 
 T = TypeVar("T")
 
+Schema: TypeAlias = dict[str, Any]
 Place: TypeAlias = tuple[str | int, ...]
 Vector: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
@@ -37,31 +40,110 @@ class DataError(ValueError):
         return f"{where}: {self.message}" if where else self.message
 
 
-class Fields:
-    """A mapping at a place, whose keys are taken one by one. Every method raises DataError."""
+@dataclass(frozen=True, slots=True)
+class Shape(Generic[T]):
+    """A kind of value: the function that reads it, and its JSON Schema.
 
-    def __init__(self, data: Any, place: Place, known: Iterable[str]) -> None:
+    The function gets the data and their place, and raises DataError. The schema accepts all data
+    that the function accepts.
+    """
+
+    read: Callable[[Any, Place], T]
+    schema: Schema
+
+    def __call__(self, data: Any, place: Place) -> T:
+        return self.read(data, place)
+
+
+def shape(schema: Schema) -> Callable[[Callable[[Any, Place], T]], Shape[T]]:
+    """The shape of a reading function with that JSON Schema."""
+    return lambda read: Shape(read, schema)
+
+
+REQUIRED: Any = object()
+"""The default of a field that must be there."""
+
+
+class Field(NamedTuple):
+    """A key of a mapping: the shape of its value, a description, its default."""
+
+    shape: Shape[Any]
+    doc: str
+    default: Any = REQUIRED
+
+
+Table: TypeAlias = Mapping[str, Field]
+"""The keys that a mapping may have."""
+
+
+class Fields:
+    """A mapping at a place, with the keys of a table. Every method raises DataError."""
+
+    def __init__(self, data: Any, place: Place, table: Table) -> None:
         if not isinstance(data, Mapping):
             raise DataError(f"a mapping is expected, not {shown(data)}", place)
-        self.data, self.place = data, place
-        names = tuple(known)
+        self.data, self.place, self.table = data, place, table
         for key in data:
-            if key not in names:
+            if key not in table:
                 message = f"the key `{key}` is unknown"
-                raise DataError(message, (*place, str(key)), guess(key, names))
+                raise DataError(message, (*place, str(key)), guess(key, table))
 
     def __contains__(self, key: str) -> bool:
         return self.data.get(key) is not None
 
-    def take(self, key: str, read: Callable[[Any, Place], T]) -> T:
-        """The value of a key, which must be there."""
-        if self.data.get(key) is None:
+    def __getitem__(self, key: str) -> Any:
+        """The value of a key; its default if it is absent or null."""
+        field = self.table[key]
+        if key in self:
+            return field.shape(self.data[key], (*self.place, key))
+        if field.default is REQUIRED:
             raise DataError(f"the key `{key}` is missing", self.place)
-        return read(self.data[key], (*self.place, key))
+        return field.default
 
-    def get(self, key: str, read: Callable[[Any, Place], T], default: T) -> T:
-        """The value of a key; `default` if it is absent or null."""
-        return self.take(key, read) if key in self else default
+    @property
+    def name(self) -> str:
+        """The key under which the mapping is."""
+        return str(self.place[-1])
+
+
+def record(table: Table, **more: Any) -> Callable[[Callable[[Fields], T]], Shape[T]]:
+    """The shape of a mapping with the keys of a table, of which a function makes a value. `more`
+    are further keywords of its JSON Schema."""
+
+    def made(make: Callable[[Fields], T]) -> Shape[T]:
+        schema = {**table_schema(table), **more}
+        return Shape(lambda data, place: make(Fields(data, place, table)), schema)
+
+    return made
+
+
+def table_schema(table: Table) -> Schema:
+    """The JSON Schema of a mapping with the keys of a table."""
+    needed = [key for key, field in table.items() if field.default is REQUIRED]
+    return {
+        "type": "object",
+        **({"required": needed} if needed else {}),
+        "additionalProperties": False,
+        "properties": {key: _field_schema(field) for key, field in table.items()},
+    }
+
+
+def _field_schema(field: Field) -> Schema:
+    described = {"description": field.doc}
+    if field.default is REQUIRED:
+        return {**described, **field.shape.schema}
+    if field.default not in (None, "", ()):
+        described["default"] = field.default
+    schema = field.shape.schema
+    if "type" in schema:
+        return {**described, **schema, "type": [schema["type"], "null"]}
+    options = schema["anyOf"] if schema.keys() == {"anyOf"} else [schema]
+    return {**described, "anyOf": [*options, {"type": "null"}]}
+
+
+def given(key: str) -> Schema:
+    """The JSON Schema of a mapping that has a key, and not null for it."""
+    return {"required": [key], "properties": {key: {"not": {"type": "null"}}}}
 
 
 def guess(name: object, known: Iterable[str]) -> str:
@@ -79,6 +161,7 @@ def shown(data: Any) -> str:
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
+@shape({"type": "string", "minLength": 1})
 def text(data: Any, place: Place) -> str:
     """A text that is not empty."""
     if not isinstance(data, str) or not data:
@@ -86,6 +169,7 @@ def text(data: Any, place: Place) -> str:
     return data
 
 
+@shape({"type": "number"})
 def number(data: Any, place: Place) -> float:
     """A finite number."""
     if isinstance(data, bool) or not isinstance(data, int | float) or not math.isfinite(data):
@@ -93,6 +177,7 @@ def number(data: Any, place: Place) -> float:
     return float(data)
 
 
+@shape({"type": "number", "exclusiveMinimum": 0})
 def positive(data: Any, place: Place) -> float:
     """A number above 0."""
     found = number(data, place)
@@ -101,6 +186,7 @@ def positive(data: Any, place: Place) -> float:
     return found
 
 
+@shape({"type": "number", "minimum": 0, "maximum": 1})
 def probability(data: Any, place: Place) -> float:
     """A number from 0 to 1."""
     found = number(data, place)
@@ -109,6 +195,7 @@ def probability(data: Any, place: Place) -> float:
     return found
 
 
+@shape({"type": "boolean"})
 def truth(data: Any, place: Place) -> bool:
     """`true` or `false`."""
     if not isinstance(data, bool):
@@ -123,14 +210,23 @@ def items(data: Any, place: Place) -> list[Any]:
     return list(data)
 
 
-def texts(data: Any, place: Place) -> tuple[str, ...]:
-    """A list of texts."""
-    return tuple(text(each, (*place, k)) for k, each in enumerate(items(data, place)))
+def each(item: Shape[T]) -> Shape[tuple[T, ...]]:
+    """A list whose items have one shape."""
+
+    @shape({"type": "array", "items": item.schema})
+    def read(data: Any, place: Place) -> tuple[T, ...]:
+        return tuple(item(part, (*place, k)) for k, part in enumerate(items(data, place)))
+
+    return read
 
 
-def numbers(data: Any, place: Place) -> tuple[float, ...]:
-    """A list of numbers."""
-    return tuple(number(each, (*place, k)) for k, each in enumerate(items(data, place)))
+texts = each(text)
+numbers = each(number)
+
+
+def row(count: int, item: Schema) -> Schema:
+    """The JSON Schema of a list of that length."""
+    return {"type": "array", "items": item, "minItems": count, "maxItems": count}
 
 
 def vector(data: Any, place: Place) -> Vector:
@@ -141,29 +237,34 @@ def vector(data: Any, place: Place) -> Vector:
     return found[0], found[1], found[2]
 
 
-def size(data: Any, place: Place) -> Vector:
-    """Three lengths (m) above 0."""
-    found = vector(data, place)
-    for k, each in enumerate(found):
-        positive(each, (*place, k))
-        near(each, (*place, k))
-    return found
-
-
-def no_frame(name: str, place: Place) -> None:
-    """Raises DataError for a name that is that of a frame of every world."""
-    if name in FRAMES:
-        raise DataError(f"`{name}` is the name of a frame", place, "choose another name")
-
-
-def near(length: float, place: Place) -> float:
+@shape({"type": "number", "minimum": -FARTHEST, "maximum": FARTHEST})
+def near(data: Any, place: Place) -> float:
     """A length (m) that is not far too large for a robot's cell."""
+    length = number(data, place)
     if abs(length) > FARTHEST:
         message = f"{length:g} m is farther away than {FARTHEST:g} m"
         raise DataError(message, place, "lengths are in metres, not in millimetres")
     return length
 
 
+EXTENT: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": FARTHEST}
+"""The JSON Schema of an edge length (m)."""
+
+
+@shape(row(3, EXTENT))
+def size(data: Any, place: Place) -> Vector:
+    """Three lengths (m) above 0."""
+    found = vector(data, place)
+    for k, edge in enumerate(found):
+        positive(edge, (*place, k))
+        near(edge, (*place, k))
+    return found
+
+
+_POSITION = row(3, near.schema)
+
+
+@shape({"anyOf": [_POSITION, row(2, {}) | {"items": [_POSITION, row(4, number.schema)]}]})
 def pose(data: Any, place: Place) -> Pose:
     """`[[x, y, z], [qx, qy, qz, qw]]`, or the position alone; the quaternion is normalized."""
     parts = items(data, place)
@@ -176,8 +277,8 @@ def pose(data: Any, place: Place) -> Pose:
         rotation = quaternion(parts[1], (*place, 1))
     else:
         raise DataError("a pose `[[x, y, z], [qx, qy, qz, qw]]` is expected", place)
-    for k, each in enumerate(position):
-        near(each, (*spot, k))
+    for k, coordinate in enumerate(position):
+        near(coordinate, (*spot, k))
     return position, rotation
 
 
@@ -189,17 +290,36 @@ def quaternion(data: Any, place: Place) -> Quaternion:
     length = math.hypot(*found)
     if length == 0.0:
         return NO_ROTATION
-    x, y, z, w = (each / length for each in found)
+    x, y, z, w = (part / length for part in found)
     return x, y, z, w
 
 
 def named(
-    data: Any, place: Place, read: Callable[[str, Any, Place], T], least: int = 1
-) -> tuple[T, ...]:
-    """A mapping of names to values, each read with its name."""
-    if not isinstance(data, Mapping) or len(data) < least:
-        raise DataError(f"a mapping of names is expected, not {shown(data)}", place)
-    return tuple(
-        read(text(name, (*place, str(name))), value, (*place, str(name)))
-        for name, value in data.items()
-    )
+    item: Shape[T], *, least: int = 1, reserved: tuple[str, ...] = ()
+) -> Shape[tuple[tuple[str, T], ...]]:
+    """A mapping of names to values of one shape, with at least `least` names, none of `reserved`;
+    read as pairs."""
+    names: Schema = {"minLength": 1}
+    schema: Schema = {"type": "object", "additionalProperties": item.schema}
+    schema |= {"minProperties": least} if least else {}
+    schema["propertyNames"] = names | ({"not": {"enum": [*reserved]}} if reserved else {})
+
+    @shape(schema)
+    def read(data: Any, place: Place) -> tuple[tuple[str, T], ...]:
+        if not isinstance(data, Mapping) or len(data) < least:
+            raise DataError(f"a mapping of names is expected, not {shown(data)}", place)
+        return tuple(pair(*entry, place) for entry in data.items())
+
+    def pair(name: Any, value: Any, place: Place) -> tuple[str, T]:
+        below = (*place, str(name))
+        text(name, below)
+        if name in reserved:
+            raise DataError(f"`{name}` is the name of a frame", below, "choose another name")
+        return name, item(value, below)
+
+    return read
+
+
+def values(shape: Shape[tuple[tuple[str, T], ...]]) -> Shape[tuple[T, ...]]:
+    """A mapping of names, read as its values alone."""
+    return Shape(lambda data, place: tuple(value for _, value in shape(data, place)), shape.schema)

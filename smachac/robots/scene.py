@@ -8,7 +8,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from smachac.robots import fields
-from smachac.robots.fields import IDENTITY, DataError, Fields, Place, Pose, Vector, guess
+from smachac.robots.fields import (
+    IDENTITY,
+    DataError,
+    Field,
+    Fields,
+    Place,
+    Pose,
+    Table,
+    Vector,
+    guess,
+)
 from smachac.robots.models import MODELS, RGB, Box, Model
 
 
@@ -47,10 +57,119 @@ def posed(body: Body, values: Mapping[str, float]) -> Body:
     return replace(body, pose=((x, y, z), rotation))
 
 
-def read(data: Any) -> tuple[Body, ...]:
-    """The bodies in the data of a YAML file. Raises DataError."""
-    given = Fields(data, (), ("bodies",))
-    bodies = given.take("bodies", lambda each, place: fields.named(each, place, _body))
+@fields.shape({"enum": [*MODELS]})
+def _model(data: Any, place: Place) -> str:
+    name = fields.text(data, place)
+    if name not in MODELS:
+        raise DataError(f"there is no model `{name}`", place, guess(name, MODELS))
+    return name
+
+
+@fields.shape({"type": "number", "minimum": 0})
+def _mass(data: Any, place: Place) -> float:
+    mass = fields.number(data, place)
+    if mass < 0.0:
+        raise DataError("a mass is not negative", place)
+    return mass
+
+
+@fields.shape(fields.row(3, {"type": "number", "minimum": 0, "maximum": 1}))
+def _colour(data: Any, place: Place) -> RGB:
+    found = fields.vector(data, place)
+    for k, each in enumerate(found):
+        if not 0.0 <= each <= 1.0:
+            message = f"a part of a colour is from 0 to 1, not {each:g}"
+            raise DataError(message, (*place, k), "divide values from 0 to 255 by 255")
+    return found
+
+
+_SHIFT = {"type": "number", "minimum": 0, "maximum": fields.FARTHEST}
+
+
+@fields.shape(fields.row(3, {}) | {"items": [_SHIFT, _SHIFT, {"type": "number", "minimum": 0}]})
+def _spread(data: Any, place: Place) -> Vector:
+    found = fields.vector(data, place)
+    for k, each in enumerate(found):
+        if each < 0.0:
+            raise DataError(f"a shift is not negative, as {each:g} is", (*place, k))
+    for k, each in enumerate(found[:2]):
+        fields.near(each, (*place, k))
+    return found
+
+
+_BODY: Table = {
+    "model": Field(_model, "A built-in model.", ""),
+    "path": Field(fields.text, "A URDF or SDF file.", ""),
+    "size": Field(fields.size, "The edge lengths of a box in x, y and z (m).", None),
+    "mass": Field(_mass, "The mass of the box (kg); one of mass 0 does not move.", 0.0),
+    "friction": Field(fields.positive, "The lateral friction coefficient of the box.", 0.8),
+    "colour": Field(_colour, "[red, green, blue], each from 0 to 1.", None),
+    "pose": Field(
+        fields.pose,
+        "Its pose in `frame`: [[x, y, z], [qx, qy, qz, qw]] in metres, or [x, y, z].",
+        IDENTITY,
+    ),
+    "frame": Field(fields.text, "`base`, `world`, or a body above it in the file.", "base"),
+    "spread": Field(
+        _spread, "The largest random shift in x, y (m) and yaw (rad).", (0.0, 0.0, 0.0)
+    ),
+    "apart": Field(
+        fields.named(fields.positive, least=0),
+        "The least distances in x and y to bodies above it, by name (m).",
+        (),
+    ),
+}
+
+
+@fields.record(
+    _BODY,
+    oneOf=[fields.given(key) for key in ("model", "path", "size")],
+    **{"if": {"anyOf": [fields.given("mass"), fields.given("friction")]}},
+    then=fields.given("size"),
+)
+def _body(given: Fields) -> Body:
+    kinds = [key for key in ("model", "path", "size") if key in given]
+    if len(kinds) != 1:
+        raise DataError("a body has either a `model`, a `path` or a `size`", given.place)
+    if "size" not in given:
+        for key in ("mass", "friction"):
+            if key in given:
+                raise DataError(f"`{key}` needs `size`", (*given.place, key))
+    colour: RGB | None = given["colour"]
+    return Body(
+        name=given.name,
+        pose=given["pose"],
+        frame=given["frame"],
+        model=given["model"],
+        path=given["path"],
+        box=_box(given, colour) if "size" in given else None,
+        colour=colour,
+        spread=given["spread"],
+        apart=given["apart"],
+    )
+
+
+def _box(given: Fields, colour: RGB | None) -> Model:
+    mass = given["mass"]
+    return Model(
+        boxes=(Box(size=given["size"]),),
+        colours=(colour or (0.6, 0.6, 0.6),),
+        mass=mass,
+        friction=given["friction"],
+    )
+
+
+_SCENE: Table = {
+    "bodies": Field(
+        fields.values(fields.named(_body, reserved=fields.FRAMES)),
+        "The bodies that are in the world from the start, by name.",
+    )
+}
+
+
+@fields.record(_SCENE)
+def _scene(given: Fields) -> tuple[Body, ...]:
+    bodies: tuple[Body, ...] = given["bodies"]
     above = [*fields.FRAMES]
     for body in bodies:
         place: Place = ("bodies", body.name)
@@ -65,72 +184,10 @@ def read(data: Any) -> tuple[Body, ...]:
     return bodies
 
 
-_BODY = ("model", "path", "size", "mass", "friction", "colour", "pose", "frame", "spread", "apart")
+SCHEMA = _scene.schema
+"""The JSON Schema of a scene."""
 
 
-def _body(name: str, data: Any, place: Place) -> Body:
-    fields.no_frame(name, place)
-    given = Fields(data, place, _BODY)
-    kinds = [key for key in ("model", "path", "size") if key in given]
-    if len(kinds) != 1:
-        raise DataError("a body has either a `model`, a `path` or a `size`", place)
-    if "size" not in given:
-        for key in ("mass", "friction"):
-            if key in given:
-                raise DataError(f"`{key}` needs `size`", (*place, key))
-    colour = given.get("colour", _colour, None)
-    return Body(
-        name=name,
-        pose=given.get("pose", fields.pose, IDENTITY),
-        frame=given.get("frame", fields.text, "base"),
-        model=given.get("model", _model, ""),
-        path=given.get("path", fields.text, ""),
-        box=_box(given, colour) if "size" in given else None,
-        colour=colour,
-        spread=given.get("spread", _spread, (0.0, 0.0, 0.0)),
-        apart=given.get("apart", _apart, ()),
-    )
-
-
-def _model(data: Any, place: Place) -> str:
-    name = fields.text(data, place)
-    if name not in MODELS:
-        raise DataError(f"there is no model `{name}`", place, guess(name, MODELS))
-    return name
-
-
-def _box(given: Fields, colour: RGB | None) -> Model:
-    mass = given.get("mass", fields.number, 0.0)
-    if mass < 0.0:
-        raise DataError("a mass is not negative", (*given.place, "mass"))
-    return Model(
-        boxes=(Box(size=given.take("size", fields.size)),),
-        colours=(colour or (0.6, 0.6, 0.6),),
-        mass=mass,
-        friction=given.get("friction", fields.positive, 0.8),
-    )
-
-
-def _colour(data: Any, place: Place) -> RGB:
-    found = fields.vector(data, place)
-    for k, each in enumerate(found):
-        if not 0.0 <= each <= 1.0:
-            message = f"a part of a colour is from 0 to 1, not {each:g}"
-            raise DataError(message, (*place, k), "divide values from 0 to 255 by 255")
-    return found
-
-
-def _spread(data: Any, place: Place) -> Vector:
-    found = fields.vector(data, place)
-    for k, each in enumerate(found):
-        if each < 0.0:
-            raise DataError(f"a shift is not negative, as {each:g} is", (*place, k))
-    for k, each in enumerate(found[:2]):
-        fields.near(each, (*place, k))
-    return found
-
-
-def _apart(data: Any, place: Place) -> tuple[tuple[str, float], ...]:
-    if isinstance(data, Mapping) and not data:
-        return ()
-    return fields.named(data, place, lambda name, each, at: (name, fields.positive(each, at)))
+def read(data: Any) -> tuple[Body, ...]:
+    """The bodies in the data of a YAML file. Raises DataError."""
+    return _scene(data, ())

@@ -34,25 +34,25 @@ SCHEMA = GENERATED["script"]
 DEFINITIONS = SCHEMA["definitions"]
 ROOT = Path(__file__).parents[2]
 SHORT = {long: short for short, long in LONG.items()}
-SIMULATION = ("bodies:", "faults:")
-"""First keys of scenes and of faults, which have no schema."""
-
-
-def is_simulation(path: Path) -> bool:
-    """Whether a file describes a scene or faults of the simulation."""
-    lines = path.read_text("utf-8").splitlines()
-    return any(line.startswith(SIMULATION) for line in lines)
-
+DATA = {"bodies:": "scene", "faults:": "faults"}
+"""First words of lines in files that are no scripts, and their schemas."""
 
 YAML_FILES = [
-    *(p for p in sorted((ROOT / "examples").rglob("*.yml")) if not is_simulation(p)),
+    *sorted((ROOT / "examples").rglob("*.yml")),
     *(p for p in sorted((ROOT / "tests/cases").rglob("*.yml")) if "bad_" not in str(p)),
     *sorted((ROOT / "smachac/stdlib").glob("*.yml")),
+    *sorted((ROOT / "smachac/robots").glob("*.yml")),
 ]
 
 
 def kind(path: Path) -> str:
     """The schema of a file of the repository."""
+    if path.parent.name == "robots":
+        return "robot"
+    for line in path.read_text("utf-8").splitlines():
+        for word, name in DATA.items():
+            if line.startswith(word):
+                return name
     return "interface" if path.parent.name in ("templates", "stdlib") else "script"
 
 

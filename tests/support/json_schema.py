@@ -74,9 +74,15 @@ def _judge(
         case "pattern":
             if isinstance(data, str) and not re.search(wanted, data):
                 yield f"{at}: does not look like {wanted}"
-        case "minimum":
-            if isinstance(data, int | float) and data < wanted:
-                yield f"{at}: less than {wanted}"
+        case "not":
+            if not faults(data, wanted, root, at):
+                yield f"{at}: fits what is excluded"
+        case "minimum" | "maximum" | "exclusiveMinimum" | "exclusiveMaximum":
+            if _is_outside(data, keyword, wanted):
+                yield f"{at}: {keyword} {wanted}"
+        case "minLength":
+            if isinstance(data, str) and len(data) < wanted:
+                yield f"{at}: shorter than {wanted}"
         case _:
             yield from _judge_parts(keyword, wanted, data, schema, root, at)
 
@@ -97,9 +103,16 @@ def _judge_parts(
                     yield from _judge_other(wanted, data[name], root, f"{at}.{name}")
         case "items":
             parts = list(enumerate(data)) if isinstance(data, list) else []
+            parts = parts[: len(wanted)] if isinstance(wanted, list) else parts
             for index, item in parts:
                 part = wanted[index] if isinstance(wanted, list) else wanted
                 yield from faults(item, part, root, f"{at}[{index}]")
+        case "propertyNames":
+            for name in data if isinstance(data, dict) else ():
+                yield from faults(name, wanted, root, f"{at}.{name}")
+        case "uniqueItems":
+            if isinstance(data, list) and any(each in data[:k] for k, each in enumerate(data)):
+                yield f"{at}: an item is there twice"
         case "minItems" | "minProperties":
             if isinstance(data, list if keyword == "minItems" else dict) and len(data) < wanted:
                 yield f"{at}: fewer than {wanted}"
@@ -108,6 +121,14 @@ def _judge_parts(
                 yield f"{at}: more than {wanted}"
         case _:
             raise AssertionError(f"{keyword} is not known here")
+
+
+def _is_outside(data: Any, keyword: str, bound: float) -> bool:
+    if isinstance(data, bool) or not isinstance(data, int | float):
+        return False
+    if keyword.startswith("exclusive"):
+        return data <= bound if keyword == "exclusiveMinimum" else data >= bound
+    return data < bound if keyword == "minimum" else data > bound
 
 
 def _judge_other(wanted: Any, data: Any, root: Schema, at: str) -> Iterator[str]:
