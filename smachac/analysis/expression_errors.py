@@ -311,7 +311,7 @@ class _Judge:
             if isinstance(expr.function, Name) and text in self.parameters:
                 return
             if not can_be_called(type_):
-                does = f"calls `{type_text(type_)}`, which is not a function"
+                does = f"calls a value of the type `{type_text(type_)}`, which is no function"
                 help = f"remove the parentheses: write `{print_expression(expr.function)}`"
                 yield self.fault(expr, does, expr.function, help=help)
             return

@@ -403,7 +403,8 @@ def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
         f" `__init__`, and from the transitions of `{leaf.name}`"
     )
     if outcome == PREEMPTED:
-        help = "check `self.preempt_requested()` while it works, and then return `preempted`"
+        help = "add where it waits: `if self.preempt_requested(): self.service_preempt(); return"
+        help += " 'preempted'`"
         if not facts.checks_stop:
             message += ": a time limit or a stop cannot end it"
     place = next((each.span for each in leaf.outcomes if each.name == outcome), leaf.span)

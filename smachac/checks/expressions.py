@@ -38,7 +38,7 @@ MAX_LEVELS = 500
     "bad-expression",
     Severity.ERROR,
     firm=True,
-    effect="the generated program would stop at this code with an error",
+    effect="Python cannot start a program with this code, so no program is generated",
 )
 def bad_expression(context: Context) -> Iterator[Finding]:
     """Code in the script is not a valid expression, or there is no code where code is required.
@@ -286,7 +286,12 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         yield _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
 
 
-@rule("SM312", "constant-comparison", Severity.WARNING)
+@rule(
+    "SM312",
+    "constant-comparison",
+    Severity.WARNING,
+    effect="the comparison always has the same result, so it decides nothing",
+)
 def constant_comparison(context: Context) -> Iterator[Finding]:
     """Code in the script compares values that, by their types, can never be equal.
 

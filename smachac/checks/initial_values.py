@@ -13,7 +13,12 @@ from smachac.diagnostics.source import Span
 from smachac.ir.nodes import Given, Preset
 
 
-@rule("SM313", "overruled-value", Severity.WARNING)
+@rule(
+    "SM313",
+    "overruled-value",
+    Severity.WARNING,
+    effect="all initial values are set before the first state: both states have the last one",
+)
 def overruled_value(context: Context) -> Iterator[Finding]:
     """Two states of one container give the same userdata key different initial values.
 
@@ -73,9 +78,9 @@ def _overruled(path: str, preset: Preset) -> Iterator[Finding]:
         message=f"the initial value of `{preset.key}` in `{owner}` is never used:"
         f" `{last.state.text}` overwrites it",
         arguments=(preset.key,),
-        help="use another key in one of the two states, with `remapping`"
-        if not unused[0].own
-        else f"set `{preset.key}` only once, or use another key in the state, with `remapping`",
+        help=f"rename the key in one of the two: `userdata: {{{preset.key}_2: ...}}` with"
+        f" `remapping: {{{preset.key}: {preset.key}_2}}`"
+        + (f", or set `{preset.key}` only once" if unused[0].own else ""),
         related=(
             *(Related(span=each.span, message="overwritten too") for each in unused[1:]),
             Related(span=_place(last, unused[0]), message="this value is used"),

@@ -178,18 +178,20 @@ def unhandled(child: Node) -> list[Outcome]:
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> Finding:
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
-    why = ""
+    why, origin = "", "declared here"
     if outcome.name == PREEMPTED and isinstance(child, Concurrence | nodes.Iterator):
+        if child.sugar:
+            origin = f"`{child.sugar}` adds the outcome `{outcome.name}`"
         why = f"after a stop request `{child.sugar}` ends with it: " if child.sugar else ""
     return Finding(
         span=child.span,
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{outcome.name}:` to the transitions of `{child.name}`, or"
+        help=f"{why}add `{outcome.name}: TARGET` to the transitions of `{child.name}`, or"
         f" `{outcome.name}` to the outcomes of `{container.name}`",
         related=(
-            *(other_place(outcome.span, "declared here") if inside else ()),
+            *(other_place(outcome.span, origin) if inside else ()),
             *calls(child, child.span),
         ),
         node=f"{path}/{child.name}",

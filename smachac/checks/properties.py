@@ -129,8 +129,8 @@ def _violation(form: Form, example: Counterexample) -> str:
             return f"{event} {times + 1} times"
         case AlwaysEnds():
             if example.again >= 0:
-                return "these states can follow one another for ever"
-            return "the run waits for ever in a state without an outcome"
+                return f"`{name}` can be repeated without end"
+            return "the run waits without end in a state that has no outcome"
     return assert_never(form)
 
 

@@ -144,12 +144,13 @@ def in_words(limits: Limits) -> str:
     if limits.choices:
         return f"one of {', '.join(f'`{each}`' for each in limits.choices)}"
     least, most = (f"{bound:g}" for bound in (limits.least, limits.most))
-    without = ", both excluded" if limits.exclusive else ""
     if limits.most == math.inf:
         return f"greater than {least}" if limits.exclusive else f"{least} or greater"
     if limits.least == -math.inf:
         return f"less than {most}" if limits.exclusive else f"{most} or less"
-    return f"from {least} to {most}{without}"
+    if limits.exclusive:
+        return f"greater than {least} and less than {most}"
+    return f"from {least} to {most}"
 
 
 def _item(type_: Type) -> Type:

@@ -130,8 +130,8 @@ def _read_interface(
         input_keys=_keys(sections["input_keys"], report),
         output_keys=_keys(sections["output_keys"], report),
         outcomes=tuple(
-            as_outcome(Word(key, value.span), value, report, "optional")
-            for key, value in _declared(sections["outcomes"])
+            as_outcome(word, value, report, "optional")
+            for word, value in _declared_words(sections["outcomes"])
         ),
         writes=_writes(sections, report),
         given=given,
@@ -337,6 +337,12 @@ def _declared(section: Section) -> list[tuple[str, Tree]]:
     return [(str(entry.key.value), entry.value) for entry in section if entry.key.value != "*"]
 
 
+def _declared_words(section: Section) -> list[tuple[Word, Tree]]:
+    """The same with the places of the names."""
+    named = [entry for entry in section if entry.key.value != "*"]
+    return [(Word(str(entry.key.value), entry.key.span), entry.value) for entry in named]
+
+
 def _is_starred(section: Section) -> bool:
     """Whether a section has `"*"`: scripts add to it."""
     return any(entry.key.value == "*" for entry in section)
@@ -452,23 +458,23 @@ def _unquoted(tree: Tree, report: Report) -> str:
 def _keys(section: Section, report: Report) -> tuple[Key, ...]:
     for entry in section:
         check_fields(entry.value, f"the key `{entry.key.value}`", KEY_FACTS, report)
-    declared = _declared(section)
+    declared = _declared_words(section)
     return tuple([_key(*each, report) for each in declared if not _is_set(each[1], "optional")])
 
 
-def _key(name: str, tree: Tree, report: Report) -> Key:
+def _key(name: Word, tree: Tree, report: Report) -> Key:
     role = _role(tree, _KEY_ROLES, report)
     type_ = described(_type(tree, report), tree, role, report)
     limits = limits_of(tree, type_, role, report)
     return Key(
-        name=name,
+        name=name.text,
         type=type_,
         doc=_doc(tree),
         role=role,
         limits=limits,
         frame=_text(tree, "frame"),
         secret=_is_set(tree, "secret"),
-        span=tree.span,
+        span=name.span,
     )
 
 

@@ -135,7 +135,7 @@ def _colon(stop: _Stop) -> _Fault | None:
         help = f"write a space after the colon in `{no_space.group()}`"
         return _Fault(message, help, stop.at)
     fault = _colon_above(stop) if ": " not in stop.before else None
-    help = "write an inner mapping on lines of its own, or put text with a colon in quotes"
+    help = "put the text with the colon in quotes, or write an inner mapping on lines of its own"
     return fault or _Fault(message, help, stop.at)
 
 
@@ -254,7 +254,8 @@ def _value(stop: _Stop) -> _Fault | None:
     here = stop.text[stop.at : stop.at + 1]
     if unstarted is not None:
         if unstarted.group(1) == "\\t":
-            return _Fault("a tab is not allowed here", "indent with spaces", stop.at)
+            help = "replace the tab with spaces, up to the column of the fields beside it"
+            return _Fault("YAML does not allow a tab in the indentation", help, stop.at)
         return _Fault(f"a value cannot begin with `{unstarted.group(1)}`", _QUOTED, stop.at)
     if found is not None and found[1] == "," and stop.context == "while parsing a flow node":
         return _Fault(

@@ -57,6 +57,9 @@ KEYS_OF_KINDS: Mapping[str, FileKind] = {
 }
 """The keys by which a file is known that is no script: scripts have no such field."""
 
+SCRIPT_KEYS = frozenset(["template", "outcomes", "states"])
+"""The keys by which a script is known, also with a field of another kind of file."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class View:
@@ -245,9 +248,11 @@ class Session:
             entry = tree.entries[0]
             if entry.key.value == "states" and isinstance(entry.value, Map):
                 return "scenario"
-        for entry in tree.entries if isinstance(tree, Map) else ():
-            if str(entry.key.value) in KEYS_OF_KINDS:
-                return KEYS_OF_KINDS[str(entry.key.value)]
+        keys = [str(entry.key.value) for entry in tree.entries] if isinstance(tree, Map) else []
+        if SCRIPT_KEYS.isdisjoint(keys):
+            for key in keys:
+                if key in KEYS_OF_KINDS:
+                    return KEYS_OF_KINDS[key]
         return "script"
 
     def is_interface(self, path: str) -> bool:

@@ -431,8 +431,8 @@ def code_not_found(
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
         help = near or f"correct the name {interface}, or create the {file}"
     else:
-        message = f"the code of `{state_type}` is the class `{word.text}`, which its file does not"
-        message += " define"
+        message = f"no class `{word.text}` is defined in the file that the `code` of `{state_type}`"
+        message += " names"
         help = near or f"correct the name {interface}, or define the class"
     return Finding(
         span=word.span,

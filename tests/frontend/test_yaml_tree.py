@@ -110,7 +110,7 @@ def test_aliases_and_merges() -> None:
         ("a: 'x' y\n", (1, 8), "text after the end of the value", "in quotes"),
         ("a: 1\nb\nc: 2\n", (2, 1), "a `:` is missing", "`key: value`"),
         ("a: %d\n", (1, 4), "a value cannot begin with `%`", "in quotes"),
-        ("a:\n\tb: 1\n", (2, 1), "a tab is not allowed here", "spaces"),
+        ("a:\n\tb: 1\n", (2, 1), "YAML does not allow a tab in the indentation", "spaces"),
         ('a: "\\d"\n', (1, 6), "unknown escape character `d`", "in single quotes"),
         ("%YAML x\n---\na: 1\n", (1, 7), "expected a digit", "check the brackets"),
         ("s:\n  - GRASP\n      t: X\n", (2, 5), "a `:` is missing", "write `- GRASP:`"),

@@ -347,7 +347,7 @@ def test_a_machine_as_an_action(tmp_path: Path) -> None:
         ("null", ""),
         ("sensors", "no preset `sensors`"),
         ("0", "a positive number"),
-        ("{reliability: maybe}", "reliability is reliable or best_effort"),
+        ("{reliability: maybe}", "`reliability` of `qos` must be reliable or best_effort"),
         ("{dept: 5}", "no policy `dept`"),
         ("{depth: [1]}", "a positive number"),
         ("[sensor_data]", "a positive number"),
