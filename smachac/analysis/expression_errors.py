@@ -313,6 +313,9 @@ class _Judge:
             if not can_be_called(type_):
                 does = f"calls a value of the type `{type_text(type_)}`, which is no function"
                 help = f"remove the parentheses: write `{print_expression(expr.function)}`"
+                if len(expr.arguments) == 1 and kinds(type_) <= {"text", "list", "mapping"}:
+                    item = print_expression(Index(expr.function, expr.arguments[0]))
+                    help += f", or `{item}` for one item of it"
                 yield self.fault(expr, does, expr.function, help=help)
             return
         signature = SIGNATURES.get(text)

@@ -87,7 +87,7 @@ def body_loaded_twice(context: Context) -> Iterator[Finding]:
                 span=leaf.span,
                 message=f"`{leaf.name}` always fails: {names} loaded a body `{body}` before it",
                 arguments=(leaf.name, body),
-                help="give this body a name of its own: `body: ...`",
+                help=f"give this body another name, such as `body: {body}_2`",
                 related=(
                     *other_place(nodes[0].span, f"`{body}` is loaded here"),
                     *calls(leaf, leaf.span),

@@ -6,7 +6,7 @@ of a class is reported once, with the first state of its type as a related place
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
@@ -126,7 +126,7 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
                 span=word.span,
                 message=f"`{leaf.type}` returns `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
-                help=did_you_mean(guess(word.text)) or known,
+                help=did_you_mean(guess(word.text)) or _without_tuple(word.text, outcomes) or known,
                 related=_used_here(leaf),
                 node=path,
             )
@@ -136,11 +136,17 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
             span=facts.execute,
             message=f"`execute` of `{leaf.type}` {does} an outcome",
             arguments=(leaf.type,),
-            help=known,
+            help=f"end each path with a `return`; {known}",
             related=_used_here(leaf),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
         )
+
+
+def _without_tuple(text: str, outcomes: Collection[str]) -> str | None:
+    """The help for a tuple that begins with an outcome: `return "found", 1`."""
+    name = next((each for each in outcomes if text.startswith(f"('{each}',")), None)
+    return f'write `return "{name}"`: a comma makes a tuple' if name is not None else None
 
 
 def unknown_reads(context: Context) -> Iterator[Finding]:

@@ -113,7 +113,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 arguments=(entry.outcome,),
                 help=f"write conditions, as in `{entry.outcome}: {{{_example(container)}}}`, or"
                 " remove the rule",
-                effect="the versions of SMACH disagree about a rule without conditions",
+                effect="with such a rule the outcome depends on the version of SMACH",
                 related=calls(container, entry.span),
                 node=path,
             )
@@ -370,16 +370,18 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             continue
         needed = rules.shown(missed, {}, rules.all)
         shown = written(needed) or "any combination"
+        rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
         if node.default_outcome:
             severity, span = Severity.INFO, node.default_span
             message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
             message += f" `{node.default_outcome}`"
-            help = None
+            help = f"if another outcome is meant, add a rule for it, as in `OUTCOME: {{{rule}}}`"
+            effect = ""
         else:
             severity, span = Severity.ERROR, node.span
+            effect = None
             message = f"no rule of `{node.name}` matches {shown}, and `default_outcome` is missing"
             bad = (outcome_names(node) or ["failed"])[-1]
-            rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
             help = f"write `default_outcome: {bad}` for all combinations without a rule"
             if rule:
                 help += f", or add a rule, as in `{bad}: {{{rule}}}`"
@@ -388,6 +390,7 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             message=message,
             arguments=_names(needed),
             help=help,
+            effect=effect,
             related=calls(node, span),
             severity=severity,
             node=each.path,

@@ -279,12 +279,22 @@ def _masked_in_loop(
                 message=f"`{child.name}` fails with `{outcome}`, but the loop continues and ends"
                 f" with `{end}`",
                 arguments=(own_name(loop, span), outcome, end),
-                help=f"end the loop with `{outcome}`; if the failure of an item does not matter,"
-                f" write `outcomes: {{{outcome}: {{failure: false}}}}` at `{child.name}`",
+                help=f"{_ending(loop, outcome)}; if the failure of an item does not matter, write"
+                f" `outcomes: {{{outcome}: {{failure: false}}}}` at `{child.name}`",
                 related=calls(loop, span),
                 path=_exit_steps(context, path, loop, step) if step else (),
                 node=path,
             )
+
+
+def _ending(loop: nodes.Iterator, outcome: str) -> str:
+    """The help that a loop ends with an outcome."""
+    field = f"`on` of `{loop.sugar}`" if loop.sugar else f"the `loop_outcomes` of `{loop.name}`"
+    end = outcome if loop.sugar else dict(loop.final_map).get(outcome, outcome)
+    help = f"remove `{outcome}` from {field}: then the loop ends with `{end}`"
+    if not loop.sugar and end not in outcome_names(loop):
+        help += f"; add `{end}` to the `outcomes` and `transitions` of `{loop.name}`"
+    return help
 
 
 _Ending: TypeAlias = "tuple[str, str]"
@@ -404,6 +414,25 @@ def _propagations(
             yield _Propagation(f"{path}/{child.name}", child, outcome, target, masking, span, then)
 
 
+def _unmasked(root: StateMachine, masking: _Propagation) -> str:
+    """The help for a step that masks a failure: an outcome of its container for the failure."""
+    container: Container = root
+    for name in masking.path.split("/")[1:-1]:
+        inner = next((child for child in container.children if child.name == name), None)
+        if inner is None or isinstance(inner, Leaf):
+            break
+        container = inner
+    names = [name for name in outcome_names(container) if fails(container, name)]
+    step = f"lead `{masking.outcome}` of `{masking.node.name}`"
+    if names:
+        return f"{step} to a state that recovers, or to `{names[0]}`"
+    help = f"{step} to a state that recovers, or to `failed`, and add `failed` to the `outcomes`"
+    help += f" of `{container.name}`"
+    if container is not root:
+        help += f", and lead `failed` of `{container.name}` to a failure too"
+    return help
+
+
 def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding:
     """SM206 for the failures that one step masks."""
     first = found[0]
@@ -425,8 +454,7 @@ def _unhandled_failure(root: StateMachine, found: list[_Propagation]) -> Finding
             masking.outcome,
             *sorted({each.node.name for each in found}),
         ),
-        help=f"lead `{masking.outcome}` of `{masking.node.name}` to a state that recovers, or to an"
-        " outcome that does not mean success, such as `failed`",
+        help=_unmasked(root, masking),
         related=(
             *(other_place(first.node.span, "this state fails") if masking is not first else ()),
             *calls(masking.node, masking.span),

@@ -110,7 +110,9 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
                 f" {listed(names[: len(found.closed)])} closed it before the tool moved to the body"
                 f" ({listed(names[len(found.closed) :])})",
                 arguments=(leaf.name, *sorted(set(names))),
-                help="open the gripper before the tool moves to the body",
+                help="open the gripper before the tool moves to the body: add a state with"
+                " `template: GripperState` and `command: open` before"
+                f" `{names[len(found.closed)]}`",
                 related=(
                     *other_place(places[0], "the gripper is closed here"),
                     *other_place(places[1], "the tool moves to the body here"),

@@ -368,17 +368,22 @@ def _retries(
         message=f"the retries of `{child.name}` have no limit: while it ends with"
         f" `{step.outcome}`, `{container.name}` does not end",
         arguments=(own_name(child, step.span), step.outcome),
-        help=_limited(child, step),
+        help=_limited(container, child, step),
         related=calls(child, step.span),
         path=tuple(circle(path, region, kept)),
         node=f"{path}/{child.name}",
     )
 
 
-def _limited(child: Node, step: Transition) -> str:
+def _limited(container: Linear, child: Node, step: Transition) -> str:
     """The help for retries without a limit: where the failure leads straight back, the field."""
     if step.target != child.name or step.origin != "written":
-        return "count the retries, and leave the loop after the last one"
+        return (
+            f"count the tries in `userdata: {{tries: 0}}` of `{container.name}`: add to the loop a"
+            " CallbacksState with `callbacks: {tries: 'lambda ud: ud.tries + 1'}`, and a"
+            " ConditionalOutcomeState that leaves the loop unless `lambda ud: ud.tries < 3`; or"
+            f" lead `{step.outcome}` out of the loop"
+        )
     retry = f"retry: {{on: [{step.outcome}], max: 3}}"
     return f"remove this transition, write `{retry}`, and lead `exhausted` out of the loop"
 
@@ -563,12 +568,14 @@ def _unchanged(
 ) -> Finding:
     names = [child.name, *(one.name for one in region if one is not child)]
     names = list(dict.fromkeys(names))
+    first = min(keys)
     return Finding(
         span=child.span,
         message=f"the condition of `{child.name}` never changes in the loop of {listed(names)}:"
         f" nothing in the loop sets {listed(keys)}",
         arguments=(own_name(child, child.span), *sorted(keys)),
-        help=f"set {listed(keys)} in a state of the loop, or move the condition out of the loop",
+        help=f"set {listed(keys)} in the loop, for example in a CallbacksState with `callbacks:"
+        f" {{{first}: 'lambda ud: ud.{first} + 1'}}`, or move `{child.name}` out of the loop",
         related=calls(child, child.span),
         path=tuple(circle(path, names, steps)),
         node=f"{path}/{child.name}",

@@ -65,7 +65,7 @@ class _Use(NamedTuple):
     "SM512",
     "unknown-field",
     Severity.ERROR,
-    effect="the program fails when it uses this name or value",
+    effect="the state fails when it uses the field",
 )
 def unknown_field(context: Context) -> Iterator[Finding]:
     """A state uses a field or type of a message that does not exist, or a value of another type.
@@ -229,7 +229,8 @@ def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterat
             span=_word(parts[-1], named.value.span).span,
             message=f"the package `{parts[0]}` has no {what} `{parts[-1]}`",
             arguments=(parts[0], parts[-1]),
-            help=did_you_mean(guesser(names)(parts[-1])) or f"it has {listed(names)}",
+            help=did_you_mean(guesser(names)(parts[-1])) or f"write one of {listed(names)}",
+            effect="the program stops when it imports the type",
             related=calls(leaf, named.value.span),
             node=path,
         )
@@ -286,10 +287,16 @@ EXAMPLES: Mapping[str, str] = {
 """A value of each primitive type, as a script writes it."""
 
 
-def _unknown_field(path: str, leaf: Leaf, word: Word, messages: Sequence[Message]) -> Finding:
+def _unknown_field(
+    path: str, leaf: Leaf, word: Word, messages: Sequence[Message], also: str = ""
+) -> Finding:
+    """`also`: the other place of the script that has the name."""
     names = sorted({each.name for message in messages for each in message.fields})
     known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
-    help = did_you_mean(guesser(names)(word.text)) or known
+    guess = guesser(names)(word.text)
+    help = did_you_mean(guess) or known
+    if guess and also:
+        help += f" Write it here{also}"
     message = f"{_described(messages[0])} has no field `{word.text}`"
     return _finding(path, leaf, word, message, help, messages)
 
@@ -325,7 +332,10 @@ def _faults(
     for use in _uses(held, messages):
         name = use.word.text
         if name not in names:
-            yield _unknown_field(path, leaf, use.word, messages)
+            lists = (("input_keys", leaf.inputs), ("output_keys", leaf.outputs))
+            named = [part for part, keys in lists if name in [key.name for key in keys]]
+            also = f" and in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
+            yield _unknown_field(path, leaf, use.word, messages, also)
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
             fields = [message.field(name) for message in messages]

@@ -78,7 +78,7 @@ def too_fast(context: Context) -> Iterator[Finding]:
     "SM511",
     "wrong-frame",
     Severity.WARNING,
-    effect="nothing transforms the pose: the hand moves to a place measured from the wrong frame",
+    effect="nothing transforms the pose: the robot moves to a place measured from the wrong frame",
 )
 def wrong_frame(context: Context) -> Iterator[Finding]:
     """A pose is given in one frame and read in another.

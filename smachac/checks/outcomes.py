@@ -265,7 +265,8 @@ def _implicit(
             help=f"write `{step.outcome}: {step.target}` if this is intended, or a transition to a"
             " state that recovers"
             if forgotten
-            else None,
+            else f"add `{step.outcome}: {step.target}` to the `transitions` of `{child.name}` to"
+            " show that this is intended",
             related=calls(child, step.span),
             severity=Severity.WARNING if forgotten else None,
             node=f"{path}/{child.name}",

@@ -10,8 +10,9 @@ from smachac.analysis.resource_claims import Held, prefixes
 from smachac.checks.messages import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.wording import listed
-from smachac.ir.nodes import Concurrence, Node
+from smachac.diagnostics.wording import both
+from smachac.ir.leaf import variable_of
+from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.traversal import remapping
 
 MOST_PLACES = 4
@@ -108,8 +109,8 @@ def _race(
     writing: list[tuple[Node, Node]],
     reading: list[tuple[Node, Node]],
 ) -> Finding:
-    writers = listed(child.name for child, _ in writing)
-    readers = listed(child.name for child, _ in reading)
+    writers = both(child.name for child, _ in writing)
+    readers = both(child.name for child, _ in reading)
     if len(writing) == 1:
         message = f"{writers} writes `{key}`"
     else:
@@ -227,6 +228,9 @@ def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]
             continue
         child, own, origin = other
         names = sorted({one.name for one, _, _ in holding})
+        use = "let one of them use another resource"
+        if isinstance(origin, Leaf) and variable_of(origin, "limb") is not None:
+            use = "give one of them another `limb`"
         places = [
             place
             for one, what, inner in holding[:MOST_PLACES]
@@ -238,11 +242,10 @@ def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]
         ]
         yield Finding(
             span=child.span,
-            message=f"{listed(names)} claim `{resource}` at the same time: they are branches of"
+            message=f"{both(names)} claim `{resource}` at the same time: they are branches of"
             f" `{container.name}`",
             arguments=(_as_written(own, origin), *names),
-            help=f"put {listed(names)} into one StateMachine, one after the other, or let one of"
-            " them use another resource",
+            help=f"put {both(names)} into one StateMachine, one after the other, or {use}",
             related=(*places, *_inner(child, origin, "claims"), *calls(child, child.span)),
             node=f"{path}/{child.name}",
         )

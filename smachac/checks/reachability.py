@@ -236,6 +236,9 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
     removed = f"remove it from the outcomes of `{name}`"
     help = f"add a transition to `{outcome.name}`, or {removed}"
     severity = None
+    effect = None
+    if "/" not in path:
+        effect = f"a caller of `{name}` that waits for this outcome never gets it"
     if isinstance(container, Concurrence):
         help = f"add a rule for `{outcome.name}`, or {removed}"
         if outcome.name == PREEMPTED:
@@ -261,7 +264,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
         message=f"`{name}` can never end with its outcome `{outcome.name}`",
         arguments=(own_name(container, outcome.span), outcome.name),
         help=help,
-        effect=None if severity is None else "",
+        effect=effect if severity is None else "",
         related=calls(container, outcome.span),
         severity=severity,
         node=path,
@@ -305,12 +308,20 @@ def no_initial(context: Context) -> Iterator[Finding]:
                 span=container.span,
                 message=f"`{container.name}` has no states",
                 arguments=(container.name,),
-                help="write `states: [NAME: {template: TYPE, transitions: {OUTCOME: TARGET}}]`",
+                help=f"write `states: [NAME: {{{_first_state(container)}}}]`",
                 related=calls(container, container.span),
                 node=path,
             )
         elif isinstance(container, StateMachine | Sequence):
             yield from _unknown_initial(path, container)
+
+
+def _first_state(container: Container) -> str:
+    """The fields of a state for a container without one."""
+    target = next(iter(outcome_names(container)), "OUTCOME")
+    if isinstance(container, nodes.Iterator):
+        return "template: ScriptedState, outcomes: [done]"
+    return f"template: ScriptedState, outcomes: [done], transitions: {{done: {target}}}"
 
 
 def _unknown_initial(path: str, container: Linear) -> Iterator[Finding]:

@@ -34,7 +34,7 @@ JOINT_TOLERANCE = 1e-4
     "SM501",
     "wrong-length",
     Severity.ERROR,
-    effect="the state cannot use a list of this length: it fails, or moves to a wrong place",
+    effect="the state cannot use a list of this length: it fails, or uses wrong numbers",
 )
 def wrong_length(context: Context) -> Iterator[Finding]:
     """A list has more or fewer items than its reader requires.

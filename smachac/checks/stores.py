@@ -96,7 +96,8 @@ def _dead(context: Context, store: DeadStore) -> Finding:
         message=f"`{leaf.name}` sets `{store.name}`, but {listed(store.again)} sets it again before"
         " a state reads it",
         arguments=(store.key.name, *sorted(store.again)),
-        help=f"give one of them another key, or read `{store.name}` in between",
+        help=f"write `remapping: {{{store.key.name}: {store.name}_2}}` at one of the two, for a key"
+        f" of its own, or add a state between them that reads `{store.name}`",
         related=(*related, *calls(leaf, span)),
         node=f"{store.path}/{leaf.name}",
     )

@@ -149,6 +149,10 @@ def _unset(
         f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
     )
     help += f" `{name}`: {value}"
+    if not witness.always and len(witness.path) > 2 and witness.path[-2].is_outcome:
+        before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
+        if any(use.path == before.node for use in users if use.kind not in ("reads", "copies in")):
+            help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
         guess = guesses.of(scope)(missing.key)

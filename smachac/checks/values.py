@@ -20,7 +20,7 @@ from smachac.checks.robot import (
     role_of,
 )
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.leaf import variable_of
@@ -33,7 +33,7 @@ from smachac.ir.types import Type
     "SM520",
     "out-of-limits",
     Severity.ERROR,
-    effect="the state type is not made for such a value: the state can fail, or never end",
+    effect="the state type is not made for such a value: the state can fail or do a wrong thing",
 )
 def out_of_limits(context: Context) -> Iterator[Finding]:
     """A number is outside the limits that the interface of a state type gives.
@@ -126,6 +126,10 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
     kind = "variable" if cell.role == "variable" else "key"
     owner = f"`{cell.node.name}`" if cell.node is not None else "the base"
     unit = unit_of(_item(cell.declared))
+    more: tuple[Related, ...] = ()
+    place = flow.origin.span
+    if cell is origin and place.source is cell.span.source and place.end <= cell.span.start:
+        more = (Related(span=cell.span, message=f"`{cell.key}` of {owner} is set here"),)
     for number in dict.fromkeys(_outside(flow.value, limits)):
         held = "is" if number == flow.value else "contains"
         message = f"`{origin.key}` {held} {number}, but the {kind} `{cell.key}` of {owner} must be"
@@ -136,6 +140,7 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
             + in_words(limits)
             + (f", in {unit}" if unit else ""),
             (str(number),),
+            more,
         )
 
 
@@ -169,9 +174,10 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
             words = in_words(variable.limits)
             yield Finding(
                 span=variable.default.span,
-                message=f"the default of `{variable.name}` is {number}, but must be {words}",
+                message=f"the default of `{variable.name}` is {number}, but it must be {words}",
                 arguments=(variable.name, str(number)),
-                help="correct the default, or the limits beside it",
+                help=f"write a default that is {words}, or remove it: then each state must set"
+                f" `{variable.name}`",
             )
 
 

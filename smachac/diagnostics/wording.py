@@ -14,3 +14,11 @@ def listed(names: Iterable[str]) -> str:
     text = ", ".join(f"`{name}`" for name in every[:MOST_LISTED])
     more = len(every) - MOST_LISTED
     return f"{text} and {more} more" if more > 0 else text
+
+
+def both(names: Iterable[str]) -> str:
+    """Names in backticks as the subject of a sentence: `A` and `B`, or `A`, `B` and `C`."""
+    every = sorted(set(names))
+    if not 1 < len(every) <= MOST_LISTED:
+        return listed(every)
+    return f"{listed(every[:-1])} and `{every[-1]}`"

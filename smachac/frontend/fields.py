@@ -66,6 +66,9 @@ def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> No
     arguments = (shape, found)
     words = _words_of(tree) if shape in LISTS else ()
     edits: tuple[Edit, ...] = ()
+    if shape == "states" and isinstance(tree, Map) and tree.entries:
+        first = tree.entries[0].key.value
+        help = f"write a list: begin each state with `- `, as in `- {first}:`"
     if words and help is None:
         text = f"[{', '.join(word.text for word in words)}]"
         help, edits = f"write it as `{text}`", (Edit(span=tree.span, text=text),)

@@ -382,12 +382,14 @@ class _Resolver:
             return _unknown(name, (), around)
         if rest:
             other = rest[0].key
+            help = f"begin another item with `- {other.value}:`, or indent it below `{name.text}:`"
+            if str(other.value) in _FIELDS_OF_STATES:
+                help = f"indent it by 2 spaces more: it is a field of `{name.text}`"
             self.report.append(
                 wrong_shape(
                     other.span,
                     f"this item has two keys, `{name.text}` and `{other.value}`; a state has one",
-                    f"begin another item with `- {other.value}:`, or indent it below"
-                    f" `{name.text}:`",
+                    help,
                     (Related(span=name.span, message="the first key"),),
                     arguments=("item", name.text, str(other.value)),
                 )
@@ -648,6 +650,14 @@ def _no_states(container: Word, around: _Environment) -> State:
     return _unknown(Word("STATES", container.span), (), around)
 
 
+def _state_name(item: Tree) -> Word | None:
+    """The name of a state in the list of a sub-script."""
+    if not isinstance(item, Map) or not item.entries:
+        return None
+    key = item.entries[0].key
+    return Word(str(key.value), key.span)
+
+
 def sub_script_state(
     tree: Tree, call: Word, report: Report
 ) -> tuple[Word, tuple[Entry, ...]] | None:
@@ -663,8 +673,12 @@ def sub_script_state(
         return None
     if len(tree.items) != 1:
         message = f"a sub-script must have one state; this one has {len(tree.items)}"
-        help = "put the states into one container: `- NAME: {template: StateMachine, ...}`"
-        refuse(start, "states", message, help if tree.items else SUB_SCRIPT_HELP)
+        names = [name for name in map(_state_name, tree.items) if name is not None]
+        place = names[1].span if len(names) > 1 else start
+        inside = ", ".join(f"`{name.text}`" for name in names)
+        help = f"remove all but one, or put {inside} into one container: `- NAME: {{template:"
+        help += " StateMachine, outcomes: [...], states: [...]}`"
+        refuse(place, "states", message, help if names else SUB_SCRIPT_HELP)
         return None
     item = tree.items[0]
     if not isinstance(item, Map) or not item.entries:

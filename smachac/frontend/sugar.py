@@ -130,14 +130,30 @@ def _known(
     return tuple(found)
 
 
+UNITS = {
+    **dict.fromkeys(("millisecond", "milliseconds", "msec"), "ms"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("m", "mins", "minute", "minutes"), "min"),
+    **dict.fromkeys(("hr", "hrs", "hour", "hours"), "h"),
+}
+"""Other words for the units of durations."""
+
+
 def duration(tree: Tree, report: Report) -> float | None:
     """A duration in seconds: `20s`, `500ms`, `1.5 min`, `1h`, or a number of seconds."""
     if isinstance(tree, Scalar) and isinstance(tree.value, str | int | float):
         found = _DURATION.fullmatch(str(tree.value).strip())
         if found is not None and found.group(2) in SECONDS and not isinstance(tree.value, bool):
             return float(found.group(1)) * SECONDS[found.group(2)]
-    wrong(tree, "duration", report)
+    wrong(tree, "duration", report, _duration_meant(tree))
     return None
+
+
+def _duration_meant(tree: Tree) -> str | None:
+    """The help for a duration with another word for its unit, such as `20 sec`."""
+    found = _DURATION.fullmatch(tree.span.text) if isinstance(tree, Scalar) else None
+    unit = UNITS.get(found.group(2)) if found is not None else None
+    return f"write it as `{found.group(1)}{unit}`" if found is not None and unit else None
 
 
 def _timeout(entry: Entry, report: Report) -> Timeout:

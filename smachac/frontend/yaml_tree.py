@@ -426,7 +426,9 @@ class _Builder:
         limit = max(MAX_ALIASED, len(self.source.text))
         if self.aliased > limit:
             message = f"the aliases of this script add more than {limit:,} values"
-            self._stop(span.start, message, "use fewer aliases, or smaller ones", "aliases")
+            self._stop(
+                span.start, message, "use fewer aliases, or aliases of shorter lists", "aliases"
+            )
         self._add(known[0], known[1], None)
 
     def _add(self, node: Tree, size: int, anchor: str | None) -> None:

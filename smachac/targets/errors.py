@@ -82,8 +82,8 @@ def no_code_for_target(
     """
     number = f" ({states} states use it)" if states > 1 else ""
     message = f"the state type `{state_type}` has no code for {target}{number}"
-    help = f"name its class under `code` in `{state_type}.yml`;"
-    help += f" `smachac new state {state_type} --target {option}` creates one"
+    help = f"run `smachac new state {state_type} --target {option}`: it creates a class, and prints"
+    help += f" the `code` to write in `{state_type}.yml`"
     return Finding(span=span, message=message, arguments=(target, state_type), help=help)
 
 
@@ -98,10 +98,10 @@ class Difference(NamedTuple):
     "SM603",
     "interfaces-differ",
     Severity.ERROR,
-    effect="the rules check the interface, but the robot runs the class",
+    effect="the rules check the interface, but the robot runs the class: it can stop with an error",
 )
 def interfaces_differ(
-    span: Span, target: str, state_type: str, name: str, differences: Sequence[Difference]
+    used: Related, target: str, state_type: str, name: str, differences: Sequence[Difference]
 ) -> Finding:
     """The class of a state type and its interface have different outcomes or keys.
 
@@ -153,12 +153,12 @@ def interfaces_differ(
                 return "done"
     """
     others = f" (and {len(differences) - 1} more)" if differences[1:] else ""
-    first = differences[0].word.text
+    first = differences[0].word
     return Finding(
-        span=span,
-        message=f"the class `{name}` does not match `{state_type}.yml`: {first}{others}",
+        span=first.span,
+        message=f"the class `{name}` does not match `{state_type}.yml`: {first.text}{others}",
         arguments=(target, state_type, name),
-        related=_places(differences),
+        related=(*_places(differences[1:]), used),
         help=differences[0].help,
     )
 
@@ -425,7 +425,7 @@ def code_not_found(
     interface = f"in the `code` of `{state_type}.yml`"
     if fault.kind == "syntax":
         message = f"the code of `{state_type}` is not valid Python: {word.text}"
-        help = "correct the syntax at the mark"
+        help = _syntax_help(word.text)
     elif fault.kind == "no module":
         file = "header" if target == "cpp" else "module"
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
@@ -444,6 +444,20 @@ def code_not_found(
     )
 
 
+def _syntax_help(message: str) -> str:
+    """The help for a syntax error of Python, by the message of its parser."""
+    if message == "expected ':'":
+        return "write `:` at the mark"
+    if message.endswith("was never closed"):
+        closing = {"'('": ")", "'['": "]", "'{'": "}"}.get(message.split(" ")[0])
+        return f"close the bracket: write `{closing}`" if closing else "close the bracket"
+    if message.startswith("unterminated"):
+        return "write the quotation mark at the end of the text"
+    if message.startswith("expected an indented block"):
+        return "indent this line by 4 spaces more"
+    return "correct the code at the mark, or just before it"
+
+
 @problem(
     "SM609",
     "unusable-class",
@@ -451,7 +465,12 @@ def code_not_found(
     effect="the generated program stops with an error when it makes the state or runs it",
 )
 def bad_class(
-    fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
+    fault: ClassFault,
+    target: str,
+    state_type: str,
+    name: str,
+    used: tuple[Related, ...],
+    lists: str = "outcomes=[...]",
 ) -> Finding:
     """The class of a state type does not work as a state: a method is missing or hidden, or the
     constructor does not fit the interface.
@@ -506,7 +525,7 @@ def bad_class(
             def execute(self, userdata):
                 return "done"
     """
-    message, help = _about_class(fault, state_type, name)
+    message, help = _about_class(fault, state_type, name, lists)
     if fault.near is not None:
         written = fault.kind == "no list" or fault.near.startswith('"')
         help = f"write `{fault.near}`" if written else f"did you mean `{fault.near}`?"
@@ -529,8 +548,9 @@ def _class_effect(fault: ClassFault, target: str) -> str | None:
     return "the C++ compiler refuses the class" if target == "cpp" else None
 
 
-def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, str]:
-    """The message and the help for a fault of a class."""
+def _about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tuple[str, str]:
+    """The message and the help for a fault of a class. `lists` are the arguments of the constructor
+    of `smach.State` that fit the interface."""
     word = fault.name.text
     match fault.kind:
         case "no state":
@@ -551,12 +571,11 @@ def _about_class(fault: ClassFault, state_type: str, name: str) -> tuple[str, st
             )
         case "no constructor call":
             return f"`__init__` of `{name}` does not call `__init__` of `smach.State`", (
-                "begin it with `super().__init__(outcomes=[...], input_keys=[...],"
-                f" output_keys=[...])`, with the names in `{state_type}.yml`"
+                f"write `super().__init__({lists})` as the first line of `__init__`"
             )
         case "no outcomes":
             return f"the class `{name}` has no `__init__`, so the state has no outcomes", (
-                "add `__init__`, which calls `super().__init__(outcomes=[...])`"
+                f"add `def __init__(self):` with the line `super().__init__({lists})`"
             )
         case "hidden method":
             return f"`self.{word}` hides the method `{word}` of `smach.State`, which SMACH calls", (

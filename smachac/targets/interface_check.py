@@ -6,6 +6,7 @@ class. Parts that cannot be read are not checked.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -116,8 +117,10 @@ def type_faults(
         if fault.name.span.source is NOWHERE.source:
             fault = replace(fault, name=Word(fault.name.text, leaf.span))
             used = ()
-        judge = code_not_found if fault.kind in NOT_FOUND else bad_class
-        yield judge(fault, target.name, type_.name, found.name, used)
+        if fault.kind in NOT_FOUND:
+            yield code_not_found(fault, target.name, type_.name, found.name, used)
+        else:
+            yield bad_class(fault, target.name, type_.name, found.name, used, _lists(type_))
     facts = type_.class_facts if checked and target.name == "python" else None
     if found.stale is None and facts is not None:
         # Returned outcomes that the interface lacks are SM309, such reads SM310, such writes SM308.
@@ -135,7 +138,23 @@ def type_faults(
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
     elif differences:
-        yield interfaces_differ(leaf.span, target.name, type_.name, found.name, differences)
+        here = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`")
+        yield interfaces_differ(here, target.name, type_.name, found.name, differences)
+
+
+def _lists(type_: StateType) -> str:
+    """The arguments of the constructor of `smach.State` that fit an interface."""
+    parts = (
+        ("outcomes", type_.outcomes),
+        ("input_keys", type_.input_keys),
+        ("output_keys", type_.output_keys),
+    )
+    return ", ".join(
+        f"{field}=[{', '.join([*(json.dumps(each.name) for each in named), *more])}]"
+        for field, named in parts
+        for more in (["..."] if field in type_.given else [],)
+        if named or more or field == "outcomes"
+    )
 
 
 def _without(words: Words | None, used: Words, known: Sequence[str]) -> Words | None:

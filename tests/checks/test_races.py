@@ -92,8 +92,8 @@ def test_all_who_take_part_are_named_once_for_each_key() -> None:
     items = [item for item in report(beside(*branches, leaf("D", outcomes="x", ins="key")))
              if item.code == "SM405"]  # fmt: skip
     assert [item.finding.message.partition(":")[0] for item in items] == [
-        "`A`, `B`, `C` write `key` at the same time, and `D` reads it",
-        "`A`, `B`, `C` write `pose` at the same time",
+        "`A`, `B` and `C` write `key` at the same time, and `D` reads it",
+        "`A`, `B` and `C` write `pose` at the same time",
     ]
 
 

@@ -366,7 +366,7 @@ def test_state_adds_a_state_with_its_callbacks(built: Built) -> None:
 
 def test_a_name_that_nobody_defines_is_told(built: Built) -> None:
     (message,) = errors(built, T=CLASS + ADDED.replace("'{{ name }}'", "'{{ nmae }}'"))
-    assert message == "'nmae' is undefined"
+    assert message == "the template uses `nmae`, which is not defined"
 
 
 # Utils.

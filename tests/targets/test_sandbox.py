@@ -104,9 +104,9 @@ HARMFUL = {
     "a path from the root": ("{% include '/etc/hostname' %}", "there is no template `/etc/hostname`"),
     "an import from outside": ("{% from '../secret.txt' import x %}", "there is no template `../secret.txt`"),
     "chance": ("{{ [1, 2] | random }}", "No filter named 'random'"),
-    "a text of nothing": ("{{ lipsum(n=10**6) }}", "'lipsum' is undefined"),
-    "a missing variable": ("{{ nowhere }}", "'nowhere' is undefined"),
-    "a part of what is missing": ("{{ nowhere.x }}", "'nowhere' is undefined"),
+    "a text of nothing": ("{{ lipsum(n=10**6) }}", "the template uses `lipsum`, which is not defined"),
+    "a missing variable": ("{{ nowhere }}", "the template uses `nowhere`, which is not defined"),
+    "a part of what is missing": ("{{ nowhere.x }}", "the template uses `nowhere`, which is not defined"),
     "division by nothing": ("{{ 1 / 0 }}", "division by zero"),
 }  # fmt: skip
 
@@ -187,7 +187,7 @@ def test_all_faulty_templates_are_told_at_once(tmp_path: Path) -> None:
     found: Report = []
     target.emit(machine.machine, _context(library), found)  # type: ignore[arg-type]
     assert [item.finding.message for item in found] == [
-        f"'missing_{n}' is undefined" for n in range(3)
+        f"the template uses `missing_{n}`, which is not defined" for n in range(3)
     ]
 
 

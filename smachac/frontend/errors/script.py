@@ -125,13 +125,21 @@ FOREIGN = {
     "class": "name the state type with `template:`",
     "initial_state": "write `initial:`",
     "io_keys": "list the keys in `input_keys` and in `output_keys`",
-    "on_error": "write `error: TARGET` in the `transitions` of the state, or `on_error: TARGET` at"
-    " the machine around it",
     "outcome_cb": "write rules in `outcome_map`",
     "parameters": "write each parameter as a variable of the state, or constants in `params`",
     "values": "write initial values in `userdata`",
 }
 """Fields of SMACH and FlexBE that scripts lack, each with the help for it."""
+
+ELSEWHERE = {
+    "on_error": (
+        "only a StateMachine, a Sequence and the script itself have `on_error`: it has no effect"
+        " here",
+        "remove it here; write `on_error: TARGET` at the StateMachine around it, or `error: TARGET`"
+        " in the `transitions` of a state in a StateMachine",
+    ),
+}
+"""Fields that only some owners have, each with the effect of another place and the help for it."""
 
 
 @problem(
@@ -199,6 +207,9 @@ def unknown_variable(
             severity=Severity.WARNING,
         )
     foreign = None if sure else FOREIGN.get(word.text)
+    effect = "SMACH or FlexBE has such a field, smachac has not" if foreign else None
+    if word.text in ELSEWHERE and not sure:
+        effect, foreign = ELSEWHERE[word.text]
     return Finding(
         span=word.span,
         message=f"`{word.text}` is not a {owner.part} of {owner.text}",
@@ -206,7 +217,7 @@ def unknown_variable(
         help=foreign or _variable_help(word.text, sure, names, own) or variables,
         edits=respelt(word, sure),
         severity=severity,
-        effect="SMACH or FlexBE has such a field, smachac has not" if foreign else None,
+        effect=effect,
     )
 
 
@@ -416,6 +427,9 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
             help=help or "declare it under `types:`, or write a type of ROS as `pkg/Name`",
             severity=Severity.WARNING,
         )
+    closed = _closed_type(place.text)
+    if closed and not meant:
+        help = f"close the bracket: write `{closed}`"
     return Finding(
         span=place.span,
         message=f"`{place.text}` is not a valid type",
@@ -423,6 +437,19 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
         help=help or "write it like `float`, `float<rad>[7]`, `list[Pose]`, `one_of[open, close]`",
         effect="values of an unknown type cannot be checked, so no program is generated",
     )
+
+
+def _closed_type(text: str) -> str:
+    """A type whose last bracket is not closed, with the bracket; empty for any other text."""
+    for opening, closing, examples in (
+        ("[", "]", {"list": "Pose", "dict": "str, float", "one_of": "open, close"}),
+        ("<", ">", {}),
+    ):
+        before, found, inside = text.rpartition(opening)
+        if found and before.isidentifier() and closing not in inside:
+            inner = inside.strip() or examples.get(before, "7" if opening == "[" else "rad")
+            return f"{before}{opening}{inner}{closing}"
+    return ""
 
 
 @problem(

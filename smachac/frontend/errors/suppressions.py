@@ -129,11 +129,12 @@ VAIN = "the comment allows nothing"
 def unfounded_allowance(span: Span, *, named: bool) -> Diagnostic:
     """SM022 for a comment without a reason or, if no code is `named`, without a code."""
     missing = "reason" if named else "code"
-    help = f"add the {missing}: `# smachac: allow SM201 the operator starts it`"
-    effect = (
-        "without a reason, nobody can decide later whether the robot is safe" if named else VAIN
-    )
-    return bad_allowance(span, f"this comment has no {missing}", help, ("missing", missing), effect)
+    effect = "without a reason, nobody can decide later whether the finding may still be allowed"
+    help = f"write the {missing} after `allow`, as in `# smachac: allow SM201 REASON`"
+    if named:
+        help = f"write your reason after the code: `{span.text.strip()} REASON`"
+    message = f"this `allow` comment has no {missing}"
+    return bad_allowance(span, message, help, ("missing", missing), effect if named else VAIN)
 
 
 def bad_comment(verb: Word) -> Diagnostic:

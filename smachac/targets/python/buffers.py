@@ -92,13 +92,14 @@ class ModuleParts:
     own_templates: dict[str, str | None] = field(default_factory=dict)
     names: ProgramNames = field(default_factory=ProgramNames)
     faults: Report = field(default_factory=list)
+    without_code: dict[str, Span] = field(default_factory=dict)
     defined: dict[str, tuple[str, Node]] = field(default_factory=dict)
 
     def fault(self, error: BlockError, node: Node) -> None:
         """Add an error, related to the first state that it was found for."""
         found = error.diagnostic
         if found.span.source is not node.span.source:
-            place = Related(span=node.span, message=f"printed here for `{node.name}`")
+            place = Related(span=node.span, message=f"`{node.name}` uses the template")
             finding = replace(found.finding, related=(*found.finding.related, place))
             found = Diagnostic(kind=found.kind, severity=found.severity, finding=finding)
         self.note(found)

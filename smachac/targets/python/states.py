@@ -415,8 +415,12 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         )
     elif module.blocks.source(code) is None:
         message = f"the state type `{leaf.type}` has no code for Python"
-        help = f"add the template `{code}`, or name a class under `code` in `{leaf.type}.yml`"
-        raise BlockError(template_error(leaf.span, message, help, (leaf.type,)))
+        named = 'python: "MODULE:CLASS"'
+        has_code = type_.code or type_.classes
+        way = f"add `{named}` to the `code`" if has_code else f"write `code: {{{named}}}`"
+        help = f"add the template `{code}`, or {way} in `{leaf.type}.yml`"
+        first = module.without_code.setdefault(leaf.type, leaf.span)
+        raise BlockError(template_error(first, message, help, (leaf.type,)))
     else:
         found = module.blocks.names(code)
         used = UsedType(

@@ -331,16 +331,26 @@ class _ErrorConverter:
 
 def _message_and_help(error: Exception) -> tuple[str, str | None]:
     """Message and help for an exception; some messages of Jinja are replaced by clearer ones."""
-    from jinja2 import TemplateNotFound
+    from jinja2 import TemplateNotFound, UndefinedError
     from jinja2.exceptions import SecurityError
 
     text = getattr(error, "message", None) or str(error) or type(error).__name__
     unclosed = _UNCLOSED.search(text)
     if unclosed is not None:
         tag = unclosed.group(1)
-        help = f"write `{{% end{tag} %}}` where the `{tag}` ends"
-        return f"the template ends before this `{tag}` does", help
+        help = f"write `{{% end{tag} %}}` after the last line of the `{tag}`"
+        return f"this `{tag}` has no `{{% end{tag} %}}`", help
     text = text.split(". ")[0].rstrip(".")  # without the explanations of Jinja
+    unknown = text.removeprefix("Encountered unknown tag ").strip("'")
+    if unknown != text.strip("'"):
+        help = f"remove `{unknown}`, or correct its name"
+        if unknown.startswith("end"):
+            help = f"remove `{unknown}`: no `{unknown.removeprefix('end')}` is open here"
+        return f"there can be no tag `{unknown}` here", help
+    if isinstance(error, UndefinedError) and text.endswith(" is undefined"):
+        name = text.removesuffix(" is undefined").strip("'")
+        help = f"correct the name, or add `{name}` to the `variables` of the state type"
+        return f"the template uses `{name}`, which is not defined", help
     if isinstance(error, RecursionError):
         return "the template extends, includes or calls itself endlessly", None
     if isinstance(error, MemoryError):

@@ -1,0 +1,164 @@
+"""Following the help of a finding literally removes the finding, and brings no other one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from smachac.checks.workspace import unreachable
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.driver import analyse
+from smachac.frontend.files import disk_library, read_source
+
+LOOP = """name: m
+template: Base
+outcomes: [succeeded, aborted]
+userdata: {waypoints: [door, shelf]}
+states:
+  - ALL:
+      template: Iterator
+      outcomes: [succeeded, preempted]
+      input_keys: [waypoints]
+      it: waypoints
+      it_label: wp
+      exhausted_outcome: succeeded
+      loop_outcomes: [done, blocked]
+      final_outcome_map: {done: preempted, blocked: preempted}
+      transitions: {succeeded: succeeded, preempted: aborted}
+      states:
+        - VISIT:
+            template: ScriptedState
+            outcomes: {done: {}, blocked: {failure: true}}
+            input_keys: [wp]
+"""
+
+SUB = """name: m
+template: Base
+outcomes: [succeeded, aborted]
+states:
+  - GRASP:
+      template: ScriptedState
+      outcomes: {held: {}, slipped: {failure: true}}
+      transitions: {held: succeeded, slipped: succeeded}
+"""
+
+EMPTY = "name: m\ntemplate: Base\noutcomes: [done]\nstates: []\n"
+
+LIMIT = """name: m
+template: Base
+outcomes: [done]
+states:
+  - WAIT:
+      template: SleepState
+      time: 1
+      timeout: 20 sec
+      transitions: {succeeded: done, preempted: done, timeout: done}
+"""
+
+TYPE = """name: m
+template: Base
+outcomes: [done]
+userdata: {width: {type: "float<m", value: 0.05}}
+states:
+  - PICK:
+      template: ScriptedState
+      input_keys: [width]
+      outcomes: [ok]
+      transitions: {ok: done}
+"""
+
+FIELDS = """name: m
+template: Base
+outcomes: [done]
+states:
+  - PICK:
+      template: ScriptedState
+      outcomes: [ok]
+    transitions: {ok: done}
+"""
+
+STORE = """name: m
+template: Base
+outcomes: [done]
+states:
+  - CUP:
+      template: ScriptedState
+      outcomes: [found]
+      output_keys: [pose]
+      transitions: {found: BOX}
+  - BOX:
+      template: ScriptedState
+      outcomes: [found]
+      output_keys: [pose]
+      transitions: {found: GRASP}
+  - GRASP:
+      template: ScriptedState
+      outcomes: [held]
+      input_keys: [pose]
+      transitions: {held: done}
+"""
+
+CASES = [
+    (
+        "SM205",
+        EMPTY,
+        "write `states: [NAME: {template: ScriptedState, outcomes: [done], transitions:"
+        " {done: done}}]`",
+        "states: []",
+        "states: [NAME: {template: ScriptedState, outcomes: [done], transitions: {done: done}}]",
+    ),
+    (
+        "SM404",
+        LOOP,
+        "remove `blocked` from the `loop_outcomes` of `ALL`: then the loop ends with `preempted`",
+        "loop_outcomes: [done, blocked]",
+        "loop_outcomes: [done]",
+    ),
+    (
+        "SM206",
+        SUB,
+        "lead `slipped` of `GRASP` to a state that recovers, or to `aborted`",
+        "slipped: succeeded",
+        "slipped: aborted",
+    ),
+    ("SM004", LIMIT, "write it as `20s`", "20 sec", "20s"),
+    ("SM017", TYPE, "close the bracket: write `float<m>`", "float<m", "float<m>"),
+    (
+        "SM004",
+        FIELDS,
+        "indent it by 2 spaces more: it is a field of `PICK`",
+        "    transitions: {ok",
+        "      transitions: {ok",
+    ),
+    (
+        "SM320",
+        STORE,
+        "write `remapping: {pose: pose_2}` at one of the two",
+        "outcomes: [found]\n      output_keys: [pose]\n      transitions: {found: BOX}",
+        "outcomes: [found]\n      output_keys: [pose]\n      remapping: {pose: pose_2}\n"
+        "      transitions: {found: BOX}",
+    ),
+]
+"""For each finding: its code, a script with it, the start of its help, and the text that the help
+replaces with another one."""
+
+
+@pytest.mark.parametrize(("code", "script", "help", "old", "new"), CASES)
+def test_a_help_followed_literally_removes_the_finding(
+    tmp_path: Path, code: str, script: str, help: str, old: str, new: str
+) -> None:
+    found = [item for item in _report(tmp_path, script) if item.code == code]
+    assert [item.help for item in found if (item.help or "").startswith(help)] != []
+    left = _report(tmp_path, script.replace(old, new))
+    assert [item for item in left if item.severity is not Severity.INFO] == []
+
+
+def _report(folder: Path, script: str) -> Report:
+    path = folder / "main.yml"
+    path.write_text(script, "utf-8")
+    report: Report = []
+    library = disk_library(path, report)
+    source = read_source(path, report)
+    assert source is not None
+    return analyse(source, library, report, unreachable).report
