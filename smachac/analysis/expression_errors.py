@@ -378,8 +378,8 @@ def _cure(word: str, one: Type, other: Type) -> str | None:
     both = {*kinds(one), *kinds(other)}
     if both == {"number", "text"}:
         if word == "+":
-            return "convert both to text with `str(...)`, or both to numbers with `float(...)`"
-        return "convert the text to a number with `float(...)`"
+            return "convert the number with `str(...)`, or text that is a number with `float(...)`"
+        return "convert a text that contains a number with `float(...)`"
     if "nothing" in both:
         return "give it a value: the script sets it only to nothing (`null`)"
     if word == "+" and both > {"list"}:

@@ -24,10 +24,11 @@ from smachac.ir.traversal import outcome_names
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
     """A leaf of each type whose code was read, with its path. `declared`: one that sees only the
-    keys it declares, unlike the child of an iterator."""
+    keys it declares, unlike the child of an iterator. The iterator of `retry` and `for_each` has
+    the keys that the state declares."""
     seen: set[str] = set()
     for path, container in context.containers:
-        if declared and isinstance(container, nodes.Iterator):
+        if declared and isinstance(container, nodes.Iterator) and not container.sugar:
             continue
         for child in container.children:
             known = child.class_facts if isinstance(child, Leaf) else None
@@ -151,9 +152,12 @@ def _without_tuple(text: str, outcomes: Collection[str]) -> str | None:
 
 def unknown_reads(context: Context) -> Iterator[Finding]:
     """The keys that the code of a type reads without an input in its interface (SM310)."""
+    containers = dict(context.containers)
     for path, leaf, facts in leaves_by_type(context, declared=True):
         inputs = [key.name for key in leaf.inputs]
-        for word in _first_of_each(facts.reads, inputs):
+        around = containers[path.rpartition("/")[0]]
+        known = [*inputs, around.item_key] if isinstance(around, nodes.Iterator) else inputs
+        for word in _first_of_each(facts.reads, known):
             yield Finding(
                 span=word.span,
                 message=f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"

@@ -383,7 +383,10 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             message = f"no rule of `{node.name}` matches {shown}, and `default_outcome` is missing"
             bad = (outcome_names(node) or ["failed"])[-1]
             help = f"write `default_outcome: {bad}` for all combinations without a rule"
-            if rule:
+            if rule and not node.rules:
+                rule = f"outcome_map: {{{outcome_names(node)[0]}: {{{rule}}}}}"
+                help = f"write rules for its outcomes, as in `{rule}`, and `default_outcome: {bad}`"
+            elif rule:
                 help += f", or add a rule, as in `{bad}: {{{rule}}}`"
         yield Finding(
             span=span,

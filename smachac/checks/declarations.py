@@ -373,9 +373,10 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
 
 
 def _leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
-    """The leaves in a container that see only declared keys: all but children of iterators, and
-    open ones."""
-    for child in container.children if not isinstance(container, nodes.Iterator) else ():
+    """The leaves in a container that see only declared keys: all but children of iterators that the
+    script writes, and open ones."""
+    raw = isinstance(container, nodes.Iterator) and not container.sugar
+    for child in container.children if not raw else ():
         if isinstance(child, Leaf) and not child.open:
             yield f"{path}/{child.name}", child
 
@@ -468,6 +469,8 @@ def _undeclared_accesses(
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
         guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
         for key, code in read:
+            if isinstance(container, nodes.Iterator) and key == container.item_key:
+                continue
             span = key_place(code, key)
             yield Finding(
                 span=span,

@@ -228,9 +228,10 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
         retried = _retried(child, step.outcome)
         message = f"`{child.name}` has no outcome `{step.outcome}`"
         if retried is not None and isinstance(child, nodes.Iterator):
-            then = "is tried again" if child.sugar == "retry" else "goes on with the next item"
-            message = f"`{child.sugar}` consumes `{step.outcome}`: `{child.name}` {then}, and never"
-            message += " ends with it"
+            then = "runs again (`retry`)"
+            if child.sugar != "retry":
+                then = f"runs for the next item (`{child.sugar}`)"
+            message = f"`{child.name}` never ends with `{step.outcome}`: after it, the state {then}"
         yield Finding(
             span=step.span,
             message=message,
@@ -243,12 +244,15 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
 
 
 def _retried(child: Node, outcome: str) -> str | None:
-    """The help for a transition on an outcome that `retry` or `for_each` replaces."""
+    """The help for a transition for an outcome that `retry` or `for_each` replaces."""
     if not isinstance(child, nodes.Iterator) or outcome not in child.loop_outcomes:
         return None
     if child.sugar == "retry":
         end = child.exhausted_outcome
-        return f"after the last try with `{outcome}`, `retry` ends with `{end}`: write `{end}:`"
+        instead = f"after the last try, `retry` ends with `{end}`"
+        if end in {each.outcome for each in child.transitions if each.origin == "written"}:
+            return f"remove `{outcome}:`; {instead}, which has a transition"
+        return f"write `{end}:` in place of `{outcome}:`; {instead}"
     if child.sugar == "for_each":
         first = child.loop_outcomes[0]
         return (

@@ -12,6 +12,7 @@ from smachac.diagnostics.source import Word, assert_never
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import reachable
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.properties import (
     After,
     AlwaysEnds,
@@ -96,7 +97,7 @@ def property_fails(context: Context) -> Iterator[Finding]:
             span=each.property.span,
             message=f"{_named(each.property)} does not hold: {_violation(form, example)}",
             arguments=(each.property.name, in_words(form)),
-            help=f"{_cure(form)}\n{_replayed(shown, number)}",
+            help=f"{_cure(form, example)}\n{_replayed(shown, number)}",
             path=witness(example),
             node=example.node or context.machine.root.name,
         )
@@ -129,7 +130,8 @@ def _violation(form: Form, example: Counterexample) -> str:
             return f"{event} {times + 1} times"
         case AlwaysEnds():
             if example.again >= 0:
-                return f"`{name}` can be repeated without end"
+                repeated = example.visits[example.again].path.rpartition("/")[2]
+                return f"`{repeated}` can be repeated without end"
             return "the run waits without end in a state that has no outcome"
     return assert_never(form)
 
@@ -138,8 +140,9 @@ def _before(events: Atoms) -> str:
     return f" before {either(events)}" if events else ""
 
 
-def _cure(form: Form) -> str:
+def _cure(form: Form, example: Counterexample) -> str:
     """What to do about a property that fails."""
+    raised = bool(example.visits) and example.visits[-1].outcome is None
     match form:
         case Never(until=until, enter=enter):
             through = f" through {either(until)}, or" if until else ""
@@ -147,7 +150,8 @@ def _cure(form: Form) -> str:
         case Before(later=later, earlier=earlier):
             return f"lead each path to {either(later)} through {either(earlier)}"
         case After(first=first, answer=answer):
-            return f"lead each path from {either(first)} through {either(answer)}"
+            on_error = ", also the exceptions, with `error: TARGET` in `transitions`" * raised
+            return f"lead each path from {either(first)} through {either(answer)}{on_error}"
         case AtMost() | AlwaysEnds():
             return (
                 "limit the number of tries, for example with `retry: {on: [OUTCOME], max: 3}` in"
@@ -218,8 +222,15 @@ def property_vacuous(context: Context) -> Iterator[Finding]:
             message=f"{_named(each.property)} checks nothing: no path leads to"
             f" {_premise(each.property)}",
             arguments=(each.property.name, in_words(each.property.form)),
-            help="name the event that was meant, or add the transition that leads to it",
+            help=_missing_event(each.property),
         )
+
+
+def _missing_event(given: Property) -> str:
+    """What to do about a property whose event does not occur."""
+    if not given.stops and PREEMPTED in _premise(given):
+        return f"remove `stops: false`: `{PREEMPTED}` occurs only after a stop request"
+    return "name the event that was meant, or add the transition that leads to it"
 
 
 def _unreachable(context: Context) -> tuple[str, ...]:

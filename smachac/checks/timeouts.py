@@ -99,14 +99,26 @@ def no_timeout(context: Context) -> Iterator[Finding]:
                 span=node.span,
                 message=_unlimited(node, outer),
                 arguments=(node.name,),
-                help=f"write a time limit, as in `timeout: 20s`, for `{node.name}`"
-                if answers
-                else f"add an outcome `preempted` or `timeout` to the state type `{node.type}`",
+                help=_time_limit(node, answers, limits.get(node.type, ())),
                 effect=None if answers or not timed else "the task waits until the state ends",
                 related=calls(node, node.span),
                 severity=Severity.WARNING if outer is not None else None,
                 node=path,
             )
+
+
+def _time_limit(leaf: Leaf, answers: bool, limits: Collection[VariableType]) -> str:
+    """The help for a wait without a limit."""
+    if not answers:
+        kind = f"the interface and the code of `{leaf.type}`"
+        return f"add the outcome `preempted` to {kind}, and write `timeout: 20s` at `{leaf.name}`"
+    own = next((one for one in limits if one.name == "timeout"), None)
+    if own is None:
+        return f"write a time limit, as in `timeout: 20s`, for `{leaf.name}`"
+    if own.ros:
+        ros_1 = "put the state into a StateMachine with `timeout: 20s`"
+        return f"for ROS 2 write `timeout: 20.0` (seconds); for ROS 1 {ros_1}"
+    return f"write a time limit in seconds, as in `timeout: 20.0`, for `{leaf.name}`"
 
 
 def _unlimited(leaf: Leaf, outer: Concurrence | None) -> str:

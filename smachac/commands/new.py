@@ -59,7 +59,7 @@ def new_command(arguments: Namespace) -> int:
             "name a folder, as in `new my_robot`, or a state type, as in `new state Grasp`"
         )
     folder = Path(words[0])
-    if not words[0].isprintable():
+    if not words[0].strip() or not words[0].isprintable():
         return usage(f"`{words[0]}` is not a name for a folder")
     schemas = {each: schema_text(each) for each in ("script", "interface", "project")}
     return _put(folder, project(Path(os.path.realpath(folder)).name, schemas))

@@ -181,6 +181,8 @@ NO_ARM = "--record, --gui and --faults need a program that uses the simulated ar
 
 def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     """Generate the Python program and run it; the exit code."""
+    from importlib.util import find_spec
+
     from smachac.driver import compile_script
     from smachac.targets.python import TARGET
     from smachac.targets.python.ros import is_node
@@ -198,6 +200,8 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
         return usage("this script is a ROS node: --ros runs it, --mock plays a scenario")
     if arguments.ros and library.ros == 2 and not node:
         return usage("this script is no ROS node: run it without --ros")
+    if node and find_spec("rclpy") is None:
+        return usage("--ros needs rclpy: start smachac with the Python of ROS 2")
     arguments.node = ["--ros-args", *(arguments.ros_args or [])] if node else None
     faults: tuple[Fault, ...] | None = ()
     if arguments.faults is not None:

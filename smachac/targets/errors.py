@@ -579,7 +579,7 @@ def _about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> t
             )
         case "hidden method":
             return f"`self.{word}` hides the method `{word}` of `smach.State`, which SMACH calls", (
-                "give the attribute another name"
+                f"give the attribute another name, such as `self.own_{word}`"
             )
         case "undefined name":
             return f"`{word}` is used in `{name}`, but nothing defines it: Python stops there", (

@@ -194,7 +194,7 @@ def told(text: str) -> list[str]:
         ("ud.d[0]", ["`ud.d[0]` uses `int` as an index of `dict[str, int]`"]),
         ("ud.d.x", ["`ud.d.x` reads an attribute that `dict[str, int]` does not have"]),
         ("ud.p.x", ["`ud.p.x` reads an attribute that `Pose` does not have"]),
-        ("ud.s(1)", ["`ud.s(1)` calls `str`, which is not a function"]),
+        ("ud.s(1)", ["`ud.s(1)` calls a value of the type `str`, which is no function"]),
         ("len(ud.n)", ["`len(ud.n)` passes `int` to `len`, which does not accept it"]),
         ("abs(1, 2)", ["`abs(1, 2)` passes 2 arguments to `abs`, which accepts 1"]),
         ("len()", ["`len()` passes 0 arguments to `len`, which accepts 1"]),

@@ -305,3 +305,41 @@ def test_the_opposite_of_an_outcome_is_no_suggestion() -> None:
     report = findings(changed(('return "lost"', 'return "not_found"')))
     (item,) = [item for item in report if item.code == "SM309"]
     assert item.finding.help == "return one of its outcomes: `found`, `lost`, `preempted`"
+
+
+RETRIED = SCRIPT.replace(
+    "      transitions: {found: seen, lost: lost, preempted: stopped}",
+    "      retry: {on: [lost], max: 3}\n"
+    "      transitions: {found: seen, exhausted: lost, preempted: stopped}",
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (CLASS, []),
+        (changed((SET, "")), ['SM314 cell/find.py:17 "found"']),
+        (
+            changed(("userdata.pose =", "userdata.psoe =")),
+            ["SM308 cell/find.py:17 userdata.psoe"],
+        ),
+        (
+            changed(("range(userdata.tries)", "range(userdata.trys)")),
+            ["SM310 cell/find.py:12 userdata.trys"],
+        ),
+        (changed(("userdata.pose = pose", "userdata.pose = 5")), ["SM304 cell/find.py:17 5"]),
+    ],
+)
+def test_a_state_that_is_tried_again_is_checked_like_others(text: str, found: list[str]) -> None:
+    assert lines(findings(text, script=RETRIED)) == found
+
+
+def test_the_item_of_for_each_is_a_key_of_its_state() -> None:
+    script = SCRIPT.replace("{tries: 0}", "{tries: 0, places: [1, 2]}").replace(
+        "      speed: 0.5\n",
+        "      speed: 0.5\n      for_each: {item: at, in: places, on: [found]}\n",
+    )
+    text = changed(("range(userdata.tries)", "range(userdata.at)"))
+    assert "SM310" not in {item.code for item in findings(text, script=script)}
+    text = changed(("range(userdata.tries)", "range(userdata.other)"))
+    assert "SM310" in {item.code for item in findings(text, script=script)}

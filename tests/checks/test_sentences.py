@@ -93,7 +93,7 @@ GRIPPER = """
          " for_each: {item: part, in: partz}, transitions: {succeeded: succeeded}}\n",
          "SM301", "partz", "did you mean `parts`?"),
         (SEQUENCE.format(connector="suceeded"), "SM201", "suceeded", "did you mean `succeeded`?"),
-        (RETRY, "SM102", "found", "`retry` consumes `found`"),
+        (RETRY, "SM102", "found", "`FIND` never ends with `found`"),
         (GRIPPER.format(name="arm"), "SM003", "arm", "its variables are `command`, `limb`"),
         (GRIPPER.format(name="lim"), "SM003", "lim", "did you mean `limb`?"),
         (GRIPPER.format(name="outcome"), "SM003", "outcome", "did you mean `outcomes`?"),

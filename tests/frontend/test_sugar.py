@@ -216,7 +216,7 @@ def faults(sugar: str, transitions: str, folder: Path) -> dict[str, Finding]:
 def test_a_transition_on_an_outcome_that_retry_replaces_is_explained(tmp_path: Path) -> None:
     sugar = "retry: {on: [aborted], max: 3}"
     found = faults(sugar, "{succeeded: succeeded, aborted: aborted}", tmp_path)
-    help = "after the last try with `aborted`, `retry` ends with `exhausted`: write `exhausted:`"
+    help = "write `exhausted:` in place of `aborted:`; after the last try, `retry` ends with `exhausted`"
     assert found["SM102"].help == help
 
 
