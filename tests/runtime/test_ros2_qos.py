@@ -36,12 +36,18 @@ def test_policies_of_a_value(value: Any, stated: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("value", "fault"),
     [
-        ("fast", "no preset `fast`; there are default, sensor_data"),
-        (0, "the depth is a positive number, not `0`"),
-        (True, "the depth is a positive number, not `True`"),
-        ({"depth": "5"}, "the depth is a positive number, not `5`"),
-        ({"reliability": "good"}, "reliability is reliable or best_effort, not `good`"),
-        ({"speed": 1}, "no policy `speed`; there are reliability, durability, history, depth"),
+        ("fast", "no preset `fast`; its presets are default, sensor_data"),
+        (0, "the depth of `qos` must be a positive number, not `0`"),
+        (True, "the depth of `qos` must be a positive number, not `True`"),
+        ({"depth": "5"}, "the depth of `qos` must be a positive number, not `5`"),
+        (
+            {"reliability": "good"},
+            "`reliability` of `qos` must be reliable or best_effort, not `good`",
+        ),
+        (
+            {"speed": 1},
+            "no policy `speed`; its policies are reliability, durability, history, depth",
+        ),
         ({"preset": "fast"}, "no preset `fast`"),
     ],
 )
