@@ -25,9 +25,13 @@ PYTHON = os.environ.get("SMACHAC_ROS_PYTHON", "/usr/bin/python3")
 PATIENCE = 120.0
 """Seconds after which what a test waits for will not come, on the slowest machine."""
 
-LATE_SUBSCRIBER = "Could not process inbound connection"
-"""A warning of rospy: a subscriber connects after the end of the publisher that the master named.
-It comes at any time, and says nothing about the program."""
+FAILED_CONNECTIONS = (
+    "Could not process inbound connection",
+    "Inbound TCP/IP connection failed",
+    "Failed to handle inbound connection",
+)
+"""Warnings of rospy: a subscriber connects after the end of the publisher that the master named, or
+ends while it connects. They come at any time, and are not about the program."""
 
 PORTS = 20
 """Tries to find a port for the master that nobody else takes meanwhile."""
@@ -79,7 +83,7 @@ class Program:
     def _read(self) -> None:
         assert self._process.stdout is not None
         for line in self._process.stdout:
-            if LATE_SUBSCRIBER in line:
+            if any(warning in line for warning in FAILED_CONNECTIONS):
                 continue
             with self._news:
                 self._lines.append(line)
