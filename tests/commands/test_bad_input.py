@@ -178,6 +178,7 @@ def test_standard_output_is_full_closed_or_unread(
     assert (ended.stderr == "") == prints
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closed", ["1>&-", "2>&-", "0<&- 1>&- 2>&-"])
 def test_the_workers_of_a_sweep_start_without_standard_streams(script: Path, closed: str) -> None:
     words = [sys.executable, "-m", "smachac", "sweep", str(script), "--runs", "1", "-o", "report"]

@@ -91,6 +91,7 @@ def test_at_the_first_imports_of_the_console_script(tmp_path: Path) -> None:
         assert (ended.returncode, ended.stderr) == (130, "interrupted\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words",
     [["check", SCRIPT], ["build", SCRIPT, "-t", "python", "-o", "out"], ["run", SCRIPT, "-q"]],

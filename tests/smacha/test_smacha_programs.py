@@ -55,6 +55,7 @@ def test_golden_outline(script: str) -> None:
     compare_file(found, FOLDER / "expected" / f"{script}.txt")
 
 
+@pytest.mark.slow
 def test_the_same_texts_each_time() -> None:
     code = (
         "import sys; from tests.smacha.smacha_programs import text_of; "
