@@ -166,7 +166,7 @@ class Ros1Topic:
             import_module("rospy").signal_shutdown("the view ends")
 
     def _find(self) -> None:
-        """Subscribe, as soon as there is a master that knows the topic."""
+        """Subscribe if a node publishes the topic; without a master or a publisher, do nothing."""
         from smachac.runtime.smach_ros import messages
 
         rosgraph: Any = import_module("rosgraph")
