@@ -8,29 +8,17 @@ from typing import Any, get_args
 from hypothesis import given
 
 from smachac.commands.schema import schema_text
-from smachac.diagnostics.source import Source
 from smachac.diff.comparison import Kind, compare
 from smachac.diff.report import VERSION, render_json
 from smachac.diff.states import FactKind
-from smachac.driver import Analysis, analyse_script
+from smachac.driver import Analysis
 from smachac.ir.nodes import Machine
+from tests.diff.test_comparison import SCRIPT, of_text
 from tests.strategies.machines import machines
 from tests.support.json_schema import faults
 
 SCHEMA: dict[str, Any] = json.loads(schema_text("diff"))
 CHANGE = SCHEMA["definitions"]["change"]["properties"]
-
-SCRIPT = """\
-name: sm
-template: Base
-outcomes: [done, lost]
-states:
-  - WAIT: {template: SleepState, time: 1, transitions: {succeeded: done, preempted: lost}}
-"""
-
-
-def of_text(text: str) -> Analysis:
-    return analyse_script(Source("main.yml", text))
 
 
 def printed(before: Analysis | None, after: Analysis | None) -> Any:
