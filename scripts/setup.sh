@@ -140,7 +140,7 @@ set_up() {
   if [[ $level == sim ]]; then
     pip install -q -e '.[sim]'
   elif ! pip install -q -e '.[sim,dev,fast]' &>.venv/fast.log; then
-    say "note: going on without the fast YAML parser (.venv/fast.log says why); the other reads the same"
+    say "note: going on without the fast YAML parser (the reason is in .venv/fast.log); the other reads the same"
     pip install -q -e '.[sim,dev]'
   fi
   key >.venv/ready-sim
@@ -173,7 +173,7 @@ prepare_ros2() {
   .venv-ros2/bin/python -m pip --disable-pip-version-check --no-input install -q -r scripts/ros2.txt \
     </dev/null || return 1
   build_interfaces "$interfaces" &>.venv-ros2/interfaces.log || {
-    say "the interfaces of the tests cannot be built: .venv-ros2/interfaces.log says why"
+    say "the interfaces of the tests cannot be built: the reason is in .venv-ros2/interfaces.log"
     return 1
   }
   printf '%s\n' "$state $PWD" >"$stamp"

@@ -32,7 +32,7 @@ install_editor() {
   quiet_npm rebuild --prefix "$tools" argon2
   (cd "$tools/node_modules/code-server" && npm_config_user_agent="npm/$(npm --version)" sh postinstall.sh) \
     </dev/null >"$tools/install.log" 2>&1 || {
-    echo "vscode_test: code-server cannot be installed: $tools/install.log says why" >&2
+    echo "vscode_test: code-server cannot be installed; the reason is in $tools/install.log" >&2
     exit 1
   }
   echo "${packages[*]}" >"$tools/ready"

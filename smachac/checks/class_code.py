@@ -23,9 +23,9 @@ from smachac.ir.traversal import outcome_names
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
-    """A leaf of each type whose code was read, with its path. `declared`: one that sees only the
-    keys it declares, unlike the child of an iterator. The iterator of `retry` and `for_each` has
-    the keys that the state declares."""
+    """A leaf of each type whose code was read, with its path. `declared`: one that can use only
+    the keys it declares, unlike the child of an iterator. The iterator of `retry` and `for_each`
+    has the keys that the state declares."""
     seen: set[str] = set()
     for path, container in context.containers:
         if declared and isinstance(container, nodes.Iterator) and not container.sugar:

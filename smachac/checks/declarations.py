@@ -373,8 +373,8 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
 
 
 def _leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
-    """The leaves in a container that see only declared keys: all but children of iterators that the
-    script writes, and open ones."""
+    """The leaves in a container that can use only declared keys: all but open ones and the children
+    of iterators that the script writes."""
     raw = isinstance(container, nodes.Iterator) and not container.sugar
     for child in container.children if not raw else ():
         if isinstance(child, Leaf) and not child.open:

@@ -193,10 +193,10 @@ def unknown_name(context: Context) -> Iterator[Finding]:
     The state fails at its first visit, often after the robot has moved other parts of the task.
 
     Exactly: `names: limb`, `names: model` and `names: body` of a variable or key in an interface
-    say what its values are names of. Limbs are those of a built-in robot. In the simulation, models
-    are the built-in ones, unless the state names a file, and bodies are those that LoadModelState
-    adds; there an unknown name is an error. Where code of the user may add bodies, they are not
-    checked. A state whose type has `role: grip` needs a limb whose description has a gripper. Names
+    declare that its values are such names. Limbs are those of a built-in robot. In the simulation,
+    models are the built-in ones, unless the state names a file, and bodies are those that
+    LoadModelState adds; there an unknown name is an error. Where code of the user may add bodies,
+    they are not checked. A state whose type has `role: grip` needs a limb whose description has a gripper. Names
     of frames and joints are SM505.
 
     Wrong:
