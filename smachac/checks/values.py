@@ -196,8 +196,8 @@ def unknown_name(context: Context) -> Iterator[Finding]:
     declare that its values are such names. Limbs are those of a built-in robot. In the simulation,
     models are the built-in ones, unless the state names a file, and bodies are those that
     LoadModelState adds; there an unknown name is an error. Where code of the user may add bodies,
-    they are not checked. A state whose type has `role: grip` needs a limb whose description has a gripper. Names
-    of frames and joints are SM505.
+    they are not checked. A state whose type has `role: grip` needs a limb whose description has a
+    gripper. Names of frames and joints are SM505.
 
     Wrong:
         name: sm
