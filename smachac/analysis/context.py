@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
@@ -70,25 +70,28 @@ class Context:
         uses only what belongs to the state types below the node. So the result for a container and
         all below it holds for the next machine too, if the container is the same object.
         """
-        return self._found_at(fact, given, leaves=True)
+        return self._found_at(self.states, self._ends_of_states, fact, given)
 
     def at_containers(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
         """What a function finds at each container, in the order of `containers`: see `at_states`.
         It may use the children as well."""
-        return self._found_at(fact, given, leaves=False)
+        return self._found_at(self.containers, self._ends_of_containers, fact, given)
 
     def _found_at(
-        self, fact: Callable[..., Iterable[T]], given: tuple[object, ...], *, leaves: bool
+        self,
+        nodes: Sequence[tuple[str, Node]],
+        ends: Sequence[int],
+        fact: Callable[..., Iterable[T]],
+        given: tuple[object, ...],
     ) -> tuple[T, ...]:
+        """`ends`: for each of the nodes, the index after the last one below it."""
         found: list[T] = []
         begun: list[tuple[int, str, Node, int]] = []
-        states, ends = self.states, self._subtree_ends
         at = 0
-        while at < len(states):
-            path, node = states[at]
+        while at < len(nodes):
+            path, node = nodes[at]
             if isinstance(node, Leaf):
-                if leaves:
-                    found.extend(fact(path, node, *given))
+                found.extend(fact(path, node, *given))
                 at += 1
             elif (known := self._known.get((fact, path))) is not None and known[0] is node:
                 self._facts[fact, path] = known
@@ -109,24 +112,23 @@ class Context:
         return tuple(traversal.walk(self.machine.root))
 
     @cached_property
-    def _subtree_ends(self) -> list[int]:
-        """For each of `states`, the index after the last node below it."""
-        ends = [0] * len(self.states)
-        following: list[int] = []  # the ends of the siblings that follow, the next one last
-        for at in range(len(ends) - 1, -1, -1):
-            node = self.states[at][1]
-            end = at + 1
-            if not isinstance(node, Leaf) and node.children:
-                end = following[-len(node.children)]
-                del following[-len(node.children) :]
-            ends[at] = end
-            following.append(end)
-        return ends
-
-    @cached_property
     def containers(self) -> tuple[tuple[str, Container], ...]:
         """The containers with their paths, parents before children."""
         return tuple((path, node) for path, node in self.states if not isinstance(node, Leaf))
+
+    @cached_property
+    def _ends_of_states(self) -> Sequence[int]:
+        counts = [0 if isinstance(node, Leaf) else len(node.children) for _, node in self.states]
+        return _subtree_ends(counts)
+
+    @cached_property
+    def _ends_of_containers(self) -> Sequence[int]:
+        return _subtree_ends(
+            [
+                sum(not isinstance(child, Leaf) for child in container.children)
+                for _, container in self.containers
+            ]
+        )
 
     @cached_property
     def linear(self) -> tuple[tuple[str, Linear], ...]:
@@ -259,3 +261,18 @@ class Context:
     def failures(self) -> tuple[Failure, ...]:
         """Every failure that can begin, with where it leads."""
         return tuple(failures(self.states, self.routes, self.plain_paths))
+
+
+def _subtree_ends(counts: Sequence[int]) -> Sequence[int]:
+    """For each node of a tree, parents before children, the index after the last node below it.
+    `counts` are the numbers of children."""
+    ends = [0] * len(counts)
+    following: list[int] = []  # the ends of the siblings that follow, the next one last
+    for at in range(len(counts) - 1, -1, -1):
+        end = at + 1
+        if counts[at]:
+            end = following[-counts[at]]
+            del following[-counts[at] :]
+        ends[at] = end
+        following.append(end)
+    return ends

@@ -259,13 +259,13 @@ def _build(source: Source, report: Report) -> Tree | None:
             except (YAMLError, ValueError) as error:
                 if events is _c_events and _is_reread(source.text, builder.deepest):
                     continue  # the message is always that of the pure parser
-                builder.root = None
+                builder.items = []
                 found.append(syntax_error(source, error))
             except _BeyondLimitError:
-                builder.root = None
+                builder.items = []
             if builder.seen or events is _pure_events:
                 report.extend(found)
-                return builder.root
+                return next(iter(builder.items), None)
     finally:
         if collecting:
             gc.enable()
@@ -286,17 +286,20 @@ def _deepest_bracket(text: str) -> int:
 
 
 class _Open:
-    """A collection that is being built."""
+    """A collection that is being built. `before` is the number of nodes before it, `around` are the
+    items of the collection around it."""
 
-    __slots__ = ("anchor", "flow", "items", "mapping", "size", "start")
+    __slots__ = ("anchor", "around", "before", "flow", "items", "start")
 
-    def __init__(self, mapping: bool, flow: bool, start: int, anchor: str | None) -> None:
-        self.mapping = mapping
+    def __init__(
+        self, around: list[Tree], before: int, flow: bool, start: int, anchor: str | None
+    ) -> None:
+        self.around = around
+        self.before = before
         self.flow = flow
         self.start = start
         self.anchor = anchor
         self.items: list[Tree] = []
-        self.size = 1
 
 
 def _identity(key: Scalar) -> str | tuple[type, object]:
@@ -316,8 +319,9 @@ class _Builder:
         self.source = source
         self.report = report
         self.stack: list[_Open] = []
+        self.items: list[Tree] = []
+        self.nodes = 0
         self.anchors: dict[str, tuple[Tree, int]] = {}
-        self.root: Tree | None = None
         self.seen = False
         self.deepest = 0
         self.aliased = 0
@@ -342,16 +346,17 @@ class _Builder:
             kinds.ScalarEvent: self._scalar,
             kinds.MappingStartEvent: self._open,
             kinds.SequenceStartEvent: self._open,
-            kinds.MappingEndEvent: self._close,
-            kinds.SequenceEndEvent: self._close,
+            kinds.MappingEndEvent: self._close_mapping,
+            kinds.SequenceEndEvent: self._close_list,
             kinds.AliasEvent: self._alias,
         }
         for event in events:
-            self.seen = True
             step = steps.get(type(event))
             if step is not None:
                 step(event)
-            elif self.root is not None and type(event) is kinds.DocumentStartEvent:
+                continue
+            self.seen = True
+            if self.items and type(event) is kinds.DocumentStartEvent:
                 span = Span(self.source, event.start_mark.index, event.end_mark.index)
                 self.report.append(
                     wrong_shape(
@@ -370,11 +375,21 @@ class _Builder:
         if plain and start == end and not text:  # positions of nothing differ between parsers
             start = end = self.end
         self.end = end
-        tag = event.tag
-        if tag is not None and str(tag) not in ("tag:yaml.org,2002:str", "!"):
+        value: bool | int | float | str | None = text
+        if event.tag is not None:
+            self._check_tag(event)
+        elif plain:
+            value = _resolve(text)
+        node = Scalar(value, plain, self.source, start, end)
+        self.items.append(node)
+        self._count(1, start)
+        if event.anchor is not None:
+            self.anchors[event.anchor] = (node, 1)
+
+    def _check_tag(self, event: Any) -> None:
+        """Reports a tag of a scalar that is not for text."""
+        if str(event.tag) not in ("tag:yaml.org,2002:str", "!"):
             self._unknown_tag(event)
-        value = _resolve(text) if plain and tag is None else text
-        self._add(Scalar(value, plain, self.source, start, end), 1, event.anchor)
 
     def _unknown_tag(self, event: Any) -> None:
         span = Span(self.source, event.start_mark.index, event.end_mark.index)
@@ -388,7 +403,6 @@ class _Builder:
         )
 
     def _open(self, event: Any) -> None:
-        mapping = type(event).__name__ == "MappingStartEvent"
         start = event.start_mark.index
         if event.tag is not None:
             self._unknown_tag(event)
@@ -398,19 +412,29 @@ class _Builder:
             self._stop(start, message, "split the script into sub-scripts", "depth")
         if depth > self.deepest:
             self.deepest = depth
-        self.stack.append(_Open(mapping, bool(event.flow_style), start, event.anchor))
+        self.stack.append(_Open(self.items, self.nodes, event.flow_style, start, event.anchor))
+        self.items = []
         self.end = event.end_mark.index
+        self._count(1, start)
 
-    def _close(self, event: Any) -> None:
+    def _close_mapping(self, event: Any) -> None:
         done = self.stack.pop()
         if done.flow:
             self.end = event.end_mark.index
-        span = Span(self.source, done.start, self.end)
-        if not done.mapping:
-            self._add(Seq(tuple(done.items), span), done.size, done.anchor)
-            return
-        entries = self._entries(done.items, done.flow)
-        self._add(Map(entries, span), done.size, done.anchor)
+        entries = self._entries(self.items, done.flow)
+        self._close(done, Map(entries, Span(self.source, done.start, self.end)))
+
+    def _close_list(self, event: Any) -> None:
+        done = self.stack.pop()
+        if done.flow:
+            self.end = event.end_mark.index
+        self._close(done, Seq(tuple(self.items), Span(self.source, done.start, self.end)))
+
+    def _close(self, done: _Open, node: Seq | Map) -> None:
+        self.items = done.around
+        self.items.append(node)
+        if done.anchor is not None:
+            self.anchors[done.anchor] = (node, self.nodes - done.before)
 
     def _alias(self, event: Any) -> None:
         self.end = event.end_mark.index
@@ -422,29 +446,24 @@ class _Builder:
             help = f"put the anchor `&{name}` before this alias"
             self.report.append(yaml_syntax(span, message, help, arguments=("alias", name)))
             raise _BeyondLimitError
-        self.aliased += known[1]
+        node, size = known
+        self.aliased += size
         limit = max(MAX_ALIASED, len(self.source.text))
         if self.aliased > limit:
             message = f"the aliases of this script add more than {limit:,} values"
             self._stop(
                 span.start, message, "use fewer aliases, or aliases of shorter lists", "aliases"
             )
-        self._add(known[0], known[1], None)
+        self.items.append(node)
+        self._count(size, span.start)
 
-    def _add(self, node: Tree, size: int, anchor: str | None) -> None:
-        if anchor is not None:
-            self.anchors[anchor] = (node, size)
-        if not self.stack:
-            self.root = node
-            return
-        around = self.stack[-1]
-        around.items.append(node)
-        around.size = whole = around.size + size
-        if whole > self.most:
-            message = f"the script has more than {self.most:,} values"
+    def _count(self, nodes: int, at: int) -> None:
+        """Adds nodes; `at` is the place of an error if they are too many."""
+        self.nodes += nodes
+        if self.nodes > self.most:
             self._stop(
-                node.span.start,
-                message,
+                at,
+                f"the script has more than {self.most:,} values",
                 "put large data into a file that a state reads when the program runs",
                 "nodes",
             )
@@ -470,7 +489,8 @@ class _Builder:
                 continue
             if flow and isinstance(value, Scalar) and value.value is None:
                 key, value = self._separated(key, value)
-            known = first.setdefault(_identity(key), key)
+            name = key.value
+            known = first.setdefault(name if isinstance(name, str) else (type(name), name), key)
             if known is not key:
                 self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
                 if len(self.report) > MAX_DUPLICATES:
