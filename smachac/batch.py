@@ -90,7 +90,7 @@ def check_scripts(
                 )
             else:
                 analyses[str(path)] = analyse_alone(source, library, report, last)
-        uses[str(path)] = frozenset(disk.asked)
+        uses[str(path)] = disk.asked_files()
 
     for path in paths:
         disk.asked.clear()

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.control_flow import Linear, corrected, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
-from smachac.analysis.error_recovery import corrected_container, corrected_machine
+from smachac.analysis.error_recovery import corrected_machine, with_meant_keys
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
@@ -190,10 +190,14 @@ class Context:
     @cached_property
     def corrected_flow(self) -> DataFlow:
         """The data flow of the machine with misspelt names corrected."""
-        corrected = corrected_machine(
-            self.machine, self.containers, partial(self.of_container, corrected_container)
-        )
-        return self.flow if corrected is self.machine else data_flow(corrected, self._scopes)
+        machine = corrected_machine(self.machine, self.containers, self._corrected_container)
+        return self.flow if machine is self.machine else data_flow(machine, self._scopes)
+
+    def _corrected_container(self, path: str, container: Container) -> Container:
+        whole = self.of_container(with_meant_keys, path, container)
+        if isinstance(whole, StateMachine | nodes.Sequence):
+            return self.of_container(corrected, path, whole)
+        return whole
 
     @cached_property
     def _missing_keys(self) -> tuple[Missing, ...]:

@@ -77,8 +77,7 @@ def corrected_machine(
     containers: PathSequence[tuple[str, Container]],
     correct: Callable[[str, Container], Container],
 ) -> Machine:
-    """The machine with each container as `correct` returns it by its path: `corrected_container`.
-    Iterative, so that nesting can be deep."""
+    """The machine with each container as `correct` returns it by its path. Iterative, so that nesting can be deep."""
     # In reversed preorder the containers inside one have just been built, its first child last.
     built: list[Container] = []
     for path, container in reversed(containers):
@@ -93,17 +92,16 @@ def corrected_machine(
     return machine if root is machine.root else replace(machine, root=root)
 
 
-def corrected_container(container: Container) -> Container:
-    """A container with misspelt targets, outcomes and remaps corrected, and with the keys declared
-    that code of the script reads and writes in its states."""
+def with_meant_keys(container: Container) -> Container:
+    """A container with misspelt remaps of its states corrected, and with the keys declared that
+    code of the script reads and writes in them."""
     raw = isinstance(container, nodes.Iterator)
     children = tuple(
         _meant(child, raw=raw and isinstance(child, Leaf)) for child in container.children
     )
-    whole = container
-    if any(new is not old for new, old in zip(children, container.children, strict=True)):
-        whole = replace(container, children=children)
-    return corrected(whole) if isinstance(whole, StateMachine | Sequence) else whole
+    if all(new is old for new, old in zip(children, container.children, strict=True)):
+        return container
+    return replace(container, children=children)
 
 
 def _meant(node: Node, *, raw: bool) -> Node:

@@ -108,7 +108,9 @@ def name_of(tree: Tree) -> Word | None:
 def as_name(tree: Tree, report: Report) -> Word | None:
     """A name: of a state, an outcome, a key, a script, a template."""
     text = name_text(tree, report)
-    return Word(text, tree.span) if text is not None else None
+    if text is None or not isinstance(tree, Scalar):
+        return None
+    return Word(text, Span(tree.source, tree.start, tree.end))
 
 
 def name_text(tree: Tree, report: Report) -> str | None:

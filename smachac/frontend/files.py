@@ -132,9 +132,9 @@ class Disk:
     """The files of one or several runs: each file is read once, each text is parsed once, until
     `replace` or `refresh` forgets it.
 
-    `texts` replace the files at their (real) paths. `asked` collects the real paths of all files
-    that were searched, found or not; the caller may empty it. `plain`: all line ends become line
-    feeds. `refused`: the paths that are not read, as given, and why.
+    `texts` replace the files at their (real) paths. `asked` collects the paths, as given, of all
+    files that were searched, found or not; the caller may empty it. `plain`: all line ends become
+    line feeds. `refused`: the paths that are not read, as given, and why.
     """
 
     def __init__(
@@ -157,8 +157,8 @@ class Disk:
         if str(path) in self.refused:
             report.append(self.refused[str(path)])
             return None
+        self.asked.add(str(path))
         key = os.path.realpath(path)
-        self.asked.add(key)
         if key not in self._sources:
             found: Report = []
             text = self.texts.get(key)
@@ -205,9 +205,16 @@ class Disk:
         self._trees = {source: tree for source, tree in self._trees.items() if source in held}
 
     def is_file(self, path: Path) -> bool:
-        key = os.path.realpath(path)
-        self.asked.add(key)
-        return key in self.texts or path.is_file()
+        self.asked.add(str(path))
+        return path.is_file() or (bool(self.texts) and os.path.realpath(path) in self.texts)
+
+    def asked_files(self) -> frozenset[str]:
+        """The real paths of `asked`."""
+        found = set()
+        for path in self.asked:
+            with contextlib.suppress(ValueError):  # a NUL in the name
+                found.add(os.path.realpath(path))
+        return frozenset(found)
 
 
 def with_line_feeds(text: str) -> str:

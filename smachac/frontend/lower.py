@@ -92,6 +92,8 @@ def _keys(
     """The keys of an interface and those that the script lists, which have `roles` by name; where
     it lists none, the default ones. The keys in `secret` are secret."""
     if not listed:
+        if not default:
+            return known
         names = {key.name for key in known}
         return (*known, *(key for key in default if key.name not in names))
     keys = {key.name: key for key in known}
@@ -131,23 +133,30 @@ def _interface(state: State) -> dict[str, Any]:
             type_.secret_keys,
         ),
         "transitions": tuple(
-            Transition(outcome=key.text, target=target.text, span=key.span, target_span=target.span)
-            for key, target in state.transitions
+            [
+                Transition(
+                    outcome=key.text, target=target.text, span=key.span, target_span=target.span
+                )
+                for key, target in state.transitions
+            ]
         ),
         "remaps": tuple(
-            Remap(key=key.text, to=to.text, span=key.span) for key, to in state.remapping
+            [Remap(key=key.text, to=to.text, span=key.span) for key, to in state.remapping]
         ),
-        "claims": tuple(
-            dict.fromkeys(
-                _VARIABLE.sub(lambda found: _part(state, found), claim)
-                for claim in (*type_.claims, *(word.text for word in state.claims))
-            )
-        ),
-        "tags": tuple(word.text for word in state.tags),
+        "claims": _claims(state) if type_.claims or state.claims else (),
+        "tags": tuple([word.text for word in state.tags]),
         "span": state.name.span,
         "via": state.via,
         "written": state.written,
     }
+
+
+def _claims(state: State) -> tuple[str, ...]:
+    """The resources that a state claims, those of its type included, each once."""
+    claims = (*state.type.claims, *(word.text for word in state.claims))
+    return tuple(
+        dict.fromkeys(_VARIABLE.sub(lambda found: _part(state, found), claim) for claim in claims)
+    )
 
 
 def _part(state: State, found: re.Match[str]) -> str:
@@ -320,7 +329,8 @@ def _with_sugar(node: Node, state: State) -> Node:
     """The node with its transition on errors, in the containers of its sugar."""
     words = [key for key, _ in state.transitions]
     for part in (state.sugar.retry, state.sugar.for_each):
-        words += part.on if part is not None else ()
+        if part is not None:
+            words += part.on
     return desugared(_with_error(node, words), state.sugar)
 
 
@@ -348,11 +358,11 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
     docs/semantics.md, Steps and transitions.
     """
     own = {transition.outcome for transition in child.transitions}
-    implied = tuple(
+    implied = [
         Transition(outcome=o.name, target=o.name, origin="implicit", span=child.span)
         for o in child.outcomes
         if o.name not in own and o.name in outcomes
-    )
+    ]
     if not implied:
         return child
     return replace(child, transitions=(*child.transitions, *implied))
@@ -466,10 +476,12 @@ def _catching(node: Node, span: Span) -> Node:
 def _with_error(node: Node, words: Iterable[Word]) -> Node:
     """The state with an outcome `error` for its exceptions, if `words` name one and the state
     neither has such an outcome nor is open."""
-    if ERROR in outcome_names(node) or (isinstance(node, Leaf) and node.open):
-        return node
-    word = next((word for word in words if word.text == ERROR), None)
-    return node if word is None else _catching(node, word.span)
+    for word in words:
+        if word.text == ERROR:
+            is_open = isinstance(node, Leaf) and node.open
+            own = is_open or ERROR in outcome_names(node)
+            return node if own else _catching(node, word.span)
+    return node
 
 
 def _with_error_transition(node: Node, target: Word) -> Node:

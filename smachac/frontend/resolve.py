@@ -249,8 +249,8 @@ class _Resolver:
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)
         self.most_keys = max(self.most_keys, presets, key=len)
-        sugar = fields.get("sugar", Sugar())
-        if sugar.timeout is not None or sugar.retry is not None:
+        sugar: Sugar | None = fields.get("sugar")
+        if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:

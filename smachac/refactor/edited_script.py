@@ -110,7 +110,9 @@ class EditedScript:
             if source is None or not isinstance(self.disk.parse(source, []), Map):
                 continue
             found = self.read(self.disk, path)
-            if found.checked is not None and any(name in changed for name in self.disk.asked):
+            if found.checked is not None and any(
+                name in changed for name in self.disk.asked_files()
+            ):
                 yield path, found.checked
 
     def proven(self, span: Span, same: Callable[[Machine, Machine], bool]) -> Analysis:
