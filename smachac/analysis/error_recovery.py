@@ -8,11 +8,11 @@ from dataclasses import replace
 from typing import NamedTuple, cast
 
 from smachac.analysis.accesses import scripted_steps, userdata_fields
-from smachac.analysis.control_flow import corrected, is_open
+from smachac.analysis.control_flow import is_open
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.leaf import functions
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Sequence, StateMachine
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, StateMachine
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
 
@@ -77,7 +77,8 @@ def corrected_machine(
     containers: PathSequence[tuple[str, Container]],
     correct: Callable[[str, Container], Container],
 ) -> Machine:
-    """The machine with each container as `correct` returns it by its path. Iterative, so that nesting can be deep."""
+    """The machine with each container as `correct` returns it by its path. Iterative, so that
+    nesting can be deep."""
     # In reversed preorder the containers inside one have just been built, its first child last.
     built: list[Container] = []
     for path, container in reversed(containers):

@@ -46,14 +46,8 @@ def is_flat(tree: Tree) -> bool:
     if isinstance(tree, Scalar):
         return True
     if isinstance(tree, Map):
-        for entry in tree.entries:
-            if not isinstance(entry.value, Scalar):
-                return False
-        return True
-    for item in tree.items:
-        if not isinstance(item, Scalar):
-            return False
-    return look_up_word(tree) is None
+        return all(isinstance(entry.value, Scalar) for entry in tree.entries)
+    return all(isinstance(item, Scalar) for item in tree.items) and look_up_word(tree) is None
 
 
 def is_too_deep(tree: Tree) -> bool:
