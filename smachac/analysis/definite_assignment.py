@@ -156,10 +156,15 @@ def _scope(
         reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
     steps = _steps(path, container, inner)
     order = flow_order(steps)
-    queried = {
-        vertex: [key for key in keys if key not in held] for vertex, keys in reads.items() if keys
+    reads = {vertex: keys for vertex, keys in reads.items() if keys}
+    queried: dict[Vertex, list[str]] = {
+        vertex: [key for key in keys if key not in held] for vertex, keys in reads.items()
     }
-    unset = may_be_unset(queried, steps, order)
+    exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
+    at_end: dict[Vertex, list[str]]
+    at_end = dict.fromkeys(exits, [key for key in outputs if key not in held])
+    found = may_be_unset(queried | at_end, steps, order)
+    unset = {vertex: keys for vertex, keys in found.items() if vertex in queried}
     needed = {
         key for keys in unset.values() for key in keys if key in inputs and key not in optional
     }
@@ -171,29 +176,35 @@ def _scope(
         inputs=inputs,
         optional=optional,
         outputs=outputs,
-        reads={vertex: keys for vertex, keys in reads.items() if keys},
+        reads=reads,
         steps=steps,
         vertices=order.keys(),
         unset=unset,
         needed=frozenset(needed),
-        endings=_with_caught(container, _endings(outputs, held, steps, order)),
+        endings=_with_caught(container, _endings(outputs, at_end, found, steps, order)),
         inner=inner_containers,
         again=looping(steps, order) & inner_containers if inner_containers else frozenset(),
     )
 
 
 def _endings(
-    outputs: Mapping[str, str], held: AbstractSet[str], steps: KeySteps, order: Order
+    outputs: Mapping[str, str],
+    unheld: Mapping[Vertex, list[str]],
+    without_trusted: Mapping[Vertex, tuple[str, ...]],
+    steps: KeySteps,
+    order: Order,
 ) -> Mapping[str, Writes]:
-    """The keys around a container that each possible outcome sets (docs/semantics.md, Userdata)."""
-    exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
+    """The keys around a container that each possible outcome sets (docs/semantics.md, Userdata).
+
+    `unheld`: at each exit the outputs that are not set before the container starts;
+    `without_trusted`: those of them that can be unset if trusted writes count.
+    """
     if not outputs:
-        return {vertex[1]: NOTHING for vertex in exits}
-    unheld = [key for key in outputs if key not in held]
-    queried: dict[Vertex, list[str]] = dict.fromkeys(exits, unheld)
-    without_sure = may_be_unset(queried, steps, order, sure=True)
-    without_trusted = may_be_unset(queried, steps, order)
-    perhaps = may_be_set(queried, steps, order)
+        return {vertex[1]: NOTHING for vertex in unheld}
+    without_sure = without_trusted
+    if any(_is_trusted(each.writes) for leading in steps.values() for each in leading):
+        without_sure = may_be_unset(unheld, steps, order, sure=True)
+    perhaps = may_be_set(unheld, steps, order)
 
     def outer(missing: Iterable[str]) -> frozenset[str]:
         """The outputs that are not missing, by their names in the container around."""
@@ -203,10 +214,15 @@ def _endings(
         vertex[1]: Writes(
             outer(without_sure.get(vertex, ())),
             outer(without_trusted.get(vertex, ())),
-            outer(set(unheld).difference(perhaps.get(vertex, ()))),
+            outer(set(keys).difference(perhaps.get(vertex, ()))),
         )
-        for vertex in exits
+        for vertex, keys in unheld.items()
     }
+
+
+def _is_trusted(writes: Writes) -> bool:
+    """Whether some of these writes are trusted, but not sure."""
+    return writes is not NOTHING and (writes.anything or writes.sure != writes.trusted)
 
 
 def _with_caught(container: Container, found: Mapping[str, Writes]) -> Mapping[str, Writes]:

@@ -58,7 +58,7 @@ from smachac.frontend.state_fields import (
 )
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import SUB_SCRIPT_HELP, overridden, sub_script_state
-from smachac.frontend.type_annotations import Aliases, read_aliases, typed
+from smachac.frontend.type_annotations import TYPED, Aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses, look_ups
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
@@ -234,13 +234,17 @@ class _Resolver:
                 entries[key] = entry
                 continue
             flat = is_flat(entry.value)
+            if flat and key not in TYPED:
+                entries[key] = entry
+                continue
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
         entries |= self.lists(own, scope, type_)
         entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
-        self.fixed_params += _fixed_params(own, type_, scope)
+        if scope:
+            self.fixed_params += _fixed_params(own, type_, scope)
         if role != "base":
             self.count += 1
         fields = read_fields(
