@@ -161,8 +161,8 @@ def _scope(
         vertex: [key for key in keys if key not in held] for vertex, keys in reads.items()
     }
     exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
-    at_end: dict[Vertex, list[str]]
-    at_end = dict.fromkeys(exits, [key for key in outputs if key not in held])
+    unheld = [key for key in outputs if key not in held]
+    at_end: dict[Vertex, list[str]] = {vertex: unheld for vertex in exits}
     found = may_be_unset(queried | at_end, steps, order)
     unset = {vertex: keys for vertex, keys in found.items() if vertex in queried}
     needed = {
