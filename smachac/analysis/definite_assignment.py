@@ -162,7 +162,7 @@ def _scope(
     }
     exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
     unheld = [key for key in outputs if key not in held]
-    at_end: dict[Vertex, list[str]] = {vertex: unheld for vertex in exits}
+    at_end: dict[Vertex, list[str]] = dict.fromkeys(exits, unheld)
     found = may_be_unset(queried | at_end, steps, order)
     unset = {vertex: keys for vertex, keys in found.items() if vertex in queried}
     needed = {
