@@ -20,7 +20,16 @@ from smachac.analysis.expression_types import (
     parsed,
     type_of,
 )
-from smachac.analysis.type_lattice import fields, item_of, length_of, mapping, misfit, widened
+from smachac.analysis.type_lattice import (
+    fields,
+    item_of,
+    length_of,
+    mapping,
+    misfit,
+    unit_of,
+    widened,
+)
+from smachac.analysis.units import conversion
 from smachac.ir.expressions import (
     Attribute,
     Binary,
@@ -301,7 +310,7 @@ class _Judge:
                     expr=expr,
                     what=text,
                     keys=self.keys(left, right),
-                    help=f"convert `{other}` to `{Type(other.name, one.args)}` first",
+                    help=_in_one_unit(unit_of(one), unit_of(other), print_expression(right)),
                 )
 
     def call(self, expr: Call) -> Iterator[Fault]:
@@ -512,6 +521,14 @@ def can_be_indexed(owner: Type, index: Type) -> bool:
     return (by_number and "number" in wanted) or ("mapping" in known and "text" in wanted) or (
         "mapping" in known and not named and bool(wanted - {"list", "mapping"})
     )  # fmt: skip
+
+
+def _in_one_unit(one: str, other: str, right: str) -> str:
+    """The help for two numbers in different units; `right` is the text of the second one."""
+    factor = conversion(other, one)
+    if factor is not None:
+        return f"multiply `{right}` by {factor:.6g}: then it is in `{one}` too"
+    return f"use a number in `{one}` in place of `{right}`, or correct the unit of one of the two"
 
 
 class Signature(NamedTuple):

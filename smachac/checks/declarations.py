@@ -35,7 +35,7 @@ from smachac.ir.traversal import remapping
     "SM305",
     "dead-key",
     Severity.WARNING,
-    effect="the value has no effect: no state uses it",
+    effect="the value has no effect",
 )
 def dead_key(context: Context) -> Iterator[Finding]:
     """A userdata key is set, but nothing in its container reads it.
@@ -92,8 +92,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 span=span,
                 message=f"`{key}` is set, but nothing in {where} reads it",
                 arguments=(key,),
-                help=f"remove it, add it to the `input_keys` of the state that uses it, or to the"
-                f" `output_keys` of {where}",
+                help=f"remove `{key}`; or add it to the `input_keys` of the state that must read"
+                f" it, or to the `output_keys` of {where}",
                 related=calls(node, span),
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",

@@ -2,23 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable
 
 from smachac.analysis.type_lattice import POINT, QUATERNION, inside, length_of, present, unit_of
+from smachac.analysis.units import conversion
 from smachac.ir.types import Type
-
-FACTORS = {
-    ("ms", "s"): 0.001,
-    ("min", "s"): 60.0,
-    ("h", "s"): 3600.0,
-    ("mm", "m"): 0.001,
-    ("cm", "m"): 0.01,
-    ("deg", "rad"): math.pi / 180,
-    ("°", "rad"): math.pi / 180,
-}
-"""Factors from one unit to another."""
 
 LONGEST = 1000
 """In characters. A longer list is no list of a few numbers."""
@@ -49,7 +38,7 @@ def number_meant(text: str, wanted: Type) -> str | None:
         return f"write the number without quotes: `{found[1]}`"
     if given == unit or not unit:
         return f"write the number without its unit: `{found[1]}`"
-    factor = FACTORS.get((given, unit))
+    factor = conversion(given, unit)
     if factor is None:
         return f"write the number in `{unit}`, without the unit"
     return f"write the number in `{unit}`, without the unit: `{float(found[1]) * factor:.6g}`"

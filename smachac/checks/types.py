@@ -17,8 +17,10 @@ from smachac.analysis.type_lattice import (
     inside,
     misfit,
     present,
+    unit_of,
     widened,
 )
+from smachac.analysis.units import conversion
 from smachac.checks.class_values import wrong_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
@@ -238,11 +240,10 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
             show(where, message)
         if at_origin:
             show(each.cell.span, _read(each.cell))
-    first, second = written(origin), _read(cell)
-    message = f"{first}, but {second}" if at_origin else f"{second}, but {first}"
+    first, second = _without_fields(clash) or written(origin) + _part(clash), _read(cell)
     return Finding(
         span=span,
-        message=message + _part(clash),
+        message=f"{first}, but {second}" if at_origin else f"{second}, but {first}",
         arguments=(about.key, str(widened(clash.misfit.given)), str(clash.misfit.wanted)),
         help=_help(clash),
         related=(*related, *(calls(about.node, span) if about.node is not None else ())),
@@ -315,13 +316,19 @@ def is_promised(cell: Cell) -> bool:
 def _part(clash: Clash) -> str:
     """The part of the value that does not fit; empty if it is the whole value."""
     given, wanted = clash.misfit.given, clash.misfit.wanted
-    missing = _missing_fields(clash)
-    if missing:
-        who = "it" if given == clash.flow.type else "an item"
-        return f": {who} lacks the field{'s' if len(missing) > 1 else ''} {listed(missing)}"
     if given == clash.flow.type or clash.misfit.kind == "unit":
         return ""
-    return f": {in_words(given)} does not fit `{wanted}`"
+    return f" (in it, {in_words(given)} is in place of `{wanted}`)"
+
+
+def _without_fields(clash: Clash) -> str:
+    """The fields that a record lacks, as part of a message; empty if it lacks none."""
+    missing = _missing_fields(clash)
+    if not missing:
+        return ""
+    key = f"`{clash.flow.origin.cell.key}`"
+    whose = key if clash.misfit.given == clash.flow.type else f"an item of {key}"
+    return f"{whose} has no field{'s' if len(missing) > 1 else ''} {listed(missing)}"
 
 
 def _missing_fields(clash: Clash) -> list[str]:
@@ -343,7 +350,7 @@ FLAGS = {
 def _help(clash: Clash) -> str:
     given, wanted = clash.misfit.given, clash.misfit.wanted
     if clash.misfit.kind == "unit":
-        return f"convert `{given}` to `{wanted}`, or correct the unit at one of the two places"
+        return _in_wanted_unit(clash)
     if wanted.name == "one_of" and given.name == "literal":
         choices = [str(choice) for choice in wanted.args]
         guess = did_you_mean(guesser(choices)(str(given.args[0])))
@@ -369,6 +376,20 @@ def _help(clash: Clash) -> str:
         owner = _owner(clash.flow.origin.cell)
         return f"change the type in the `input_keys` of {owner}, or where it is read"
     return _rewrite(clash)
+
+
+def _in_wanted_unit(clash: Clash) -> str:
+    """The help for a number in another unit than that of its reader."""
+    given, wanted = unit_of(clash.misfit.given), unit_of(clash.misfit.wanted)
+    factor = conversion(given, wanted)
+    correct = f"correct the unit where {_owner(clash.cell)} reads it"
+    if factor is None:
+        return f"use a number in `{wanted}`, or {correct}"
+    value = clash.flow.origin.value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        type_ = clash.misfit.wanted
+        return f"write it in `{wanted}`: `{value * factor:.6g}` of the type `{type_}`, or {correct}"
+    return f"multiply it by {factor:.6g}, which makes `{wanted}` of `{given}`, or {correct}"
 
 
 def _rewrite(clash: Clash) -> str:

@@ -7,7 +7,7 @@ part; so no part needs a span of its own.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import (
@@ -78,6 +78,23 @@ def steps_to_misfit(data: Data, wanted: Type) -> tuple[int | str, ...]:
     for step, part, type_ in _parts(data, present(wanted)):
         if misfit(type_of_data(part), type_) is not None:
             return (step, *steps_to_misfit(part, type_))
+    return ()
+
+
+def steps_to_number(data: Data, number: float) -> tuple[int | str, ...]:
+    """The steps to the first such number in a literal; none if it is the literal itself."""
+    parts: Iterable[tuple[int | str, Data]] = ()
+    if isinstance(data, tuple):
+        parts = enumerate(data)
+    elif isinstance(data, Struct):
+        parts = data.entries
+    for step, part in parts:
+        if isinstance(part, tuple | Struct):
+            inner = steps_to_number(part, number)
+            if inner:
+                return (step, *inner)
+        elif part == number and not isinstance(part, bool):
+            return (step,)
     return ()
 
 

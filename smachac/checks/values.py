@@ -20,6 +20,7 @@ from smachac.checks.robot import (
     role_of,
 )
 from smachac.checks.rule import rule
+from smachac.checks.value_places import steps_to_number
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -138,9 +139,10 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
             f"{message} {in_words(limits)}",
             ("write " if limits.choices else "write a number ")
             + in_words(limits)
-            + (f", in {unit}" if unit else ""),
+            + (f", in `{unit}`" if unit else ""),
             (str(number),),
             more,
+            part=steps_to_number(flow.value, number),
         )
 
 
@@ -285,7 +287,8 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
 
 def _things_in_words(role: str, known: frozenset[str]) -> str:
     if known:
-        return f"use one of {listed(known)}"
+        names = sorted(known)
+        return f"use one of {listed(names)}" if len(names) > 1 else f"write `{names[0]}`"
     return f"add a state that loads the {role} before this state"
 
 
@@ -387,7 +390,8 @@ def _doubtful(
         help = f"if it is in millimetres, write {value / 1000:g}"
     held = "is" if value == flow.value else "contains"
     message = f"`{flow.origin.cell.key}` {held} {value}, which is read in {unit}"
-    yield at(flow, f"{message}: is it in {meant}?", help, (str(value), unit))
+    part = steps_to_number(flow.value, value)
+    yield at(flow, f"{message}: is it in {meant}?", help, (str(value), unit), part=part)
 
 
 def _degrees(flow: TypeFlow) -> list[int | float]:

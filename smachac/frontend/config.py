@@ -101,14 +101,17 @@ def read_project(
         elif key == "ros":
             if value is True or value not in ROS_VERSIONS:
                 help = "write `ros = 2`, or `ros = 1` for a ROS 1 distribution such as Noetic"
-                _wrong(source, key, "`ros` must be 1 or 2", help, report, ("ros",))
+                message = "`ros` must be 1 or 2"
+                if isinstance(value, str) and value in {str(known) for known in ROS_VERSIONS}:
+                    message, help = f"{message}, a number without quotes", f"write `ros = {value}`"
+                _wrong(source, key, message, help, report, ("ros",), at_value=True)
             else:
                 ros = value
         elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             kind = "patterns" if key == "exclude" else "folders"
             message = f"`{key}` must be a list of {kind}"
             help = f'write it as `{key} = ["..."]`'
-            _wrong(source, key, message, help, report, ("list", key))
+            _wrong(source, key, message, help, report, ("list", key), at_value=True)
         elif key == "exclude":
             texts[key] = tuple(value)
         else:
@@ -129,6 +132,9 @@ _YAML_LINE = re.compile(r"[ \t]*([\w-]+)[ \t]*(:)(?=[ \t]|$)")
 _BRACKETS = {"[": "]", "{": "}"}
 _PART = re.compile(r""" "(?:\\.|[^"\\\n])*" | '[^'\n]*' | \#[^\n]* | [][{}] """, re.VERBOSE)
 """The parts of TOML in which brackets count, and those in which they do not."""
+
+_VALUE = re.compile(r"""[ \t]*=[ \t]*("[^"\n]*"|'[^'\n]*'|\[[^]\n]*\]|[^\s#,}]+)""")
+"""A value on the line of its key, after the key."""
 
 _NEXT = re.compile(r"[\w-]+[ \t]*=")
 """The next setting."""
@@ -197,7 +203,8 @@ def _severities(
         elif not isinstance(word, str) or word not in LEVELS:
             message = f"`{word}` is not a severity"
             arguments = ("severity", code, str(word))
-            _wrong(source, code, message, _near(str(word), LEVELS), report, arguments)
+            help = _near(str(word), LEVELS)
+            _wrong(source, code, message, help, report, arguments, at_value=True)
         elif codes and code in codes and codes[code].firm and word != "error":
             help = "remove the line: no program can be generated with this fault"
             _wrong(source, code, f"{code} is always an error", help, report, ("firm", code))
@@ -212,10 +219,21 @@ def _near(word: str, known: Iterable[str]) -> str:
 
 
 def _wrong(
-    source: Source, key: str, message: str, help: str, report: Report, arguments: tuple[str, ...]
+    source: Source,
+    key: str,
+    message: str,
+    help: str,
+    report: Report,
+    arguments: tuple[str, ...],
+    *,
+    at_value: bool = False,
 ) -> None:
-    """SM007 at the key."""
-    report.append(unreadable_file(_key(source, key), message, help, arguments=arguments))
+    """SM007 at the key or at its value."""
+    span = _key(source, key)
+    value = _VALUE.match(source.text, span.end) if at_value else None
+    if value is not None:
+        span = Span(source, *value.span(1))
+    report.append(unreadable_file(span, message, help, arguments=arguments))
 
 
 def folder_place(source: Source, setting: str, base: Path, folder: Path) -> Word:

@@ -9,32 +9,36 @@ from __future__ import annotations
 import re
 from typing import Any, NamedTuple
 
-from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.diagnostic import Diagnostic, Related
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
 
 
 class _Stop(NamedTuple):
     """What the parser reports. `first` and `at` are indexes in the text, `before` is the line of
-    `at` up to there, `first_line` and `first_column` the place of `first`."""
+    `at` up to there, `first_column` the column of `first`."""
 
     text: str
     problem: str
     context: str
     first: int | None
-    first_line: int
     first_column: int
     at: int
     before: str
 
 
 class _Fault(NamedTuple):
-    """A fault in the words of scripts, at the characters `start` to `end`, or at one character."""
+    """A fault in the words of scripts, at the characters `start` to `end`, or at one character.
+
+    `begins`: the index where the part begins that has the fault; `part` names it.
+    """
 
     message: str
     help: str | None
     start: int
     end: int | None = None
+    begins: int | None = None
+    part: str = ""
 
 
 _BEYOND_UNICODE = re.compile(r"\\U(?!000|0010)[0-9A-Fa-f]{8}")
@@ -55,8 +59,17 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
     fault = next((fault for fault in faults if fault is not None), unknown)
     here = source.text[fault.start : fault.start + 1]
     end = fault.start + (here not in ("", "\n")) if fault.end is None else fault.end
-    span = Span(source, fault.start, end)
-    return yaml_syntax(span, fault.message, fault.help, arguments=("syntax", here))
+    related: tuple[Related, ...] = ()
+    if fault.begins is not None:
+        begin = Span(source, fault.begins, fault.begins + 1)
+        related = (Related(span=begin, message=f"the {fault.part} begins here"),)
+    return yaml_syntax(
+        Span(source, fault.start, end),
+        fault.message,
+        fault.help,
+        arguments=("syntax", here),
+        related=related,
+    )
 
 
 def _stop(text: str, error: Any) -> _Stop:
@@ -69,7 +82,6 @@ def _stop(text: str, error: Any) -> _Stop:
         problem=problem,
         context=context,
         first=min(first.index, len(text)) if first is not None else None,
-        first_line=first.line + 1 if first is not None else 0,
         first_column=first.column if first is not None else 0,
         at=at,
         before=text[text.rfind("\n", 0, at) + 1 : at],
@@ -95,11 +107,14 @@ def _open_or_stray(stop: _Stop) -> _Fault | None:
         end, token = unclosed.groups()
         kind = "list" if end == "]" else "mapping"
         found = _TOKENS.get(token) or f"`{token.strip('<>')}`"
-        message = f"expected `,` or `{end}`, found {found}; the {kind} begins in line"
         help = f"close the {kind} with `{end}`, or put text that contains `:` in quotes"
+        if token == "<stream end>":
+            message = f"this {kind} is not closed: there is no `{end}` up to the end of the text"
+            return _Fault(message, help, stop.first)
         if token == "<scalar>":
             help = f"write a `,` between two values, or close the {kind} with `{end}`"
-        return _Fault(f"{message} {stop.first_line}", help, stop.at)
+        message = f"expected `,` or `{end}`, found {found}"
+        return _Fault(message, help, stop.at, begins=stop.first, part=kind)
     if stray is not None and stray[1] in _OPENING:
         opening = _OPENING[stray[1]]
         help = f"remove it, or write the `{opening}`"

@@ -140,7 +140,7 @@ def test_a_folder_that_does_not_exist_is_in_no_help(tmp_path: Path) -> None:
         ('scripts = ["lib"\n[severity]\nSM2 = "off"\n', (1, 11), "`[` is not", "write the `]`"),
         ('severity = {SM2 = "off"\nros = 2\n', (1, 12), "`{` is not closed", "write the `}`"),
         ('scripts = ["a" "b"]\n', (1, 16), "a `,` is missing", "between two texts"),
-        ('scripts = "lib"\n', (1, 1), "`scripts` must be a list", 'scripts = ["..."]'),
+        ('scripts = "lib"\n', (1, 11), "`scripts` must be a list", 'scripts = ["..."]'),
     ],
 )
 def test_settings_that_cannot_be_read_are_reported_once_at_the_fault(

@@ -136,12 +136,12 @@ def test_firm_errors_outlast_a_project(tmp_path: Path) -> None:
     ("text", "place", "help"),
     [
         ('[severity]\nXY = "off"', (2, 1), "use one of"),
-        ('[severity]\nSM201 = "of"', (2, 1), "did you mean `off`?"),
-        ('[severity]\nSM201 = 3', (2, 1), "use one of"),
+        ('[severity]\nSM201 = "of"', (2, 9), "did you mean `off`?"),
+        ('[severity]\nSM201 = 3', (2, 9), "use one of"),
         ('severity = "off"', (1, 1), "[severity]"),
         ('[severity]\n"SM101" = "warning"', (2, 1), "remove the line"),
         ("[severities]\nSM201 = 1", (1, 2), "did you mean `severity`?"),
-        ("\nexclude = 'x'", (2, 1), "write it as `exclude = "),
+        ("\nexclude = 'x'", (2, 11), "write it as `exclude = "),
     ],
 )  # fmt: skip
 def test_wrong_settings_are_told_at_their_place(

@@ -99,8 +99,8 @@ def test_aliases_and_merges() -> None:
 @pytest.mark.parametrize(
     ("text", "place", "words", "help"),
     [
-        ("a: [1\nb: 2\n", (2, 2), "`]`, found `:`; the list begins in line 1", "with `]`"),
-        ("a: {b: 1", (1, 9), "the end of the text; the mapping begins in line 1", "with `}`"),
+        ("a: [1\nb: 2\n", (2, 2), "expected `,` or `]`, found `:`", "with `]`"),
+        ("a: {b: 1", (1, 4), "this mapping is not closed", "with `}`"),
         ("a: {f: lambda ud: 1}", (1, 17), "`}`, found `:`", "in quotes"),
         ("a: 'left\nb: 2\n", (1, 4), "quote is not closed", "the same quote"),
         ("- A: b: c\n", (1, 7), "a colon is not allowed here", "on lines of its own"),
@@ -130,7 +130,7 @@ def test_aliases_and_merges() -> None:
         ("a: [- b]\n", (1, 5), "a list in brackets has no `-`", "`[a, b]`"),
         ("a: [1]]\n", (1, 7), "`]` closes no `[`", "write the `[`"),
         ("a: }\n", (1, 4), "`}` closes no `{`", "write the `{`"),
-        ("a: ['b' 'c']\n", (1, 9), "found text; the list begins in line 1", "a `,` between"),
+        ("a: ['b' 'c']\n", (1, 9), "expected `,` or `]`, found text", "a `,` between"),
         ("a: {,}\n", (1, 5), "a value is missing before this `,`", "remove the `,`"),
         ("a: ,b\n", (1, 4), "a value cannot begin with `,`", "in quotes"),
         ("a: * 3\n", (1, 4), "a value cannot begin with `*`", "in quotes"),

@@ -5,6 +5,7 @@ The arguments of a code with several faults begin with a word for the fault, whi
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from difflib import SequenceMatcher
 from typing import NamedTuple
@@ -40,7 +41,12 @@ class Owner(NamedTuple):
     effect="smachac builds no program from a text that is not YAML",
 )
 def yaml_syntax(
-    span: Span, message: str, help: str | None = None, *, arguments: tuple[str, ...] = ()
+    span: Span,
+    message: str,
+    help: str | None = None,
+    *,
+    arguments: tuple[str, ...] = (),
+    related: tuple[Related, ...] = (),
 ) -> Finding:
     """The text is not YAML.
 
@@ -66,6 +72,7 @@ def yaml_syntax(
         message=message,
         arguments=arguments,
         help=help or "check the brackets, quotes and indentation before this place",
+        related=related,
     )
 
 
@@ -383,6 +390,14 @@ OTHER_NAMES = {
 """The names of other languages, with the types that correspond to them."""
 
 
+def _word_in(span: Span, word: str) -> Span:
+    """The place of a word in a text; the whole text, if it is not written there as it is."""
+    found = re.search(rf"(?<!\w){re.escape(word)}(?!\w)", span.text)
+    if found is None:
+        return span
+    return Span(span.source, span.start + found.start(), span.start + found.end())
+
+
 @problem("SM017", "bad-type", Severity.ERROR)
 def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
     """A type cannot be parsed, or contains the name of an unknown type.
@@ -421,7 +436,7 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
         help = help or did_you_mean(word, known)
     if unknown:
         return Finding(
-            span=place.span,
+            span=_word_in(place.span, unknown),
             message=f"`{unknown}` is not a known type: its values are not checked",
             arguments=(place.text, unknown),
             help=help or "declare it under `types:`, or write a type of ROS as `pkg/Name`",
