@@ -118,6 +118,8 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 node=path,
             )
         for condition in entry.when:
+            if not condition.child:  # a rule of a wrong shape: SM004
+                continue
             child, span = children.get(condition.child), condition.span
             if child is None:
                 message = f"`{condition.child}` is not a state of `{container.name}`"

@@ -47,6 +47,7 @@ SHAPES = {
     "keys": ("a list of keys", "write it as `[a, b]` or `{a: float}`"),
     "items": ("a list or the name of a key", "write it as `[a, b]`, or name a key with a list"),
     "map": ("a mapping", "write it as `{name: value}`"),
+    "conditions": ("a mapping", "write it as `{STATE: OUTCOME}`"),
     "text": ("a text", "write it in quotes: `'...'`"),
     "flag": ("`true` or `false`", "write `true` or `false`, without quotes"),
     "duration": ("a duration", "write it as `20s`, `500ms`, `1.5min` or `1h`"),
@@ -190,9 +191,23 @@ def as_map(tree: Tree, report: Report) -> tuple[Entry, ...]:
         help = "write `{}`, or remove the key" if nothing else None
         if isinstance(tree, Scalar) and tree.plain and JOINED.fullmatch(str(tree.value)):
             help = spaced(str(tree.value))
+        if isinstance(tree, Seq):
+            help = _one_mapping(tree)
         wrong(tree, "map", report, help)
         return ()
     return tuple([entry for entry in tree.entries if _names(entry.key, report)])
+
+
+def _one_mapping(tree: Seq) -> str | None:
+    """The help for a list in place of a mapping: the mapping of its names, or of its mappings."""
+    inner = [entry for item in tree.items if isinstance(item, Map) for entry in item.entries]
+    if inner and all(isinstance(entry.value, Scalar) for entry in inner):
+        parts = [f"{entry.key.value}: {entry.value.span.text}" for entry in inner]
+        return f"write one mapping: `{{{', '.join(parts)}}}`"
+    names = [item.value for item in tree.items if isinstance(item, Scalar)]
+    if names and all(isinstance(name, str) for name in names):
+        return f"write a mapping with a value for each name: `{{{names[0]}: ...}}`"
+    return None
 
 
 def _names(key: Scalar, report: Report) -> bool:
@@ -232,7 +247,12 @@ def as_rules(tree: Tree, report: Report) -> Rules:
     for entry in as_map(tree, report):
         key = name_of(entry.key)
         if key is not None:
-            rules.append((key, as_pairs(entry.value, report)))
+            if isinstance(entry.value, Map):
+                rules.append((key, as_pairs(entry.value, report)))
+                continue
+            wrong(entry.value, "conditions", report)
+            nothing = Word("", key.span)
+            rules.append((key, ((nothing, nothing),)))
     return tuple(rules)
 
 

@@ -256,6 +256,8 @@ class _Resolver:
         sugar: Sugar | None = fields.get("sugar")
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
+        if owner == "state" and _has_wrong_transitions(entries, fields):
+            return _unknown(name, (), around)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:
             message = f"containers are nested deeper than {MAX_NESTED:,} levels"
@@ -609,6 +611,13 @@ class _Resolver:
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
         return found, role or ("StateMachine" if is_container else nested)
+
+
+def _has_wrong_transitions(entries: Mapping[str, Entry], fields: Mapping[str, object]) -> bool:
+    """Whether the transitions of a state have a wrong shape, which was reported: then it may lead
+    anywhere."""
+    given = entries.get("transitions")
+    return given is not None and not isinstance(given.value, Map) and not fields.get("transitions")
 
 
 def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:

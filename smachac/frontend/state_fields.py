@@ -15,6 +15,7 @@ from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import READERS, as_outcomes, listed_keys, name_of
+from smachac.frontend.missing_outcomes import outcomes_used
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, State
@@ -64,11 +65,16 @@ def read_fields(
         read["default_outcome"] = name_of(entries["default_outcome"].value)
     if not NAMES.isdisjoint(entries):
         read["sugar"] = read_sugar(entries, type_, read.get("outcomes", ()), report)
+    if "outcomes" in schema.REQUIRED[owner] and "outcomes" not in entries:
+        read["outcomes"] = outcomes_used(entries)
     if owner == "state" and not type_.open:
         _check_interface(read, type_, report)
     for part, keys in _listed_keys(entries, type_):
         read[part] = (*read.get(part, ()), *keys)
-    _check_required(read["name"], entries, owner, type_, rejected, inner, report)
+    examples = {}
+    if "outcomes" not in entries and read.get("outcomes"):
+        examples["outcomes"] = f"[{', '.join(each.name for each in read['outcomes'])}]"
+    _check_required(read["name"], entries, owner, type_, rejected, inner, examples, report)
     read["variables"] = tuple(_variables(entries, owner, type_))
     _check_unquoted(entries, owner, type_, report)
     if type_.prints_itself:
@@ -160,9 +166,11 @@ def _check_required(
     type_: StateType,
     meant: set[str | None],
     inner: Word | None,
+    examples: Mapping[str, str],
     report: Report,
 ) -> None:
-    """Required fields that are missing; not those for which a misspelt one was found."""
+    """Required fields that are missing; not those for which a misspelt one was found. `examples`
+    are their values where the script shows them."""
     required = [*schema.REQUIRED[owner]]
     required += [key for key, variable in type_.variables.items() if variable.required]
     for key in required:
@@ -172,7 +180,9 @@ def _check_required(
             if inner is not None:
                 related = (Related(span=inner.span, message="the sub-script does not set it"),)
             variable = type_.variables.get(key)
-            example = EXAMPLES.get(variable.type.name, "") if variable is not None else ""
+            example = examples.get(key, "")
+            if variable is not None:
+                example = EXAMPLES.get(variable.type.name, "")
             report.append(missing_variable(name.span, key, whose, related, example))
 
 

@@ -388,3 +388,45 @@ def test_a_misspelt_output_of_an_interface_is_one_finding() -> None:
     }
     codes = [each.code for each in analysed(files).report if each.severity is Severity.ERROR]
     assert codes == ["SM308"]
+
+
+REACHED = FIELDS.replace(
+    "[ok], transitions: {ok: good}", "[ok, no], transitions: {ok: good, no: SIT}"
+)
+REACHED = REACHED.replace("initial: SIT", "initial: LIE")
+
+
+@pytest.mark.parametrize(
+    ("main", "expected", "help"),
+    [
+        (REACHED.replace("outcomes: [done, failed, preempted]\n", ""), "SM005 sm", "[failed, "),
+        (
+            REACHED.replace("outcomes: [good, bad]\n      states", "states"),
+            "SM005 WORK",
+            "[good, bad]",
+        ),
+        (
+            REACHED.replace("outcomes: [good, bad]\n      default", "default"),
+            "SM005 BOTH",
+            "[good, bad]",
+        ),
+        (REACHED.replace("{good: {A: ok}}", "{good: [A]}"), "SM004 [A]", "{STATE: OUTCOME}"),
+        (REACHED.replace("{good: {A: ok}}", "{good: all}"), "SM004 all", "{STATE: OUTCOME}"),
+        (REACHED.replace("{ok: good, no: SIT}", "[good]"), "SM004 [good]", "`{good: ...}`"),
+        (
+            REACHED.replace("{ok: good, no: SIT}", "[{ok: good}]"),
+            "SM004 [{ok: good}]",
+            "`{ok: good}`",
+        ),
+        (REACHED.replace("{ok: good, no: SIT}", "good"), "SM004 good", "{name: value}"),
+    ],
+)
+def test_missing_outcomes_and_wrong_shapes_are_one_finding(
+    main: str, expected: str, help: str
+) -> None:
+    """The script uses the outcomes that a container does not declare; a rule or transitions of a
+    wrong shape are not judged."""
+    files = {"main.yml": main, "templates/Find.yml": FIND + "input_keys: {where: str}\n"}
+    report = [item for item in analysed(files).report if item.severity is Severity.ERROR]
+    assert [f"{item.code} {item.span.text}" for item in report] == [expected]
+    assert help in (report[0].help or "")
