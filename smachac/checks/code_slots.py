@@ -479,14 +479,14 @@ def _presets(context: Context, path: str, slot: CodeSlot, result: ast.expr) -> l
 def _instead(call: ast.Call, value: ast.expr, method: str) -> str:
     """The code that returns the changed value."""
     owner = ast.unparse(value)
-    given = [ast.unparse(each) for each in call.args]
+    given = [ast.unparse(each).replace("'", '"') for each in call.args]  # YAML has the other ones
     match method, given:
         case "append", [item]:
-            return f"write `{owner} + [{item}]` for the longer list"
+            return f"write `{owner} + [{item}]`, which is the longer list"
         case "extend", [items]:
-            return f"write `{owner} + {items}` for the longer list"
+            return f"write `{owner} + {items}`, which is the longer list"
         case "sort", []:
-            return f"write `sorted({owner})` for the sorted list"
+            return f"write `sorted({owner})`, which is the sorted list"
     return "return the new value"
 
 

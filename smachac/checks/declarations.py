@@ -296,7 +296,7 @@ def _unused_outcomes(path: str, leaf: Leaf, conditions: Iterable[str]) -> Iterat
                 message=f"`{outcome.name}` is declared as an outcome, but no condition leads to it",
                 arguments=("outcome", outcome.name),
                 help=f"add a condition for it, as in `{outcome.name}: 'lambda ud: True'`, or remove"
-                " it from `outcomes`",
+                " it from `outcomes` and from the transitions",
                 effect="a transition for this outcome is never taken",
                 related=calls(leaf, outcome.span),
                 node=path,

@@ -188,13 +188,19 @@ def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
         for key, value in variable.value.data.entries:
             if not isinstance(value, Expression):
                 yield Finding(
-                    span=variable.value.span,
+                    span=place_of_part(variable.value.span, (key,)),
                     message=f"the callback `{key}` of `{leaf.name}` is not a function",
                     arguments=(key,),
-                    help=f"write a function, such as `{key}: 'lambda ud: ud.n + 1'`,"
+                    help=f"write a function, such as `{key}: 'lambda ud: {_example(leaf)}'`,"
                     " or the name of one",
+                    effect="the state would fail when it calls it, so no program is generated",
                     node=path,
                 )
+
+
+def _example(leaf: Leaf) -> str:
+    """The result of an example of a function: the first input key, or a number."""
+    return f"ud.{leaf.inputs[0].name}" if leaf.inputs else "1"
 
 
 def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:

@@ -148,8 +148,9 @@ def secret_in_script(context: Context) -> Iterator[Finding]:
             span=flow.span,
             message=f"the script contains the value of the secret key `{cell.key}`",
             arguments=(cell.key,),
-            help=f"remove the value: let the caller of the machine set `{cell.key}` (`input_keys`),"
-            " or read it in code, as in `os.environ['PIN']`",
+            help="write code that reads it when the program runs, as in"
+            f" ``\"`os.environ['{cell.key.upper()}']`\"``; or write null, keep `secret: true`, and"
+            f" add `{cell.key}` to the `input_keys`, so that the caller of the machine sets it",
             related=calls(node, flow.span) if node is not None else (),
             node=cell.path,
         )

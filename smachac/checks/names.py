@@ -378,8 +378,8 @@ def name_clash(context: Context) -> Iterator[Finding]:
                     span=child.span,
                     message=f"`{child.name}` is both a state and an outcome of `{container.name}`",
                     arguments=(child.name,),
-                    help="rename one of them, for example the state to"
-                    f" `{_new_name(child.name, exits)}`",
+                    help=f"rename the state, for example to `{_new_name(child.name, exits)}`, and"
+                    " the targets of the transitions that lead to it; or rename the outcome",
                     effect="a transition to this name leads to the state, so the container goes on",
                     related=(
                         *other_place(exits[child.name].span, "the outcome of this name"),

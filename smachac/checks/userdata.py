@@ -108,15 +108,16 @@ def _is_dropped(missing: Missing) -> bool:
     )
 
 
-def _item_help(container: Container, reader: Node) -> str | None:
+def _item_help(container: Container, reader: Node, key: str) -> str | None:
     """The help for a key that nothing sets in a loop, whose item has another name."""
     if not isinstance(container, nodes.Iterator) or reader is container:
         return None
+    read = f"read `{container.item_key}` in place of `{key}`"
     match container.sugar:
         case "":
-            return f"the loop calls its item `{container.item_key}` (`it_label`)"
+            return f"{read}: the loop calls its item `{container.item_key}` (`it_label`)"
         case "for_each":
-            return f"`for_each` calls its item `{container.item_key}`"
+            return f"{read}: `for_each` calls its item `{container.item_key}`"
     return None
 
 
@@ -160,7 +161,7 @@ def _unset(
         if isinstance(node, nodes.Iterator) and guess == node.item_key:
             # The item of an iterator is no list of items, although `item` resembles `items`.
             guess = guesser(sorted(_keys_of(scope) - {node.item_key}))(missing.key)
-        help = did_you_mean(guess) or _item_help(scope.container, node) or help
+        help = did_you_mean(guess) or _item_help(scope.container, node, missing.key) or help
         if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
             help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
     return Finding(

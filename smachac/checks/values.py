@@ -384,7 +384,7 @@ def _doubtful(
             return
     if degrees:
         value, unit, meant = degrees[0], "radians", "degrees"
-        help = f"if it is in degrees, write {math.radians(value):.4f}"
+        help = f"if it is in degrees, write {_radians(flow.value, value)}"
     else:
         value, unit, meant = _millimetres(flow, simulated)[0], "metres", "millimetres"
         help = f"if it is in millimetres, write {value / 1000:g}"
@@ -392,6 +392,16 @@ def _doubtful(
     message = f"`{flow.origin.cell.key}` {held} {value}, which is read in {unit}"
     part = steps_to_number(flow.value, value)
     yield at(flow, f"{message}: is it in {meant}?", help, (str(value), unit), part=part)
+
+
+def _radians(data: Data, angle: float) -> str:
+    """An angle in degrees in radians; a list of numbers that contains it as a whole."""
+    if not isinstance(data, tuple):
+        return f"`{math.radians(angle):.4f}`"
+    angles = [each for each in data if isinstance(each, int | float)]
+    if angle not in angles or len(angles) < len(data) or len(data) > 12:
+        return f"`{math.radians(angle):.4f}`"
+    return f"the list in radians: `[{', '.join(f'{math.radians(each):.4g}' for each in angles)}]`"
 
 
 def _degrees(flow: TypeFlow) -> list[int | float]:

@@ -20,7 +20,7 @@ from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, S
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.ir.nodes import Outcome, StateType
-from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
+from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
 """The fields of sugar, except those that are variables of the state type."""
@@ -64,13 +64,13 @@ def read_sugar(
     before = len(report)
     timeout = _timeout(fields["timeout"], report) if "timeout" in fields else None
     wrong_timeout, before = len(report) > before, len(report)
-    retry = _retry(fields["retry"], report) if "retry" in fields else None
-    wrong_retry, before = len(report) > before, len(report)
-    for_each = _for_each(fields["for_each"], report) if "for_each" in fields else None
-    wrong_loop = len(report) > before
     own = tuple(outcome.name for outcome in type_.outcomes)
     if type_.kind != "state" or "outcomes" in type_.given:
         own += tuple(outcome.name for outcome in outcomes)
+    retry = _retry(fields["retry"], own, report) if "retry" in fields else None
+    wrong_retry, before = len(report) > before, len(report)
+    for_each = _for_each(fields["for_each"], report) if "for_each" in fields else None
+    wrong_loop = len(report) > before
     pairs = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
     led = {word.text for word, _ in pairs}
     # Wrong sugar is kept only where the script uses an outcome that it adds: otherwise that outcome
@@ -168,10 +168,10 @@ def _timeout(entry: Entry, report: Report) -> Timeout:
 
 
 def _parts(
-    entry: Entry, known: tuple[str, ...], required: tuple[str, ...], report: Report
+    entry: Entry, known: tuple[str, ...], required: Mapping[str, str], report: Report
 ) -> dict[str, Tree] | None:
     """The entries of a mapping with known keys, without those that are missing; None for other
-    values. All errors are reported."""
+    values. All errors are reported. `required`: keys that must be there, with example values."""
     if not isinstance(entry.value, Map):
         wrong(entry.value, "map", report, _mapping_for(entry))
         return None
@@ -189,9 +189,9 @@ def _parts(
             continue
         report.append(unknown_variable(word, owner, known, meant=meant))
         parts.setdefault(meant, each.value)
-    for name in required:
+    for name, example in required.items():
         if name not in parts:
-            report.append(missing_variable(entry.key.span, name, owner))
+            report.append(missing_variable(entry.key.span, name, owner, example=example))
     return parts
 
 
@@ -205,10 +205,12 @@ def _mapping_for(entry: Entry) -> str:
     return f"write `retry: {{on: [OUTCOME], max: {number}}}`, with the outcomes to try again after"
 
 
-def _retry(entry: Entry, report: Report) -> Retry:
+def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
     """The tries. Wrong or missing parts are reported and replaced, so that no outcome is missing
-    because of them."""
-    parts = _parts(entry, ("on", "max", "delay"), ("on", "max"), report) or {}
+    because of them. `own` are the outcomes of the state."""
+    failures = [name for name in own if is_failure(name)] or ["OUTCOME"]
+    required = {"on": f"[{', '.join(failures)}]", "max": "3"}
+    parts = _parts(entry, ("on", "max", "delay"), required, report) or {}
     on = as_names(parts["on"], report) if "on" in parts else (Word("", entry.key.span),)
     most = _tries(parts["max"], report) if "max" in parts else UNKNOWN_TRIES
     delay = duration(parts["delay"], report) if "delay" in parts else 0.0
@@ -229,7 +231,8 @@ def _tries(tree: Tree, report: Report) -> int:
 
 
 def _for_each(entry: Entry, report: Report) -> ForEach | None:
-    parts = _parts(entry, ("item", "in", "on"), ("item", "in"), report)
+    required = {"item": "NAME", "in": "items"}
+    parts = _parts(entry, ("item", "in", "on"), required, report)
     if parts is None or not {"item", "in"} <= parts.keys():
         return None
     item = as_name(parts["item"], report)

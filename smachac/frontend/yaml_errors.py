@@ -257,6 +257,17 @@ def _closed_list(stop: _Stop, column: int) -> int | None:
     return nearest
 
 
+def _spaces(stop: _Stop) -> str:
+    """The help for a tab: the spaces to write in its place."""
+    above = next((line for _, line in _lines_above(stop, 1)), "")
+    due = len(above) - len(above.lstrip()) + 2 * above.rstrip().endswith(":")
+    word = _WORD.search(above)
+    beside = f", below `{word[0]}`" if word is not None else ""
+    if not due:
+        return f"remove the tab: begin the line in the first column{beside}"
+    return f"write spaces in place of the tab: begin the line with {due} spaces{beside}"
+
+
 _NOT_A_START = re.compile(r"found character '(.*)' that cannot start any token")
 _ESCAPE = re.compile(r"found unknown escape character (.*)")
 _QUOTED = "put the value in quotes"
@@ -269,8 +280,7 @@ def _value(stop: _Stop) -> _Fault | None:
     here = stop.text[stop.at : stop.at + 1]
     if unstarted is not None:
         if unstarted.group(1) == "\\t":
-            help = "replace the tab with spaces, up to the column of the fields beside it"
-            return _Fault("YAML does not allow a tab in the indentation", help, stop.at)
+            return _Fault("YAML does not allow a tab in the indentation", _spaces(stop), stop.at)
         return _Fault(f"a value cannot begin with `{unstarted.group(1)}`", _QUOTED, stop.at)
     if found is not None and found[1] == "," and stop.context == "while parsing a flow node":
         return _Fault(

@@ -354,7 +354,8 @@ def defined_twice(
         message=f"the {what} `{name}` is defined twice, with other code for `{second}` than for"
         f" `{first}`",
         arguments=(name, first, second),
-        help="define it once, and pass the differences as arguments",
+        help="write one definition for all states: give `__init__` a parameter for each value that"
+        f" differs, and pass it where the template makes the state: `{name}('{{{{ VALUE }}}}')`",
         related=(
             Related(span=place, message=f"`{first}` runs the code for `{second}`"),
             Related(span=other, message=f"`{second}` defines it last"),
@@ -423,16 +424,15 @@ def code_not_found(
     word = fault.name
     near = f"did you mean `{fault.near}`?" if fault.near is not None else None
     interface = f"in the `code` of `{state_type}.yml`"
+    file = "header" if target == "cpp" else "module"
     if fault.kind == "syntax":
         message = f"the code of `{state_type}` is not valid Python: {word.text}"
         help = _syntax_help(word.text)
     elif fault.kind == "no module":
-        file = "header" if target == "cpp" else "module"
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
         help = near or f"correct the name {interface}, or create the {file}"
     else:
-        message = f"no class `{word.text}` is defined in the file that the `code` of `{state_type}`"
-        message += " names"
+        message = f"no class `{word.text}` is defined in the {file} that `{state_type}` names"
         help = near or f"correct the name {interface}, or define the class"
     return Finding(
         span=word.span,

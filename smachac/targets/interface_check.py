@@ -7,7 +7,7 @@ class. Parts that cannot be read are not checked.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -186,17 +186,21 @@ def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:
 
 
 def _unlike(
-    file: str, what: str, words: Words, wanted: Iterable[str], span: Span
+    file: str, what: str, words: Words, wanted: Sequence[str], span: Span
 ) -> Iterator[Difference]:
     names = [word.text for word in words]
-    for name in wanted:
-        if name not in names:
-            help = f"add `{name}` to the {what}s of the class, or remove it from {file}"
-            place = words[0].span if words else span
-            yield Difference(Word(f"the {what} `{name}` is missing", place), help)
-    known = set(wanted)
-    for word in words:
-        if word.text not in known:
-            help = f"add `{word.text}` to the {what}s in {file}, or remove it from the class"
-            text = f"the {what} `{word.text}` is not in the interface"
-            yield Difference(Word(text, word.span), help)
+    missing = [name for name in wanted if name not in names]
+    more = [word for word in words if word.text not in {*wanted}]
+    if len(missing) == len(more) == 1:  # probably two names of the same thing
+        text = f"it has the {what} `{more[0].text}`, the interface has `{missing[0]}`"
+        help = f"write `{missing[0]}` in place of `{more[0].text}`, or correct {file}"
+        yield Difference(Word(text, more[0].span), help)
+        return
+    for name in missing:
+        help = f"add `{name}` to the {what}s of the class, or remove it from {file}"
+        place = words[0].span if words else span
+        yield Difference(Word(f"the {what} `{name}` is missing", place), help)
+    for word in more:
+        help = f"add `{word.text}` to the {what}s in {file}, or remove it from the class"
+        text = f"the {what} `{word.text}` is not in the interface"
+        yield Difference(Word(text, word.span), help)

@@ -391,7 +391,7 @@ def test_a_misspelt_output_of_an_interface_is_one_finding() -> None:
 
 
 REACHED = FIELDS.replace(
-    "[ok], transitions: {ok: good}", "[ok, no], transitions: {ok: good, no: SIT}"
+    "[ok], transitions: {ok: good}", "[ok, nope], transitions: {ok: good, nope: SIT}"
 )
 REACHED = REACHED.replace("initial: SIT", "initial: LIE")
 
@@ -412,13 +412,13 @@ REACHED = REACHED.replace("initial: SIT", "initial: LIE")
         ),
         (REACHED.replace("{good: {A: ok}}", "{good: [A]}"), "SM004 [A]", "{STATE: OUTCOME}"),
         (REACHED.replace("{good: {A: ok}}", "{good: all}"), "SM004 all", "{STATE: OUTCOME}"),
-        (REACHED.replace("{ok: good, no: SIT}", "[good]"), "SM004 [good]", "`{good: ...}`"),
+        (REACHED.replace("{ok: good, nope: SIT}", "[good]"), "SM004 [good]", "`{good: ...}`"),
         (
-            REACHED.replace("{ok: good, no: SIT}", "[{ok: good}]"),
-            "SM004 [{ok: good}]",
-            "`{ok: good}`",
+            REACHED.replace("{ok: good, nope: SIT}", "[{ok: good, nope: SIT}]"),
+            "SM004 [{ok: good, nope: SIT}]",
+            "`{ok: good, nope: SIT}`",
         ),
-        (REACHED.replace("{ok: good, no: SIT}", "good"), "SM004 good", "{name: value}"),
+        (REACHED.replace("{ok: good, nope: SIT}", "good"), "SM004 good", "{name: value}"),
     ],
 )
 def test_missing_outcomes_and_wrong_shapes_are_one_finding(

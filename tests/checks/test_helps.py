@@ -123,7 +123,7 @@ CASES = [
         "slipped: aborted",
     ),
     ("SM004", LIMIT, "write it as `20s`", "20 sec", "20s"),
-    ("SM017", TYPE, "close the bracket: write `float<m>`", "float<m", "float<m>"),
+    ("SM017", TYPE, "close the bracket, as in `float<m>`", "float<m", "float<m>"),
     (
         "SM004",
         FIELDS,

@@ -56,7 +56,7 @@ def test_a_correct_class() -> None:
         ({"grasp": CLASS.replace("execute", "run")}, "SM609 arm/grasp.hpp:3:7",
          "the class `arm::Grasp` has no method `execute`"),
         ({"grasp": CLASS.replace("class Grasp", "class Grip")}, "SM608 main.yml:5:5",
-         "the `code` of `Grasp` names did you mean `Grip`?"),
+         "the header that `Grasp` names did you mean `Grip`?"),
         ({"grisp": CLASS}, "SM608 main.yml:5:5", "did you mean `arm/grisp.hpp`?"),
     ],
 )  # fmt: skip

@@ -361,9 +361,6 @@ MISSING: Mapping[str, str] = {
     "template": "TYPE",
     "outcomes": "[succeeded, aborted]",
     "states": "[...]",
-    "on": "[aborted]",
-    "max": "3",
-    "in": "items",
     "time": "1.5",
 }
 """An example value of each field that can be missing."""
@@ -444,7 +441,7 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
         )
     closed = _closed_type(place.text)
     if closed and not meant:
-        help = f"close the bracket: write `{closed}`"
+        help = f"close the bracket, as in `{closed}`"
     return Finding(
         span=place.span,
         message=f"`{place.text}` is not a valid type",

@@ -261,6 +261,7 @@ class Page:
 _HAS_TOP_LEVEL = re.compile(r"\{%[-+]?\s*(?:set|import|from|do|macro|include)\b")
 
 
+_INNERMOST = re.compile(r"innermost block that needs to be closed is '(\w+)'")
 _UNCLOSED = re.compile(r"^Unexpected end of template\..* needs to be closed is '(\w+)'")
 
 
@@ -340,10 +341,14 @@ def _message_and_help(error: Exception) -> tuple[str, str | None]:
         tag = unclosed.group(1)
         help = f"write `{{% end{tag} %}}` after the last line of the `{tag}`"
         return f"this `{tag}` has no `{{% end{tag} %}}`", help
+    inner = _INNERMOST.search(text)
     text = text.split(". ")[0].rstrip(".")  # without the explanations of Jinja
     unknown = text.removeprefix("Encountered unknown tag ").strip("'")
     if unknown != text.strip("'"):
         help = f"remove `{unknown}`, or correct its name"
+        if unknown.startswith("end") and inner is not None:
+            message = f"`{unknown}` stands before the end of the `{inner[1]}` above it"
+            return message, f"write `{{% end{inner[1]} %}}` before `{{% {unknown} %}}`"
         if unknown.startswith("end"):
             help = f"remove `{unknown}`: no `{unknown.removeprefix('end')}` is open here"
         return f"there can be no tag `{unknown}` here", help
