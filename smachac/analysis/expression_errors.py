@@ -60,7 +60,8 @@ class Fault:
 
     `what` is its description in a message, `keys` are the userdata keys in it. `always`: every
     evaluation of the whole expression evaluates this part. `word` is the name in the script instead
-    of one of `choices`; `length`: the number of items is wrong.
+    of one of `choices`; `length`: the number of items is wrong. `effect`: what happens if the
+    fault is left, where that of the rule does not hold.
     """
 
     kind: FaultKind
@@ -72,6 +73,7 @@ class Fault:
     word: str = ""
     choices: tuple[str, ...] = ()
     length: bool = False
+    effect: str | None = None
 
 
 EMPTY = mapping(())
@@ -311,6 +313,7 @@ class _Judge:
                     what=text,
                     keys=self.keys(left, right),
                     help=_in_one_unit(unit_of(one), unit_of(other), print_expression(right)),
+                    effect=None if conversion(unit_of(other), unit_of(one)) else NO_MEANING,
                 )
 
     def call(self, expr: Call) -> Iterator[Fault]:
@@ -521,6 +524,9 @@ def can_be_indexed(owner: Type, index: Type) -> bool:
     return (by_number and "number" in wanted) or ("mapping" in known and "text" in wanted) or (
         "mapping" in known and not named and bool(wanted - {"list", "mapping"})
     )  # fmt: skip
+
+
+NO_MEANING = "numbers of two kinds, such as a length and an angle, give no meaningful result"
 
 
 def _in_one_unit(one: str, other: str, right: str) -> str:

@@ -249,14 +249,14 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             span=_head(slot, tree),
             message=f"the function of {_owner(slot, node)} {what}",
             arguments=(slot.name, slot.code.text),
-            help=_head_help(tree, due),
+            help=_head_help(node, tree, due),
             effect=effect,
             related=calls(node, slot.code.span),
             node=path,
         )
 
 
-def _head_help(tree: ast.Lambda, due: tuple[str, ...]) -> str:
+def _head_help(node: Node, tree: ast.Lambda, due: tuple[str, ...]) -> str:
     """The help for a lambda with wrong arguments: its correct beginning, and the way to read a key
     that was written as an argument."""
     help = f"begin it with `lambda {', '.join(map(_short, due))}:`"
@@ -265,7 +265,11 @@ def _head_help(tree: ast.Lambda, due: tuple[str, ...]) -> str:
     keys = [name for name in own if name in read]
     if "userdata" not in due or not keys or own == [each.arg for each in parameters(tree)]:
         return help
-    return f"{help}, and read {', '.join(f'`{key}` as `{USERDATA[0]}.{key}`' for key in keys)}"
+    help += f", and read {', '.join(f'`{key}` as `{USERDATA[0]}.{key}`' for key in keys)}"
+    undeclared = [key for key in keys if key not in {each.name for each in node.inputs}]
+    if undeclared:
+        help += f"; add {listed(undeclared)} to the `input_keys` of `{node.name}`"
+    return help
 
 
 def _names(names: Iterable[str]) -> str:

@@ -524,13 +524,15 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
     first, last = _ends(each.concurrence, tie)
     above, below = each.concurrence.written[first], each.concurrence.written[last]
     here = each.concurrence.written[number]
+    conditions = ", ".join(f"{child}: {outcome}" for child, outcome in tie.items())
     return Finding(
         span=here.span,
         message=f"the rules for `{above.outcome}` and `{below.outcome}` both hold for"
         f" {written(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
         f" `{below.outcome}`",
         arguments=(above.outcome, below.outcome, *_names(tie)),
-        help="add conditions to one of the two rules: the rule with more conditions wins",
+        help="add a condition to the rule that must win, as in"
+        f" `{above.outcome}: {{{conditions}}}`: the rule with more conditions wins",
         related=(
             *other_place(above.span, "the other rule"),
             *calls(each.concurrence.node, here.span),

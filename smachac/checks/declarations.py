@@ -227,7 +227,7 @@ def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -
         effect = "the container around it must set a key that has no effect"
     if isinstance(node, Leaf):
         nothing = f"none of its functions {verb}s it"
-        other = f"{verb} it in one of them as `ud.{key.name}`"
+        other = f"{verb} it in one of its functions as `ud.{key.name}`"
     else:
         nothing = f"no state in `{node.name}` {verb}s it"
         other = f"add it to the `{role}_keys` of the state in `{node.name}` that {verb}s it"

@@ -365,6 +365,7 @@ def _finding(
         related=(*_sources(site, fault), *calls(site.node, span)),
         node=site.path,
         severity=severity,
+        effect=fault.effect,
         edits=respelt(Word(fault.word, place), guesser(fault.choices).sure(fault.word)),
     )
 

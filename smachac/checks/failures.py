@@ -132,8 +132,8 @@ def _masked(context: Context, each: Judged, around: Container) -> Iterator[Findi
             named = {*given, *_ignored(entry, concurrence.children)}
             hidden = _hidden_failures(concurrence, spaces, given, rivals, named)
             shown = next(iter(hidden), "")
-            help = f"list every branch in the rule for `{entry.outcome}`; `{shown}: any`, if its"
-            help += " failures do not matter"
+            help = f"add a condition for each branch to the rule for `{entry.outcome}`; write"
+            help += f" `{shown}: any` if the failures of `{shown}` do not matter"
             yield from _masked_finding(
                 context, each, entry.outcome, entry.span, given, hidden, help
             )

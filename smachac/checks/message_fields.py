@@ -296,7 +296,7 @@ def _unknown_field(
     guess = guesser(names)(word.text)
     help = did_you_mean(guess) or known
     if guess and also:
-        help += f" Write it here{also}"
+        help += f" Write it here{also}, and remap it: `remapping: {{{guess}: {word.text}}}`"
     message = f"{_described(messages[0])} has no field `{word.text}`"
     return _finding(path, leaf, word, message, help, messages)
 
@@ -334,7 +334,7 @@ def _faults(
         if name not in names:
             lists = (("input_keys", leaf.inputs), ("output_keys", leaf.outputs))
             named = [part for part, keys in lists if name in [key.name for key in keys]]
-            also = f" and in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
+            also = f", in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
             yield _unknown_field(path, leaf, use.word, messages, also)
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
@@ -372,7 +372,7 @@ def _finding(
         arguments=(messages[0].name, word.text),
         help=help,
         related=(
-            *(Related(span=span, message="the fields are defined here") for span in places),
+            *(Related(span=span, message="its fields are defined here") for span in places),
             *calls(leaf, word.span),
         ),
         node=path,

@@ -326,7 +326,8 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
                     span=child.span,
                     message=f"`{container.name}` already has a state `{child.name}`",
                     arguments=(child.name,),
-                    help=f"rename one of the two, for example to `{_new_name(child.name, first)}`",
+                    help=f"rename one of the two, for example to `{_new_name(child.name, first)}`,"
+                    " also in the transitions that mean it",
                     related=(
                         *other_place(known.span, "the first state of this name"),
                         *calls(child, child.span),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Cell, TypeFlow
@@ -553,7 +553,7 @@ def _unknown_joints(context: Context, robot: Robot) -> Iterator[Finding]:
     joints = [joint.name for joint in robot.joints]
     for flow in context.types.constants if joints else ():
         if role_of(flow.cell) == "joint":
-            yield from _strangers(flow, names_in(flow.value), joints, robot)
+            yield from _strangers(flow, [*names_in(flow.value)], joints, robot)
         elif moves_arm(flow) and isinstance(flow.value, Struct):
             names = list(names_in(flow.value))
             if not set(joints).isdisjoint(names):  # else the names are not those of joints
@@ -578,12 +578,15 @@ def part_named(data: Data, name: str) -> tuple[tuple[int | str, ...], bool]:
 
 
 def _strangers(
-    flow: TypeFlow, names: Iterable[str], joints: list[str], robot: Robot
+    flow: TypeFlow, names: Collection[str], joints: list[str], robot: Robot
 ) -> Iterator[Finding]:
     strange = dict.fromkeys(name for name in names if name not in joints)
-    guess = guesser(joints)
+    free = [joint for joint in joints if joint not in {*names}]
+    guess = guesser(free)
     for name in strange:
         help = did_you_mean(guess(name)) or f"its joints are {listed(joints)}"
+        if not free:
+            help = f"remove it: all joints of the robot are here, {listed(joints)}"
         message = f"the robot `{robot.name}` has no joint `{name}`"
         part, key = part_named(flow.value, name)
         yield at(flow, message, help, (name,), part=part, key=key)

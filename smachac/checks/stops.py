@@ -29,7 +29,7 @@ from smachac.ir.traversal import outcome_names
     "SM209",
     "ignored-stop",
     Severity.WARNING,
-    effect="the stop request is lost: the robot continues its work",
+    effect="the preempt request is lost: the robot continues its work",
 )
 def ignored_stop(context: Context) -> Iterator[Finding]:
     """After a preempt request the state that was stopped starts again.

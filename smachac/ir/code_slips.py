@@ -186,7 +186,9 @@ def _brackets(tokens: list[_Token]) -> Iterator[Slip]:
             due = _PAIRS[opened[-1].text]
             if text != due:
                 what = f"`{text}` cannot close `{opened[-1].text}`"
-                yield Slip(start, end, what, f"write `{due}`")
+                outer = any(_PAIRS[each.text] == text for each in opened)
+                help = f"write `{due}` before this `{text}`" if outer else f"write `{due}`"
+                yield Slip(start, end, what, help)
                 return
             opened.pop()
     for _, text, start, end in opened[-1:]:

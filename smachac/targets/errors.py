@@ -283,7 +283,7 @@ def python_2_code(span: Span, old: str, new: str) -> Finding:
     """
     return Finding(
         span=span,
-        message=f"`{old}` is Python 2; it is printed as `{new}`",
+        message=f"`{old}` is Python 2; the generated program has `{new}` in its place",
         arguments=(old,),
         help=f"write `{new}` in the template",
     )

@@ -62,7 +62,8 @@ def test_a_misspelt_slot_is_found_in_every_spelling_of_the_type(type: str) -> No
         (
             "widht",
             "the request of `cell_msgs/Grasp` has no field `widht`",
-            "did you mean `width`? Write it here and in the `input_keys`",
+            "did you mean `width`? Write it here, in the `input_keys`, and remap it:"
+            " `remapping: {width: widht}`",
         )
     ]
 

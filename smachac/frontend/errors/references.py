@@ -268,6 +268,7 @@ def look_up_of_call(item: Diagnostic, script: Word, given: Sequence[Word]) -> Di
             message=f"the sub-script `{script.text}` does not read the param `{wrong.text}`",
             arguments=(wrong.text,),
             help=f"did you mean `{name}`?",
+            effect=f"`{name}` has no value in `{script.text}`, so no program is generated",
             related=(Related(span=item.span, message=f"it reads `{name}` here"),),
             edits=respelt(wrong, name),
         )
