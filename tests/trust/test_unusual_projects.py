@@ -25,15 +25,13 @@ PROJECTS = sorted((Path(__file__).parent / "unusual").glob("*.yml"))
 PERMITTED = "# permitted:"
 BUILT_ONLY = {
     "class_from_an_installed_package",
-    "classes_that_are_containers",
     "items_of_a_dictionary",
     "iterator_over_an_expression",
     "math_in_callbacks",
     "optional_outcome_of_a_type",
 }
-"""Projects with a package that is not installed here, with code that only Python evaluates, with a
-state type whose states have different outcomes, as no stand-in has, or with a class that is a
-container, whose states would be played."""
+"""Projects with a package that is not installed here, with code that only Python evaluates, or with
+a state type whose states have different outcomes, as no stand-in has."""
 
 
 def files_in(text: str) -> dict[str, str]:
