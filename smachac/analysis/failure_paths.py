@@ -51,7 +51,7 @@ def starts_failure(node: Node, outcome: str) -> bool:
         case Leaf():
             return fails(node, outcome)
         case nodes.Iterator(sugar="retry"):
-            return outcome == node.exhausted_outcome
+            return outcome == node.exhausted_outcome and fails(node, outcome)
         case Concurrence(sugar="timeout"):
             return outcome == node.default_outcome
     return False

@@ -2,8 +2,9 @@
 
 The ordinary task are the states that can run without a failure and without a request to stop. The
 flow has the transitions that are taken while nothing fails: those of a failure only where the state
-has no success. It ends at a decision after a stop: a state that runs only after a stop and leads to
-several places, such as one that waits for an operator.
+has no success. It ends at a decision after a stop: a state that leads to several places and runs
+only after a stop, or only after failures and stops and waits for the outside world, as for an
+operator.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.control_flow import Linear, children_names
-from smachac.ir.nodes import Node, Transition
+from smachac.ir.nodes import Leaf, Node, Transition
 from smachac.ir.outcome_names import fails, successes
 from smachac.ir.traversal import leads_to_child
 
@@ -44,6 +45,7 @@ def task_flow(container: Linear, unstopped_outcomes: UnstoppedOutcomes) -> TaskF
     """The task flow of a container. Linear in its size."""
     names = children_names(container)
     every: dict[str, _Leads] = {}
+    sound: dict[str, _Leads] = {}
     steps: dict[str, _Leads] = {}
     exits: dict[str, frozenset[str]] = {}
     leaving: dict[str, frozenset[str]] = {}
@@ -51,13 +53,19 @@ def task_flow(container: Linear, unstopped_outcomes: UnstoppedOutcomes) -> TaskF
         possible = unstopped_outcomes(child)
         taken = [step for step in child.transitions if step.outcome in possible]
         every[child.name], leaving[child.name] = _parted(taken, names)
+        good = [step for step in taken if not fails(child, step.outcome)]
+        sound[child.name] = _parted(good or taken, names)[0]
         if not successes(child).isdisjoint(possible):
-            taken = [step for step in taken if not fails(child, step.outcome)]
+            taken = good
         steps[child.name], exits[child.name] = _parted(taken, names)
     ordinary = reached([container.initial], steps)
+    faultless = reached([container.initial], sound)
     unstopped = reached([container.initial], every)
-    for name, following in steps.items():
-        if name not in unstopped and len({target for _, target in following} | exits[name]) > 1:
+    for child in container.children:
+        name = child.name
+        several = len({target for _, target in steps[name]} | exits[name]) > 1
+        asks = name not in faultless and isinstance(child, Leaf) and child.blocking
+        if several and (name not in unstopped or (asks and not child.claims)):
             steps[name], exits[name] = [], frozenset()
     unstopped_exits = frozenset(end for name in unstopped for end in leaving.get(name, ()))
     return TaskFlow(steps, exits, ordinary, unstopped_exits)

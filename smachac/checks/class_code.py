@@ -118,7 +118,8 @@ def undeclared_return(context: Context) -> Iterator[Finding]:
 def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding]:
     outcomes = outcome_names(leaf)
     guess = guesser(outcomes)
-    known = f"return one of its outcomes: {listed(outcomes)}"
+    own = [name for name in outcomes if name != leaf.catches]
+    known = f"return one of its outcomes: {listed(own)}"
     if not outcomes:
         known = f"add outcomes to the interface `{leaf.type}`"
     for word in facts.returns:

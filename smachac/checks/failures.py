@@ -330,7 +330,9 @@ def unhandled_failure(context: Context) -> Iterator[Finding]:
     `failed`, `error` or similar) leads out of all containers around the state until the machine
     ends with `succeeded`, or with `done`, `ok` or similar if the machine also has an outcome of
     failure. A transition from `timeout` or `timed_out` is not reported: a wait may have a limit on
-    purpose. SM404 reports failures of the branches of a concurrence and of the items of a loop.
+    purpose. Used up tries are a failure, unless `failure: false` declares the outcomes that lead
+    to another try. SM404 reports failures of the branches of a concurrence and of the items of a
+    loop.
 
     Wrong:
         name: sm

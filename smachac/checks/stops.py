@@ -39,10 +39,11 @@ def ignored_stop(context: Context) -> Iterator[Finding]:
 
     Exactly: the transition for `preempted` leads back to its state, directly or through states that
     neither fail nor are preempted. A state that has no success may fail. The way back does not
-    count if it leads through a state that runs only after a preempt request and has several ways
-    out, such as one in which an operator decides. For a container, the transitions for the outcomes
-    with which it ends after a preempt request count. In a concurrence with `join: any`, or under a
-    time limit, such a loop is SM407.
+    count if it leads through a state that has several ways out and runs only after a preempt
+    request; or only after failures and preempt requests, if it is `blocking` and claims nothing, as
+    one in which an operator decides. For a container, the transitions for the outcomes with which
+    it ends after a preempt request count. In a concurrence with `join: any`, or under a time limit,
+    such a loop is SM407.
 
     Wrong:
         name: sm
@@ -232,8 +233,8 @@ def task_after_stop(context: Context) -> Iterator[Finding]:
     the states that can run without a failure and without a preempt request. A state that runs only
     after a failure or a preempt request is there to make the robot safe, such as one that opens the
     gripper or moves the arm home; it is not reported, and neither is a state to which a failure of
-    the same state leads. A way through a state that runs only after a preempt request and has
-    several ways out, such as one in which an operator decides, does not count. Where a state of the
+    the same state leads. A way through a state in which an operator decides, as SM209 describes
+    it, does not count. Where a state of the
     task also makes the robot safe, write a second state for the stop, or allow the transition:
     `# smachac: allow SM211 home is safe from everywhere`.
 

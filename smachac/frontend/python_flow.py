@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Span, Word
+from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_modules import Module, OwnClass, constant
 from smachac.ir.class_facts import Ending
 
@@ -88,6 +89,7 @@ class _Reader:
         self.function = function
         self.userdata = userdata
         self.nodes = list(ast.walk(function))
+        self.path_ends = PathEnds(module.names, self._never_returns)
         self.own_name = _first_argument(function)
         self.called: dict[ast.Call, Flow | None] = {}
         self.effect: dict[ast.AST, frozenset[str]] = {}
@@ -109,7 +111,7 @@ class _Reader:
         return Flow(
             endings=tuple(endings),
             complete=self.complete and not filled,
-            silent=not filled and not ends(body),
+            silent=not filled and not self.path_ends.block(body),
             always_silent=not any(each.value is not None for each in returns),
             reads=reads,
             writes=writes,
@@ -180,6 +182,15 @@ class _Reader:
                     case (ast.FunctionDef() as function,) if not local and is_plain(function):
                         return self.module, function, 0
         return None
+
+    def _never_returns(self, called: ast.expr) -> bool:
+        """Whether a function of the user raises an exception or loops on each of its paths."""
+        found = self._target(called)
+        if found is None:
+            return False
+        module, function, _ = found
+        flow = self.flows.of(module, function, "")
+        return flow is not None and flow.complete and not flow.silent and not flow.endings
 
     def _is_closed(self) -> bool:
         """Whether only this function and those it calls can write the userdata."""
@@ -274,11 +285,13 @@ class _Reader:
                 self._block(node.body, head)
                 self._block(node.orelse, head)
                 after = _both(head, self._carried(node.orelse))
-                return None if is_end(node) else after
+                return None if self.path_ends.statement(node) else after
             case ast.With() | ast.AsyncWith():
                 # A context manager can suppress an exception.
                 self._block(node.body, _both(before, self._all(node.items)))
-                return None if is_end(node) else _both(before, self._effects(node))
+                return (
+                    None if self.path_ends.statement(node) else _both(before, self._effects(node))
+                )
             case ast.Try():
                 return self._try(node, before)
             case ast.Match():
@@ -287,7 +300,7 @@ class _Reader:
                 return _either(head, *found)
             case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
                 return _both(before, self._effects(node))
-        return None if is_end(node) else _both(before, self._effects(node))
+        return None if self.path_ends.statement(node) else _both(before, self._effects(node))
 
     def _try(self, node: ast.Try, before: Keys) -> Keys:
         head = _both(before, self._all(node.finalbody))
@@ -295,7 +308,7 @@ class _Reader:
         failed = _both(head, self._all(node.body))
         after = _either(after, *(self._block(each.body, failed) for each in node.handlers))
         self._block(node.finalbody, _both(failed, self._all([*node.handlers, *node.orelse])))
-        return None if is_end(node) else after
+        return None if self.path_ends.statement(node) else after
 
     def _head(self, node: ast.For | ast.AsyncFor | ast.While) -> frozenset[str]:
         """The keys that the head of a loop can set."""
@@ -447,54 +460,3 @@ def returns_of(body: list[ast.stmt]) -> Iterator[ast.Return]:
             yield node
         elif not isinstance(node, _Functions):
             todo.extend(reversed(list(ast.iter_child_nodes(node))))
-
-
-def ends(body: list[ast.stmt]) -> bool:
-    """Whether control never reaches the end: statements return, raise or loop for ever."""
-    return any(map(is_end, body))
-
-
-def is_end(statement: ast.stmt) -> bool:
-    match statement:
-        case ast.Return() | ast.Raise() | ast.Break() | ast.Continue():
-            # A loop with `break` is handled below; `continue` stays in the loop.
-            return True
-        case ast.If(body=body, orelse=orelse):
-            return ends(body) and ends(orelse)
-        case ast.While(test=ast.Constant(value=test), body=body) if test:
-            return not any(_breaks(body))
-        case (
-            ast.For(body=body, orelse=[_, *_] as orelse)
-            | ast.While(body=body, orelse=[_, *_] as orelse)
-        ):
-            return ends(orelse) and not any(_breaks(body))
-        case ast.With(body=body):
-            return ends(body)
-        case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
-            whole = ends(body) or ends(orelse)
-            return ends(final) or (whole and all(ends(each.body) for each in handlers))
-        case ast.Match(cases=cases):
-            last = cases[-1]
-            whole = isinstance(last.pattern, ast.MatchAs) and last.pattern.pattern is None
-            return whole and last.guard is None and all(ends(each.body) for each in cases)
-        case ast.Assert(test=ast.Constant(value=test)):
-            return not test
-        case ast.Expr(value=ast.Call(func=ast.Name() | ast.Attribute() as function)):
-            # Whether a call returns is not known: `sys.exit()`, `self.give_up()`.
-            word = function.id if isinstance(function, ast.Name) else function.attr
-            return word in ("abort", "exit", "_exit", "fail", "quit")
-    return False
-
-
-def _breaks(body: list[ast.stmt]) -> Iterator[bool]:
-    """True for each `break` that leaves the loop with this body."""
-    todo: list[ast.AST] = [*body]
-    while todo:
-        node = todo.pop()
-        if isinstance(node, ast.Break):
-            yield True
-        loops = ast.For | ast.While | ast.AsyncFor | ast.FunctionDef | ast.ClassDef | ast.expr
-        if not isinstance(node, loops):
-            todo.extend(ast.iter_child_nodes(node))
-        elif isinstance(node, ast.For | ast.While):
-            todo.extend(node.orelse)

@@ -6,13 +6,14 @@ SMACHA uses meta blocks only for its help, and many are malformed; such parts ar
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.jinja_tags import meta_block, tags
+from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
-from smachac.ir.nodes import Key, Outcome, StateKind
+from smachac.ir.nodes import Key, Outcome, StateKind, Value
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
@@ -37,6 +38,7 @@ class Meta:
     kind: StateKind
     doc: str
     variables: tuple[str, ...]
+    defaults: Mapping[str, Value]
     input_keys: tuple[Word, ...]
     output_keys: tuple[Word, ...]
     outcomes: tuple[Outcome, ...]
@@ -62,6 +64,8 @@ def read_meta(template: Source) -> Meta | None:
     if not isinstance(tree, Map):
         return None
 
+    variables = tree.get("variables")
+
     def listed(part: str, *, optional: bool) -> tuple[Word, ...]:
         entry = tree.get(part)
         return tuple(_names(entry.value, optional)) if entry else ()
@@ -70,6 +74,7 @@ def read_meta(template: Source) -> Meta | None:
         kind=_kind(_text(tree, "type"), template),
         doc=_text(tree, "description"),
         variables=tuple(word.text for word in listed("variables", optional=True)),
+        defaults=dict(_defaults(variables.value)) if variables is not None else {},
         input_keys=listed("input_keys", optional=False),
         output_keys=listed("output_keys", optional=False),
         outcomes=tuple(
@@ -199,3 +204,17 @@ def _names(tree: Tree, optional: bool) -> list[Word]:
         ]
     inner = (item for item in tree.items if optional or not isinstance(item, Seq))
     return [found for item in inner for found in _names(item, optional)]
+
+
+def _defaults(tree: Tree) -> Iterator[tuple[str, Value]]:
+    """The defaults of the variables in a meta list, by name."""
+    if isinstance(tree, Seq):
+        for item in tree.items:
+            yield from _defaults(item)
+    elif isinstance(tree, Map):
+        for entry in tree.entries:
+            default = entry.value.get("default") if isinstance(entry.value, Map) else None
+            if default is not None:
+                yield str(entry.key.value), as_value(default.value)
+            elif isinstance(entry.value, Seq):
+                yield from _defaults(entry.value)

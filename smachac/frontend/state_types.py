@@ -555,7 +555,10 @@ def _read_template(
         name=name,
         kind=found.kind,
         doc=found.doc,
-        variables={key: VariableType(name=key, required=False) for key in found.variables},
+        variables={
+            key: VariableType(name=key, required=False, default=found.defaults.get(key))
+            for key in found.variables
+        },
         input_keys=tuple(Key(name=word.text, span=word.span) for word in found.input_keys),
         output_keys=tuple(Key(name=word.text, span=word.span) for word in found.output_keys),
         outcomes=outcomes,

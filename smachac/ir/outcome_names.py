@@ -54,16 +54,25 @@ def is_failure(outcome: str) -> bool:
 
 
 def fails(node: Node, outcome: str) -> bool:
-    """Whether an outcome of a state is a failure: declared, an exception, used up tries, or by its
-    name."""
+    """Whether an outcome of a state is a failure: declared, an exception, used up tries of which
+    one can fail, or by its name."""
     for each in node.outcomes:
         if each.name == outcome and each.failure is not None:
             return each.failure
     if outcome and outcome == node.catches:
         return True
-    if isinstance(node, nodes.Iterator) and node.sugar == "retry":
-        return outcome == node.exhausted_outcome or is_failure(outcome)
+    match node:
+        case nodes.Iterator(sugar="retry", exhausted_outcome=end) if outcome == end:
+            return not tries_may_end(node)
     return is_failure(outcome)
+
+
+def tries_may_end(retry: nodes.Iterator) -> bool:
+    """Whether used up tries are no failure: each outcome that leads to another try is declared to
+    be none, beside the end of a time limit."""
+    declared = {each.name: each.failure for child in retry.children for each in child.outcomes}
+    others = {name for name in retry.loop_outcomes if declared.get(name) is not False}
+    return len(others) < len(retry.loop_outcomes) and others <= TIMEOUTS
 
 
 def successes(node: Node) -> frozenset[str]:

@@ -293,6 +293,13 @@ def test_the_state_of_another_module_is_the_base() -> None:
     assert findings(derived.replace("def execute", "def look"), **{"cell/base.py": base}) == []
 
 
+def test_an_exception_is_no_outcome_to_return() -> None:
+    script = SCRIPT.replace("lost: lost,", "lost: lost, error: lost,")
+    (item,) = findings(changed(('        return "lost"\n', "")), script=script)[:1]
+    assert item.code == "SM309"
+    assert "`error`" not in (item.finding.help or "")
+
+
 @pytest.mark.parametrize(
     "value", ['"found", 1', '("found",)', '["found"]', '{"found": 1}', "3", "-1", "[x for x in y]"]
 )

@@ -72,6 +72,37 @@ def test_a_script_declares_an_outcome_of_a_state_type_again() -> None:
     assert found(text, Grasp=GRASP) == []
 
 
+POLL = """\
+name: sm
+template: Base
+outcomes: [succeeded, failed, preempted]
+states:
+  - POLL:
+      template: Take
+      retry: {on: [nothing], max: 5, delay: 250ms}
+      transitions: {taken: succeeded, jam: failed, exhausted: succeeded, preempted: preempted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("nothing", "limit", "line"),
+    [
+        ("failure: false", "", []),
+        ("failure: true", "", ["SM206 8"]),
+        ("", "", ["SM206 8"]),
+        ("failure: false", "timeout: 2s\n      ", []),
+        ("", "timeout: 2s\n      ", ["SM206 9"]),
+    ],
+)
+def test_tries_that_end_as_declared(nothing: str, limit: str, line: list[str]) -> None:
+    taken = f"taken: {{}}, nothing: {{{nothing}}}, jam: {{failure: true}}"
+    take = f"outcomes: {{{taken}, preempted: {{}}}}"
+    text = POLL.replace("retry", f"{limit}retry").replace(
+        "[nothing]", "[nothing, timeout]" if limit else "[nothing]"
+    )
+    assert found(text, Take=take) == line
+
+
 def test_retries_of_a_declared_failure_have_no_limit() -> None:
     assert found(FLAT.replace("LOST", "PICK"), Grasp=GRASP) == ["SM204 7"]
     unfailing = GRASP.replace("failure: true", "failure: false")

@@ -95,6 +95,30 @@ def test_constants_that_are_returned(code: str, returns: list[str]) -> None:
         ("match x:\n    case 1:\n        return 'a'", True),
         ("sys.exit(1)", False),
         ("assert False, 'never'", False),
+        ("for x in itertools.count():\n    if x:\n        return 'a'", False),
+        ("for x in itertools.count():\n    break", True),
+        ("for n, x in enumerate(itertools.repeat(1), 2):\n    return 'a'", False),
+        ("for x in itertools.repeat(1, 3):\n    return 'a'", True),
+        ("for x in count():\n    return 'a'", True),
+        ("if x:\n    return 'a'\nraise_error(x)", False),
+        ("if x:\n    return 'a'\nassert_never(x)", False),
+        (
+            "match x:\n    case True:\n        return 'a'\n    case False:\n        return 'b'",
+            False,
+        ),
+        ("match x:\n    case True:\n        return 'a'\n    case None:\n        return 'b'", True),
+        ("match x:\n    case True | False:\n        pass", True),
+        (
+            "match x:\n    case Found(y):\n        raise A\n    case Lost():\n        return b",
+            False,
+        ),
+        ("match x:\n    case Found(1):\n        return 'a'", True),
+        ("match x:\n    case other.A:\n        return 'a'", False),
+        (
+            "match x, y:\n    case 1, _:\n        return 'a'\n    case _, z:\n        return 'b'",
+            False,
+        ),
+        ("match x:\n    case 1, _:\n        return 'a'\n    case _, z:\n        return 'b'", True),
         # What Jinja fills in may be a return.
         ("{{ body }}", False),
     ],
@@ -106,6 +130,55 @@ def test_ways_without_an_outcome(code: str, silent: bool) -> None:
     if found.silent:
         assert found.execute.text == "execute"
         assert found.always_silent == ("return" not in code)
+
+
+HELPERS = """
+class Mode(enum.Enum):
+    FAST = enum.auto()
+    SLOW = "slow"
+
+def give_up(why):
+    print(why)
+    raise RuntimeError(why)
+
+def perhaps(why):
+    if why:
+        raise RuntimeError(why)
+
+from itertools import count, cycle
+
+{% endblock %}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "silent"),
+    [
+        ("match x:\n    case Mode.FAST:\n     raise A\n    case Mode.SLOW:\n     raise B", False),
+        ("match x:\n    case Mode.FAST | Mode.SLOW:\n        return 'a'", False),
+        ("match x:\n    case Mode.FAST:\n        return 'a'", True),
+        ("match x:\n    case Mode.FAST:\n     return\n    case Mode.SLOW if y:\n     return", True),
+        ("if x:\n    return 'a'\ngive_up(x)", False),
+        ("if x:\n    return 'a'\nperhaps(x)", True),
+        ("if x:\n    return 'a'\nself.never(x)", False),
+        ("if x:\n    return 'a'\nself.later(x)", True),
+        ("for x in count(1):\n    return 'a'", False),
+        ("for x in cycle(y):\n    pass", False),
+    ],
+)  # fmt: skip
+def test_helpers_that_never_return_and_cases_that_are_all(code: str, silent: bool) -> None:
+    methods = """
+    def never(self, why):
+        while True:
+            give_up(why)
+
+    def later(self, why):
+        return give_up
+"""
+    text = TEMPLATE.format(indent(code, " " * 8)).replace("{% endblock %}\n", methods + HELPERS)
+    found = read_template(Source("Pick.tpl.py", text), "Pick", LIBRARY)
+    assert found is not None
+    assert found.silent == silent
 
 
 @pytest.mark.parametrize(

@@ -498,6 +498,19 @@ def test_a_loose_meta_block_is_read_as_far_as_it_goes(tmp_path: Path, meta: str)
     assert state_type(tmp_path, meta).name == "T"
 
 
+@pytest.mark.parametrize(
+    "variables",
+    ["- a: {default: 2}\n- b: {default: x}", "  {a: {default: 2}, b: {default: x}, c: {default: null}}",
+     "- - a: {default: 2}\n- two:\n  - b: {default: x}\n  - c: {type: str}"],
+)  # fmt: skip
+def test_a_template_gets_the_defaults_of_its_meta_block(built: Built, variables: str) -> None:
+    meta = f"{{% block meta %}}\nname: T\nvariables:\n{variables}\n{{% endblock %}}\n"
+    body = ADDED.replace("T()", "T({{ a }}, '{{ b }}', {{ c | default(3) }})")
+    program = built(MAIN.replace("- B: {template: T,", "- B: {template: T, a: 5,"), T=meta + body)
+    assert "T(2, 'x', 3)" in program
+    assert "T(5, 'x', 3)" in program
+
+
 # Sugar around states that their templates add.
 
 META = "{% block meta %}\nname: T\ntype: State\noutcomes: [done, aborted]\n{% endblock %}\n"

@@ -123,4 +123,4 @@ def test_an_unusual_project_is_built_and_runs_in_python_as_in_the_interpreter(
 
 
 def test_there_are_many() -> None:
-    assert len(PROJECTS) >= 170
+    assert len(PROJECTS) >= 240

@@ -292,7 +292,7 @@ class _TracedUserdata:
 
 def is_container(state: Any) -> bool:
     """Whether a state is a container."""
-    return hasattr(state, "get_children")
+    return callable(getattr(state, "get_children", None))
 
 
 def _is_a(state: Any, kind: str) -> bool:

@@ -374,6 +374,16 @@ def _leaf(leaf: Leaf, inside: EmittedContainer, path: str, module: ModuleParts) 
     return f"{structure.notes(leaf, depth)}\n{structure.add(leaf, inside.node, made, depth)}"
 
 
+def _defaults(type_: StateType) -> dict[str, object]:
+    """The defaults of the interface, without null."""
+    given = {name: fact.default for name, fact in type_.variables.items()}
+    return {
+        name: plain(default.data)
+        for name, default in given.items()
+        if default is not None and default.data is not None
+    }
+
+
 def _required_defaults(leaf: Leaf, type_: StateType) -> structure.Arguments:
     """The defaults of the interface for variables that the script does not set and the constructor
     of the class requires."""
@@ -471,7 +481,9 @@ def _whole(
     for name in variables:
         if (path, name) in inside.uses:
             variables[name] = plain(inside.uses[path, name].data)
-    if not own:  # built-in templates take the keys of the interface beside those of the script
+    if own:
+        variables = {**_defaults(used.type), **variables}
+    else:  # built-in templates take the keys of the interface beside those of the script
         variables["inputs"] = [key.name for key in leaf.inputs]
     called = _called_first(leaf, used, module)
     callbacks = called.value.data if called is not None else None

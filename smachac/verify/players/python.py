@@ -13,6 +13,7 @@ from typing import Any
 
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing import trace
+from smachac.runtime.tracing.instrument import is_container
 from smachac.targets.python.runner import (
     failure_text,
     hidden,
@@ -46,6 +47,10 @@ def player(name: str, text: str, machine: Machine, *, folders: Sequence[Path]) -
                 yield trace_of(_machine_of(module, machine), machine.root.name, case, sources)
 
     return play
+
+
+_SMACH = ("smach", "smachac")
+"""The packages whose containers a generated program uses."""
 
 
 class _Found(BaseException):
@@ -96,6 +101,8 @@ def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -
             container.userdata[key] = copy.deepcopy(value)
     for key, value in case.userdata.items():
         machine.userdata[key] = value
+    for path in case.rows:
+        _close(_state_at(machine, path))
     strict = trace.StrictScript(case.reads, partial(record_read, events), case.most)
     trace.script(machine, name, case.rows, strict)
     trace.attach(machine, name, events.append, sources, secret=case.secret)
@@ -104,6 +111,12 @@ def trace_of(machine: Any, name: str, case: TestCase, sources: dict[str, str]) -
     with suppress(Exception):
         machine.execute()
     return events
+
+
+def _close(state: Any) -> None:
+    """Hide the states of a container that is a class of the user: in the script it is one state."""
+    if is_container(state) and type(state).__module__.partition(".")[0] not in _SMACH:
+        state.get_children = None
 
 
 def _state_at(machine: Any, path: str) -> Any:
