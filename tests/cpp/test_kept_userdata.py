@@ -1,4 +1,4 @@
-"""Userdata is kept between the visits of a container: on SMACH's runtime, in the interpreter, in C++.
+"""Userdata is kept between visits of a container: by the runtime, the interpreter and C++.
 
 SM319 is about counters that nobody sets back, so it rests on this.
 """
