@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
@@ -13,6 +13,7 @@ from smachac.analysis.error_recovery import corrected_machine, with_meant_keys
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
+from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
 from smachac.analysis.reaching_values import reaching_clashes
@@ -251,6 +252,17 @@ class Context:
     def routes(self) -> Routes:
         """The control flow of the whole machine."""
         return Routes(self.states, self.endings)
+
+    @cached_property
+    def bodies_loaded(self) -> Mapping[str, str] | None:
+        """The states that load a body into the simulated world, each with the name of the body;
+        None where they are not known."""
+        return bodies_loaded(self.states)
+
+    @cached_property
+    def loading_order(self) -> LoadingOrder:
+        """The states that can run before the bodies of the simulated world are loaded."""
+        return LoadingOrder(self.routes, self.bodies_loaded or {})
 
     @cached_property
     def judgements(self) -> tuple[Judgement, ...]:

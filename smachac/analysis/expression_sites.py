@@ -6,10 +6,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
-from smachac.analysis.expression_types import keys_read, parsed
+from smachac.analysis.expression_types import body_of, keys_read, parsed
+from smachac.analysis.fixed_lists import has_fixed_length, key_of
 from smachac.analysis.type_inference import Cell, Types
 from smachac.analysis.type_lattice import join, mapping
 from smachac.ir import nodes
+from smachac.ir.expressions import Expr, Index
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Expression, Leaf, Node, Struct
 from smachac.ir.traversal import expressions, expressions_in, outcome_names, remapping
@@ -39,9 +41,19 @@ class ExpressionSite:
         return tuple(fault for fault in found if not fault.length or self.lengths_hold(fault))
 
     def lengths_hold(self, fault: Fault) -> bool:
-        """Whether the lists of a fault have a fixed length: only a declaration fixes it, as a state
-        can lengthen a list of the script."""
-        return all(map(_is_declared, (self.cells[key] for key in fault.keys if key in self.cells)))
+        """Whether the lists of a fault have a fixed length: by a declaration, or because no state
+        can lengthen the list of the script."""
+        if all(map(_is_declared, (self.cells[key] for key in fault.keys if key in self.cells))):
+            return True
+        return fault.always and self.is_initial(fault.expr)
+
+    def is_initial(self, expr: Expr) -> bool:
+        """Whether an expression reads an item of an initial value with a fixed length."""
+        tree = parsed(self.expression.text)
+        if tree is None or not isinstance(expr, Index):
+            return False
+        key = key_of(expr.value, body_of(tree)[1])
+        return key in self.cells and has_fixed_length(self.cells[key])
 
 
 def _is_declared(cell: Cell) -> bool:

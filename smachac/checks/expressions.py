@@ -258,7 +258,9 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     example, it adds a number to text, or calls a function with too many arguments.
 
     Exactly: a warning if only some runs evaluate that part of the code. Values of the type `any` or
-    of a type `T?` are not checked.
+    of a type `T?` are not checked. An index is too large if a declaration fixes the length of the
+    list, or if the list is an initial value and only built-in states whose code reads items of it
+    can reach it: others can make it longer.
 
     Wrong:
         name: sm

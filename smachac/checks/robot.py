@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection, Iterator
 
 from smachac.analysis.context import Context
+from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.checks.expressions import mixed_units
@@ -17,8 +18,7 @@ from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed
-from smachac.ir.leaf import variable
-from smachac.ir.nodes import Data, Leaf, Struct
+from smachac.ir.nodes import Data, Leaf, Node, Struct
 from smachac.ir.robot import Joint, Robot
 from smachac.ir.types import Type
 
@@ -408,9 +408,10 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
     lists under `frames:`, and common ones (`base_link`, `map`, `odom`, `world`). The rule checks
     the literals that a state reads as `str` from a key whose name is or ends with `frame` or
     `frame_id`, and the frame of a PoseStamped. In the simulation the frames are `base`, `world` and
-    the loaded bodies, and an unknown one is an error. The rule also checks the joint names in
-    mappings of joint names to angles, and the values of variables and keys with `names: joint` or
-    `names: frame` in the interface.
+    the loaded bodies, and an unknown one is an error; so is the frame of a body that no path loads
+    before a state of the simulation uses it, unless the state leads to the loading one when it
+    fails. The rule also checks the joint names in mappings of joint names to angles, and the values
+    of variables and keys with `names: joint` or `names: frame` in the interface.
 
     Wrong:
         name: sm
@@ -466,6 +467,8 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             help = did_you_mean(guess(name)) or help
             part = frame_place(flow.value)
             yield at(flow, message, help, (name,), severity=severity, part=part)
+    if simulated:
+        yield from _late_frames(context, robot)
 
 
 def _known(robot: Robot) -> frozenset[str]:
@@ -475,28 +478,60 @@ def _known(robot: Robot) -> frozenset[str]:
 
 def _simulated(context: Context, robot: Robot) -> frozenset[str]:
     """The frames of the simulated world; none where code of the user may add to them."""
-    loaded = loaded_bodies(context)
+    loaded = context.bodies_loaded
     if loaded is None:
         return frozenset()
-    return frozenset({"base", "world", robot.name, *robot.added, *robot.scene, *loaded})
+    return _given_frames(robot) | frozenset(loaded.values())
 
 
-def loaded_bodies(context: Context) -> frozenset[str] | None:
-    """The bodies that states add to the simulated world; None where code of the user may add some
-    or the name of one is computed."""
-    found = set()
-    for _, node in context.states:
-        if not isinstance(node, Leaf):
-            continue
-        if node.adds_frames is None:
-            return None
-        if node.adds_frames:
-            given = (variable(node, name) for name in node.adds_frames)
-            frame = next((value for value in given if value), None)
-            if not isinstance(frame, str):
-                return None
-            found.add(frame)
-    return frozenset(found)
+def _given_frames(robot: Robot) -> frozenset[str]:
+    """The frames that the simulated world has from the start."""
+    return frozenset({"base", "world", robot.name, *robot.added, *robot.scene})
+
+
+def _late_frames(context: Context, robot: Robot) -> Iterator[Finding]:
+    """The frames of bodies that are loaded only after the state that names the frame."""
+    given = _given_frames(robot)
+    flows = [
+        flow
+        for flow in context.types.constants
+        if uses_simulation(context, flow.cell) and not given.issuperset(_frames_in(flow))
+    ]
+    for flow in reaching_flows(flows):
+        for name in _frames_in(flow):
+            later = loaded_later(context, flow, name)
+            if name not in given and later is not None:
+                where, help = when_loaded(flow, later, "frame")
+                help = help or "write another frame, such as `base`"
+                yield at(
+                    flow,
+                    f"the simulation has no frame `{name}` before {where}",
+                    help,
+                    (name,),
+                    other_place(later.span, f"`{name}` is loaded here"),
+                    severity=Severity.ERROR,
+                    part=frame_place(flow.value),
+                )
+
+
+def when_loaded(flow: TypeFlow, later: Node, what: str) -> tuple[str, str | None]:
+    """When a body is loaded that the state of a literal uses before, and what to do."""
+    if later is flow.cell.node:
+        return f"{reader(flow)} itself loads it", None
+    help = f"run `{later.name}` before {reader(flow)}: the {what} exists only after it"
+    return f"{reader(flow)}: `{later.name}` loads it later", help
+
+
+def uses_simulation(context: Context, cell: Cell) -> bool:
+    """Whether the state of a cell uses the simulated world."""
+    known = context.machine.state_types.get(cell.node.type) if cell.node is not None else None
+    return known is not None and known.simulation
+
+
+def loaded_later(context: Context, flow: TypeFlow, body: str) -> Node | None:
+    """The state that loads a body only after the state that a literal names it for."""
+    path = context.loading_order.loaded_later(flow.cell.path, body)
+    return context.routes.nodes[path] if path is not None else None
 
 
 def is_simulated(context: Context) -> bool:

@@ -9,15 +9,18 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
-from smachac.checks.messages import calls, did_you_mean
+from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.robot import (
     at,
     is_simulated,
     joint_faults,
-    loaded_bodies,
+    loaded_later,
     moves_arm,
     names_in,
+    part_named,
     role_of,
+    uses_simulation,
+    when_loaded,
 )
 from smachac.checks.rule import rule
 from smachac.checks.value_places import steps_to_number
@@ -197,9 +200,10 @@ def unknown_name(context: Context) -> Iterator[Finding]:
     Exactly: `names: limb`, `names: model` and `names: body` of a variable or key in an interface
     declare that its values are such names. Limbs are those of a built-in robot. In the simulation,
     models are the built-in ones, unless the state names a file, and bodies are those that
-    LoadModelState adds; there an unknown name is an error. Where code of the user may add bodies,
-    they are not checked. A state whose type has `role: grip` needs a limb whose description has a
-    gripper. Names of frames and joints are SM505.
+    LoadModelState adds; there an unknown name is an error. So is a body that no path loads before a
+    state of the simulation uses it, unless the state leads to the loading one when it fails. Where
+    code of the user may add bodies, they are not checked. A state whose type has `role: grip` needs
+    a limb whose description has a gripper. Names of frames and joints are SM505.
 
     Wrong:
         name: sm
@@ -241,7 +245,39 @@ def unknown_name(context: Context) -> Iterator[Finding]:
             if name not in known[role]:
                 help = did_you_mean(guess(name)) or _things_in_words(role, known[role])
                 yield at(flow, f"there is no {role} `{name}`", help, (name,), severity=severity)
+    if is_simulated(context):
+        yield from _late_bodies(context)
     yield from _missing_grippers(context, severity)
+
+
+def _late_bodies(context: Context) -> Iterator[Finding]:
+    """The bodies that are loaded only after the state that names them."""
+    robot = context.machine.robot
+    if robot is None or "body" not in _known_things(context):
+        return
+    given = robot.added | robot.scene
+    flows = [
+        flow
+        for flow in context.types.constants
+        if role_of(flow.cell) == "body" and uses_simulation(context, flow.cell)
+    ]
+    for flow in reaching_flows(flows):
+        for name in dict.fromkeys(names_in(flow.value)):
+            later = loaded_later(context, flow, name) if name not in given else None
+            if later is not None:
+                where, help = when_loaded(flow, later, "body")
+                part, is_key = part_named(flow.value, name)
+                help = help or f"remove `{name}`: the state names its own body"
+                yield at(
+                    flow,
+                    f"there is no body `{name}` before {where}",
+                    help,
+                    (name,),
+                    other_place(later.span, f"`{name}` is loaded here"),
+                    severity=Severity.ERROR,
+                    part=part,
+                    key=is_key,
+                )
 
 
 def _missing_grippers(context: Context, severity: Severity | None) -> Iterator[Finding]:
@@ -276,10 +312,10 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
     known: dict[str, frozenset[str]] = {}
     if robot is not None and robot.limb_names and (simulated or len(robot.limb_names) > 1):
         known["limb"] = frozenset(robot.limb_names)
-    bodies = loaded_bodies(context) if simulated and robot is not None else None
+    bodies = context.bodies_loaded if simulated and robot is not None else None
     scene = any(each.name == "scene" and each.value.data for each in context.machine.variables)
     if bodies is not None and robot is not None and (robot.scene or not scene):
-        known["body"] = bodies | robot.added | robot.scene
+        known["body"] = frozenset(bodies.values()) | robot.added | robot.scene
     if simulated:
         known["model"] = frozenset(MODELS)
     return known

@@ -69,7 +69,8 @@ def callback(key: str, code: str) -> str:
         (found("ud.x + 1", "userdata x = null"), ["SM311"]),
         (found("ud.x == None", "userdata x = 1"), []),
         # A list of the script may grow, one of a declared length does not.
-        (found("ud.x[2]", "userdata x = [1, 2]"), []),
+        (found("ud.x[2]", "userdata x = [1, 2]", PYTHON.format("input x; ")), []),
+        (found("ud.x[2]", "userdata x = [1, 2]"), ["SM311"]),
         (found("ud.x[2]", "userdata x: int[2] = [1, 2]"), ["SM311"]),
         (found("ud.x[2]", "userdata x = [1, 2]", reads="input x: int[2]"), ["SM311"]),
         (found("[1, 2][2]"), ["SM311"]),
@@ -192,3 +193,81 @@ states:
 """
     codes = [each.code for each in analysed({"main.yml": text}).report]
     assert codes == (["SM016"] if bare else [])
+
+
+def items(read: str, first: str = "", reads: str = "input x") -> list[str]:
+    """The codes for an item of the initial list of x."""
+    return [item.code for item in found(read, "userdata x = [1, 2, 3]", first, reads)]
+
+
+@pytest.mark.parametrize(
+    ("read", "first"),
+    [
+        ("ud.x[3]", "SleepState { outcomes succeeded; variable time = 1; on succeeded -> B; }"),
+        ("ud['x'][-4] + ud.x[0]", callback("n", "len(ud.x) + sum(ud.x)")),
+        ("ud.x[7]", callback("n", "1 in ud.x")),
+        ("len(ud.x) + ud.x[3]", callback("n", "max(ud.x)")),
+    ],
+)
+def test_an_index_beyond_a_list_that_no_state_can_lengthen(read: str, first: str) -> None:
+    assert items(read, first) == ["SM311"]
+
+
+@pytest.mark.parametrize(
+    ("read", "first"),
+    [
+        ("ud.x[2]", callback("n", "len(ud.x)")),
+        ("ud.x[-3]", callback("n", "len(ud.x)")),
+        # The list may have become longer, also under another name.
+        ("ud.x[3]", callback("n", "ud.x.append(4)")),
+        ("ud.x[3]", callback("n", "ud.x")),
+        ("ud.x[3]", callback("n", "[ud.x]")),
+        ("ud.x[3]", callback("n", "more(ud.x)")),
+        ("ud.x[3]", callback("n", "[each for each in ud.x]")),
+        ("ud.x[3]", callback("x", "ud.x + [4]")),
+        ("ud.x[3]", callback("n", "1").replace("`lambda ud: 1`", "`lengthen`")),
+        ("ud.x[3]", PYTHON.format("input x; ")),
+        ("ud.x[3]", PYTHON.format("output x; ")),
+        ("ud.x[3]", PYTHON.format("input x; ").replace("Look", "ScriptedState")),
+        # Code that decides first may be meant for lists of several lengths.
+        ("ud.x[3] if len(ud.x) > 3 else 0", callback("n", "len(ud.x)")),
+        ("ud.n and ud.x[3]", callback("n", "len(ud.x)")),
+        ("ud.x.pop() + ud.x[3]", callback("n", "len(ud.x)")),
+    ],
+)
+def test_an_index_of_a_list_that_may_be_longer(read: str, first: str) -> None:
+    assert items(read, first, "input n; input x") == []
+
+
+def test_an_index_beyond_a_list_in_containers() -> None:
+    text = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {slots: [1, 2, 3]}
+states:
+  - WORK:
+      template: StateMachine
+      outcomes: [ok]
+      input_keys: [places]
+      output_keys: [place]
+      remapping: {places: slots}
+      transitions: {ok: SHOW}
+      states:
+        - FIRST:
+            template: CallbacksState
+            input_keys: [places]
+            output_keys: [place]
+            callbacks: {place: 'lambda ud: ud.places[3]'}
+            transitions: {succeeded: ok}
+  - SHOW: {template: TYPE, input_keys: [slots, place], transitions: {succeeded: done}}
+"""
+    (fault,) = [
+        each
+        for each in analysed({"main.yml": text.replace("TYPE", "PrintUserdataState")}).report
+        if each.code == "SM311"
+    ]
+    assert fault.span.text == "ud.places[3]"
+    assert fault.help == "use an index up to `[2]`"
+    own = text.replace("TYPE", "ScriptedState, outcomes: [succeeded]")
+    assert "SM311" not in {each.code for each in analysed({"main.yml": own}).report}

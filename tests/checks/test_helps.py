@@ -99,6 +99,38 @@ states:
       transitions: {held: done}
 """
 
+TRIES = """name: m
+template: Base
+outcomes: [done]
+userdata: {tries: 0}
+states:
+  - NEXT:
+      template: ScriptedState
+      outcomes: [found, none]
+      transitions: {found: GRASP, none: done}
+  - GRASP:
+      template: ScriptedState
+      outcomes: [held, slipped]
+      transitions: {held: NEXT, slipped: COUNT}
+  - COUNT:
+      template: CallbacksState
+      input_keys: [tries]
+      output_keys: [tries]
+      callbacks: {tries: 'lambda ud: ud.tries + 1'}
+      transitions: {succeeded: AGAIN}
+  - AGAIN:
+      template: ConditionalOutcomeState
+      input_keys: [tries]
+      outcomes: [again]
+      callbacks: {again: 'lambda ud: ud.tries < 3'}
+      default_outcome: enough
+      transitions: {again: GRASP, enough: NEXT}
+"""
+
+SET_TRIES = """\
+{template: CallbacksState, output_keys: [tries], callbacks: {tries: 'lambda ud: 0'}, \
+transitions: {succeeded: GRASP}}"""
+
 CASES = [
     (
         "SM205",
@@ -138,6 +170,13 @@ CASES = [
         "outcomes: [found]\n      output_keys: [pose]\n      transitions: {found: BOX}",
         "outcomes: [found]\n      output_keys: [pose]\n      remapping: {pose: pose_2}\n"
         "      transitions: {found: BOX}",
+    ),
+    (
+        "SM319",
+        TRIES,
+        f"add `- SET_TRIES: {SET_TRIES}`, and lead `found` of `NEXT` to it",
+        "{found: GRASP, none: done}\n",
+        f"{{found: SET_TRIES, none: done}}\n  - SET_TRIES: {SET_TRIES}\n",
     ),
 ]
 """For each finding: its code, a script with it, the start of its help, and the text that the help

@@ -70,7 +70,6 @@ def simulated(**given: str) -> list[tuple[str, str]]:
         ({"move": "limb: left"}, ("SM521", "left")),
         ({"load": "model_name: blok, body: block"}, ("SM521", "blok")),
         ({"load": "model_name: block, apart: {tabel: 0.1}"}, ("SM521", "{tabel: 0.1}")),
-        ({"load": "model_name: block, apart: {block: -0.1}"}, ("SM520", "-0.1")),
         ({"held": "body: blok"}, ("SM521", "blok")),
         ({"held": "body: brick"}, ("SM521", "brick")),
         ({"place": "[500, 0, 20]"}, ("SM522", "500")),
@@ -108,6 +107,13 @@ def test_values_of_built_in_states(given: dict[str, str], expected: tuple[str, s
 )
 def test_unusual_values_of_built_in_states(given: dict[str, str]) -> None:
     assert simulated(**given) == []
+
+
+def test_a_body_that_is_apart_from_itself() -> None:
+    """It is not there before it is loaded; and no distance is negative."""
+    apart = "{block: -0.1}"
+    found = simulated(load=f"model_name: block, apart: {apart}")
+    assert found == [("SM521", "block"), ("SM520", "-0.1")]
 
 
 def test_the_models_of_the_simulation_are_known() -> None:

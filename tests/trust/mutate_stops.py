@@ -1,4 +1,5 @@
-"""Mutations of what happens after a stop, and of limits: SM207, SM209 to SM213, SM403, SM407."""
+"""Mutations of what happens after a stop, and of limits: SM207, SM209 to SM213, SM319, SM403,
+SM407."""
 
 from __future__ import annotations
 
@@ -7,8 +8,8 @@ from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
 from tests.trust.mutants import Mutant, Subject, mutation
 from tests.trust.mutate_concurrences import concurrences
-from tests.trust.mutate_names import MACHINES, renamed
-from tests.trust.project_text import Site
+from tests.trust.mutate_names import MACHINES, renamed, transitions
+from tests.trust.project_text import Data, Quoted, Site
 
 
 def answering(subject: Subject) -> list[Site]:
@@ -131,3 +132,72 @@ def forget_to_count(subject: Subject) -> Mutant | None:
     other.body["output_keys"].append(f"{key}_too")
     other.body["output_keys"].remove(key)
     return Mutant(codes=("SM213",), owners=(site, other))
+
+
+def counting(name: str, target: str) -> tuple[dict[str, Data], dict[str, Data]]:
+    """A machine that tries something three times, and the state that lets it begin again. The
+    names of its states are made of `name`."""
+    act, count, again, wait = (f"{name}_{word}" for word in ("ACT", "COUNT", "AGAIN", "WAIT"))
+    tries = {"input_keys": ["tries"]}
+    inside: list[dict[str, Data]] = [
+        {
+            act: {
+                "template": "ScriptedState",
+                "outcomes": ["held", "slipped"],
+                "transitions": {"held": "held", "slipped": count},
+            }
+        },
+        {
+            count: {
+                "template": "CallbacksState",
+                **tries,
+                "output_keys": ["tries"],
+                "callbacks": {"tries": Quoted("lambda ud: ud.tries + 1")},
+                "transitions": {"succeeded": again},
+            }
+        },
+        {
+            again: {
+                "template": "ConditionalOutcomeState",
+                **tries,
+                "outcomes": ["more"],
+                "callbacks": {"more": Quoted("lambda ud: ud.tries < 3")},
+                "default_outcome": "enough",
+                "transitions": {"more": act, "enough": "gone"},
+            }
+        },
+    ]
+    machine = {
+        "template": "StateMachine",
+        "outcomes": ["held", "gone"],
+        "userdata": {"tries": 0},
+        "states": inside,
+        "transitions": {"held": target, "gone": wait},
+    }
+    pause = {
+        "template": "ScriptedState",
+        "outcomes": ["rested"],
+        "transitions": {"rested": name},
+    }
+    return {name: machine}, {wait: pause}
+
+
+@mutation
+def leave_a_counter_at_its_limit(subject: Subject) -> Mutant | None:
+    """On the way to a state there are three tries of something, and then three more."""
+    found = [
+        (site, outcome)
+        for site, outcome in transitions(subject, "StateMachine")
+        if site.pairs("transitions")[outcome] in [each.name for each in site.siblings()]
+        if outcome != PREEMPTED
+    ]
+    if not found:
+        return None
+    site, outcome = subject.draw.choice(found)
+    assert site.around is not None
+    steps = site.body["transitions"]
+    states = site.around.body["states"]
+    steps[outcome], target = "TRY_IT", steps[outcome]
+    states += counting("TRY_IT", target)
+    place = (*site.around.path, "states", len(states) - 2, "TRY_IT", "userdata", "tries")
+    return Mutant(codes=("SM319",), places=((site.file, place),))

@@ -192,3 +192,27 @@ def give_a_default_that_does_not_fit(subject: Subject) -> Mutant | None:
     data["variables"]["speed"]["default"] = subject.draw.choice([-1, 0, Quoted("fast"), [1]])
     place = ("variables", "speed", "default")
     return Mutant(codes=("SM304", "SM520"), places=((file, place),))
+
+
+@mutation
+def look_for_a_body_too_early(subject: Subject) -> Mutant | None:
+    """The first state of the machine needs a body that is loaded after it."""
+    main = subject.project["main.yml"]
+    found = [
+        site
+        for site in subject.sites()
+        if site.template == "LoadModelState" and isinstance(site.body.get("model_name"), str)
+    ]
+    failures = [name for name in ("aborted", "failed") if name in main.get("outcomes", ())]
+    if not found or not failures or "initial" in main or "states" not in main:
+        return None
+    body = subject.draw.choice(found).body
+    name = body.get("body", body["model_name"])
+    first = next(iter(main["states"][0]))
+    early = {
+        "template": "ReadBodyPoseState",
+        "body": name,
+        "transitions": {"succeeded": first, "aborted": failures[0]},
+    }
+    main["states"].insert(0, {"EARLY": early})
+    return Mutant(codes=("SM521",), places=(("main.yml", ("states", 0, "EARLY", "body")),))

@@ -110,3 +110,23 @@ def write_a_function_as_text(subject: Subject) -> Mutant | None:
         return None
     site.body["time"] = Quoted("lambda ud: 0.1")
     return Mutant(codes=("SM316",), places=((site.file, (*site.path, "time")),))
+
+
+@mutation
+def read_beyond_the_end_of_a_list(subject: Subject) -> Mutant | None:
+    """The first state of the machine reads the sixth item of a list of three."""
+    main = subject.project["main.yml"]
+    if "initial" in main or "states" not in main:
+        return None
+    first = next(iter(main["states"][0]))
+    main.setdefault("userdata", {})["three"] = [1, 2, 3]
+    state = {
+        "template": "CallbacksState",
+        "input_keys": ["three"],
+        "output_keys": ["sixth"],
+        "callbacks": {"sixth": Quoted("lambda ud: ud.three[5]")},
+        "transitions": {"succeeded": first},
+    }
+    main["states"].insert(0, {"SIXTH": state})
+    place = ("states", 0, "SIXTH", "callbacks", "sixth")
+    return Mutant(codes=("SM311",), places=(("main.yml", place),))

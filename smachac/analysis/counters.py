@@ -1,0 +1,200 @@
+"""Counters: userdata keys to which one state adds a number, and the states that compare them."""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Set as AbstractSet
+from typing import Literal, NamedTuple, TypeAlias, TypeGuard
+
+from smachac.analysis.accesses import function_body
+from smachac.analysis.def_use import around
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope
+from smachac.ir.leaf import functions, variable
+from smachac.ir.nodes import Leaf, Node
+from smachac.ir.traversal import outcome_names, remapping
+
+DEFAULT = "default"
+"""The outcome of a state with conditions if none is true, unless it has another default."""
+
+Number: TypeAlias = "int | float"
+
+
+class Test(NamedTuple):
+    """A state that compares a key with numbers: `decide` gives its outcome for a value of the key.
+    `limits` are the numbers."""
+
+    leaf: Leaf
+    decide: Callable[[Number], str]
+    limits: tuple[Number, ...]
+
+
+def is_number(value: object) -> TypeGuard[int | float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+class Users(NamedTuple):
+    """The children of a container that read a key, and those that may set it, by name."""
+
+    readers: dict[str, Node]
+    writers: dict[str, Node]
+
+
+def users_of(scope: UserdataScope, keys: Container[str]) -> dict[str, Users]:
+    """The users of some keys of a container."""
+    found: dict[str, Users] = {}
+    for child in reversed([*scope.children.values()]):
+        if child.inputs or child.outputs:
+            names = remapping(child)
+            for own, at in ((child.inputs, 0), (child.outputs, 1)):
+                for key in dict.fromkeys(names.get(each.name, each.name) for each in own):
+                    if key in keys:
+                        found.setdefault(key, Users({}, {}))[at][child.name] = child
+    return found
+
+
+class Counters:
+    """The counters of a machine."""
+
+    def __init__(self, flow: DataFlow) -> None:
+        self._known = _Constants(flow)
+
+    def tests(
+        self, scope: UserdataScope, key: str, users: Users
+    ) -> Iterator[tuple[Leaf, Number, Test]]:
+        """The tests of the counter in a key of a container, each with the state that counts and
+        what it adds."""
+        counters = [child for name, child in users.readers.items() if name in users.writers]
+        if len(counters) != 1 or not isinstance(counters[0], Leaf):
+            return
+        counter = counters[0]
+        added = _added(self._known, scope, counter, key)
+        for leaf in users.readers.values() if added else ():
+            test = _test(self._known, scope, leaf, key) if leaf is not counter else None
+            if test is not None:
+                yield counter, added, test
+
+
+class _Constants:
+    """The numbers that code of a machine always has."""
+
+    def __init__(self, flow: DataFlow) -> None:
+        self._flow = flow
+        self._written: dict[str, AbstractSet[str] | None] = {}
+
+    def number(
+        self, scope: UserdataScope, leaf: Leaf, tree: ast.expr, names: AbstractSet[str]
+    ) -> Number | None:
+        """The value of code: a literal, or a key that nothing sets; None if not known."""
+        match tree:
+            case ast.Constant(value=value) if is_number(value):
+                return value
+            case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=value)) if is_number(value):
+                return -value
+        key = _field(tree, names)
+        return None if key is None else self._initial(scope, remapping(leaf).get(key, key))
+
+    def _initial(self, scope: UserdataScope, key: str) -> Number | None:
+        """The initial value of a key that no state sets; None if it has another one, or none."""
+        while True:
+            written = self._written_in(scope)
+            presets = [each.value.data for each in scope.container.userdata if each.key == key]
+            if written is None or key in written:
+                return None
+            if key not in scope.inputs:
+                value = presets[0] if presets else None
+                return value if is_number(value) else None
+            outer = around(self._flow, scope.path)
+            if presets or outer is None:
+                return None
+            scope, key = self._flow.scopes[outer], scope.inputs[key]
+
+    def _written_in(self, scope: UserdataScope) -> AbstractSet[str] | None:
+        """The keys that states of a container may set; None if they may set any key."""
+        if scope.path not in self._written:
+            steps = [step.writes for several in scope.steps.values() for step in several]
+            anything = any(writes.anything for writes in steps)
+            keys = frozenset[str]().union(*(writes.perhaps for writes in steps))
+            self._written[scope.path] = None if anything else keys
+        return self._written[scope.path]
+
+
+def _own_name(child: Node, key: str, which: Literal["inputs", "outputs"]) -> str | None:
+    """The name that a child has for a key of its container; None if it does not use it."""
+    names = remapping(child)
+    keys = child.inputs if which == "inputs" else child.outputs
+    return next((each.name for each in keys if names.get(each.name, each.name) == key), None)
+
+
+def _added(known: _Constants, scope: UserdataScope, leaf: Leaf, key: str) -> Number:
+    """What a state adds to a key each time; 0 if that is not known."""
+    target, source = _own_name(leaf, key, "outputs"), _own_name(leaf, key, "inputs")
+    code = (functions(leaf, "callbacks") or {}).get(target or "")
+    body = function_body(code.text) if code is not None else None
+    if body is None:
+        return 0
+    tree, names = body
+    match tree:
+        case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+            sign = 1 if isinstance(op, ast.Add) else -1
+            if _field(left, names) == source:
+                return sign * (known.number(scope, leaf, right, names) or 0)
+            if _field(right, names) == source and sign == 1:
+                return known.number(scope, leaf, left, names) or 0
+    return 0
+
+
+_COMPARED: Mapping[type[ast.cmpop], Callable[[Number, Number], bool]] = {
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+}
+
+
+def _test(known: _Constants, scope: UserdataScope, leaf: Node, key: str) -> Test | None:
+    """The test of a key; None if a state decides otherwise, or by more than this key."""
+    if not isinstance(leaf, Leaf) or leaf.open:
+        return None
+    conditions = functions(leaf, "conditions")
+    own, default = _own_name(leaf, key, "inputs"), variable(leaf, "default_outcome") or DEFAULT
+    named = {each.name for each in leaf.inputs}.intersection(outcome_names(leaf))
+    if not conditions or not isinstance(default, str) or not named <= conditions.keys():
+        return None
+    compared: list[tuple[str, Callable[[Number, Number], bool], Number, bool]] = []
+    for outcome in outcome_names(leaf):
+        if outcome in conditions:
+            body = function_body(conditions[outcome].text)
+            match body:
+                case (ast.Compare(left=left, ops=[op], comparators=[right]), names):
+                    turned = _field(right, names) == own
+                    value, other = (right, left) if turned else (left, right)
+                    limit = known.number(scope, leaf, other, names)
+                    if _field(value, names) != own or limit is None or type(op) not in _COMPARED:
+                        return None
+                    compared.append((outcome, _COMPARED[type(op)], limit, turned))
+                case _:
+                    return None
+
+    def decide(value: Number) -> str:
+        for outcome, holds, limit, turned in compared:
+            if holds(limit, value) if turned else holds(value, limit):
+                return outcome
+        return default
+
+    return Test(leaf, decide, tuple(limit for _, _, limit, _ in compared))
+
+
+def _field(tree: ast.expr, names: AbstractSet[str]) -> str | None:
+    """The userdata key that code reads; None if it is other code."""
+    match tree:
+        case ast.Attribute(value=ast.Name(id=owner), attr=key) if owner in names:
+            return key
+        case ast.Subscript(value=ast.Name(id=owner), slice=ast.Constant(value=str() as key)) if (
+            owner in names
+        ):
+            return key
+    return None
