@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -31,6 +33,17 @@ name: sm
 outcomes: [first, second]
 states:
   - A: {template: NAME, transitions: {awake: first, late: second}}
+"""
+CLASS = """\
+from smachac.runtime import smach
+
+
+class Count(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["done"])
+
+    def execute(self, userdata):
+        return "done"
 """
 BUILT_IN = ["SleepState", "RandomOutcomeState", "ScriptedState", "PrintUserdataState"]
 
@@ -107,3 +120,25 @@ states:
     assert '"ONE", Grasp(force=1.0)' in text
     assert '"TWO", Grip(force=2.0)' in text
     assert "Grip(force=1.0)" in text
+
+
+def test_a_program_does_not_hide_a_module_of_the_user(tmp_path: Path) -> None:
+    """A program whose folder is searched first is found before a module of the same name."""
+    (tmp_path / "templates").mkdir()
+    interface = 'outcomes: {done: {}}\ncode: {python: "tally.count:Count"}\n'
+    (tmp_path / "templates" / "Count.yml").write_text(interface)
+    (tmp_path / "tally").mkdir()
+    (tmp_path / "tally" / "__init__.py").write_text("")
+    (tmp_path / "tally" / "count.py").write_text(CLASS)
+    script = "name: NAME\noutcomes: [done]\nstates:\n  - A: {template: Count}\n"
+    (tmp_path / "main.yml").write_text(script.replace("NAME", "tally"))
+    files = smachac.compile(tmp_path / "main.yml", "python")
+    assert list(files) == ["tally_program.py"]
+    program = tmp_path / "tally_program.py"
+    program.write_text(files["tally_program.py"])
+    ended = subprocess.run(
+        [sys.executable, str(program)], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert "ImportError" not in ended.stderr
+    (tmp_path / "main.yml").write_text(script.replace("NAME", "count"))
+    assert list(smachac.compile(tmp_path / "main.yml", "python")) == ["count.py"]

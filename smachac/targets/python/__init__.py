@@ -29,7 +29,7 @@ OPTIONS = {
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
-    """The module of a machine: `<name>.py`."""
+    """The module of a machine: `<name>.py`, see `_program_name`."""
     from smachac.targets.python.module import module_text
     from smachac.targets.python.package import package_files
     from smachac.targets.python.parameters import RESERVED, fixed_uses, ros_parameters
@@ -49,12 +49,23 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     if text is None:
         return {}
     if not ros.is_node(machine, context.library, version):
-        return {f"{stem(machine)}.py": text}
+        return {f"{_program_name(machine)}.py": text}
     parameters = ros_parameters(machine, RESERVED)
     report.extend(fixed_uses(parameters))
     if package:
         return package_files(machine, package, text, parameters.declared)
-    return {f"{stem(machine)}.py": text}
+    return {f"{_program_name(machine)}.py": text}
+
+
+def _program_name(machine: Machine) -> str:
+    """The name of the program's module: that of the machine, unless a module of the user that the
+    program imports has it. Python would import the program in place of that module."""
+    codes = (type_.code.get("python", "") for type_ in machine.state_types.values())
+    modules = {code.partition(":")[0].partition(".")[0] for code in codes if ":" in code}
+    name = stem(machine)
+    while name in modules:
+        name += "_program"
+    return name
 
 
 def _check_lifecycle(machine: Machine, context: BuildContext, version: Ros) -> None:
