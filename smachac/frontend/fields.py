@@ -13,8 +13,8 @@ from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variabl
 from smachac.frontend.script import Keys, Pairs, Rules
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_errors import JOINED, spaced
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
-from smachac.ir.nodes import Outcome, Preset
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong, known_wrong
+from smachac.ir.nodes import Outcome, Preset, Value
 from smachac.ir.types import ANY, parse_type
 
 _YAML_1_1_BOOLEANS = frozenset(
@@ -76,6 +76,39 @@ def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> No
     report.append(
         wrong_shape(tree.span, message, help or example, arguments=arguments, edits=edits)
     )
+
+
+def _mapping_help(tree: Seq, value: str) -> str | None:
+    """How a list that stands in place of a mapping is written, if its items show that."""
+    entries = _entries_meant(tree)
+    pairs = []
+    for entry in entries:
+        text = value if is_known_wrong(entry.value) else entry.value.span.text
+        if isinstance(entry.value, Map) and not text.startswith("{"):
+            text = f"{{{text}}}"
+        pairs.append(f"{entry.key.span.text}: {text}")
+    if not entries:
+        pairs = [f"NAME: {item.span.text}" for item in tree.items if isinstance(item, Scalar)]
+    shown = ", ".join(pairs)
+    if not pairs or len(pairs) > _MOST_SHOWN or len(pairs) < len(tree.items) or "\n" in shown:
+        return None
+    return f"write it as `{{{shown}}}`"
+
+
+_MOST_SHOWN = 6
+"""The most entries that a help shows."""
+
+
+def _entries_meant(tree: Seq) -> tuple[Entry, ...]:
+    """The entries of a list in place of a mapping: its items of one entry each, and its names
+    without values. Their values are `known_wrong`."""
+    entries: list[Entry] = []
+    for item in tree.items:
+        if isinstance(item, Map) and len(item.entries) == 1:
+            entries += item.entries
+        elif isinstance(item, Scalar) and str(item.value).isidentifier() and item.plain:
+            entries.append(Entry(item, known_wrong(item.span)))
+    return tuple(entries)
 
 
 LISTS = ("names", "outcomes", "keys")
@@ -184,17 +217,21 @@ def as_outcome(word: Word, tree: Tree, report: Report, *more: str) -> Outcome:
     )
 
 
-def as_map(tree: Tree, report: Report) -> tuple[Entry, ...]:
-    """A mapping of names to anything; a null block (`userdata:` with nothing) is an error."""
+def as_map(tree: Tree, report: Report, value: str = "VALUE") -> tuple[Entry, ...]:
+    """A mapping of names to anything; a null block (`userdata:` with nothing) is an error. Of a
+    list, which is one too, the entries are those that are probably meant; `value` stands in the help
+    for the value of a name alone."""
     if not isinstance(tree, Map):
         nothing = isinstance(tree, Scalar) and tree.value is None
         help = "write `{}`, or remove the key" if nothing else None
+        if isinstance(tree, Seq):
+            help = _mapping_help(tree, value)
         if isinstance(tree, Scalar) and tree.plain and JOINED.fullmatch(str(tree.value)):
             help = spaced(str(tree.value))
         if isinstance(tree, Seq):
             help = _one_mapping(tree)
         wrong(tree, "map", report, help)
-        return ()
+        return _entries_meant(tree) if isinstance(tree, Seq) else ()
     return tuple([entry for entry in tree.entries if _names(entry.key, report)])
 
 
@@ -223,10 +260,6 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
     becomes the empty name, as a look-up that fails does; so a key has a value all the same."""
     pairs = []
     entries = tree.entries if isinstance(tree, Map) else as_map(tree, report)
-    if isinstance(tree, Seq):  # reported: its mappings are meant
-        entries = tuple(
-            each for item in tree.items if isinstance(item, Map) for each in item.entries
-        )
     for entry in entries:
         key = as_name(entry.key, report)
         if key is not None:
@@ -239,6 +272,20 @@ def pairs_of(tree: Tree) -> Pairs:
     entries = tree.entries if isinstance(tree, Map) else ()
     pairs = ((name_of(entry.key), name_of(entry.value)) for entry in entries)
     return tuple((key, value) for key, value in pairs if key and value)
+
+
+def as_items(tree: Tree, report: Report) -> Value:
+    """The items of a loop: a list, code, or the name of a key."""
+    if isinstance(tree, Map) or (isinstance(tree, Scalar) and not isinstance(tree.value, str)):
+        number = tree.value if isinstance(tree, Scalar) and type(tree.value) is int else None
+        few = number is not None and 0 < number <= _MOST_SHOWN
+        meant = f"[{', '.join(map(str, range(number or 0)))}]" if few else f"`range({number})`"
+        help = f"a loop of {number} turns has the items `{meant}`" if few else None
+        if number is not None and not few:
+            help = f"a loop of {number} turns has the items '{meant}', with backticks and quotes"
+        wrong(tree, "items", report, help)
+        return as_value(known_wrong(tree.span))
+    return as_value(tree)
 
 
 def as_rules(tree: Tree, report: Report) -> Rules:
@@ -336,6 +383,7 @@ READERS: dict[str, Callable[[Tree, Report], object]] = {
     "userdata": as_presets,
     "pairs": as_pairs,
     "rules": as_rules,
+    "items": as_items,
     "text": as_text,
     "flag": as_flag,
     "value": lambda tree, report: as_value(tree),

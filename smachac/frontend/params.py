@@ -9,8 +9,9 @@ from collections.abc import Mapping
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.frontend.errors.references import unresolved_look_up
-from smachac.frontend.errors.script import too_big
+from smachac.frontend.errors.script import too_big, wrong_shape
 from smachac.frontend.yaml_tree import (
     Entry,
     Joined,
@@ -73,6 +74,22 @@ def look_up_word(tree: Tree) -> Word | None:
             return Word(name, tree.items[1].span)
         case Seq(items=(Seq(items=(Scalar(value=str(name), plain=True) as word,)),)):
             return Word(name, word.span)
+    return None
+
+
+def look_up_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
+    """The value of `[param, x]`, where `params` is misspelt and `x` is a param in scope, which is
+    reported; None for other trees."""
+    match tree:
+        case Seq(items=(Scalar(value=str(first), plain=True) as one, Scalar(value=str(name)))):
+            if name not in scope or guesser_of(("params",)).sure(first) is None:
+                return None
+            word = Word(first, one.span)
+            message = f"`[{first}, {name}]` is a list of two texts, not a look-up"
+            help, edits = f"did you mean `[params, {name}]`?", respelt(word, "params")
+            arguments = ("look-up", first, name)
+            report.append(wrong_shape(word.span, message, help, arguments=arguments, edits=edits))
+            return scope[name]
     return None
 
 

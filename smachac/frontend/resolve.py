@@ -42,6 +42,7 @@ from smachac.frontend.params import (
     fill_in,
     is_flat,
     is_too_deep,
+    look_up_meant,
     look_up_word,
     size_up_to,
 )
@@ -279,6 +280,8 @@ class _Resolver:
         """The field with values in place of its look-ups and aliases of types. `flat`: see
         `is_flat`."""
         if flat:
+            meant = look_up_meant(entry.value, scope, self.report) if scope else None
+            entry = entry if meant is None else Entry(entry.key, meant)
             return typed(key, entry, self.aliases, self.report)
         row = schema.VARIABLES.get(key)
         names = row is not None and row.shape in ("names", "outcomes", "keys")
@@ -345,7 +348,7 @@ class _Resolver:
         if isinstance(tree, Map):
             items = tuple(Map((each,), each.key.span) for each in tree.entries)
         found: list[State] = []
-        for item in items:
+        for item in items if owner == "Iterator" else _with_further_states(items):
             if self.count >= MAX_STATES:
                 message = f"the script has more than {MAX_STATES:,} states"
                 help = "split the task into several scripts"
@@ -463,6 +466,7 @@ class _Resolver:
         the call."""
         begin = self.uses.mark(self.report)
         called: list[tuple[Word, tuple[Entry, ...]]] = []
+        beside: dict[str, Span] = {}
         while "script" in own:
             entry = own.pop("script")
             params = own["params"].value if "params" in own else None
@@ -482,11 +486,33 @@ class _Resolver:
             fields = self.expand(entries)
             self.uses.replaced(fields, own)
             called.append((Word(word.text, call), _entries_of(params)))
+            others = [key for key in own if key not in schema.VARIABLES]
+            beside |= {key: own[key].key.span for key in others}
             own = overridden(fields, own)
         state = self.state(name, own, around, begin=begin)
+        if called:
+            self.params_beside_call(beside, begin)
         for script, given in called:
             self.misspelt_params(script, given, begin)
         return state
+
+    def params_beside_call(self, fields: Mapping[str, Span], begin: Mark) -> None:
+        """Replaces the findings about fields of a call that are params of the sub-script, which
+        were written beside `params`: one finding for each."""
+        looked_up, _, before = begin
+        used = fields.keys() & self.uses.looked_up[looked_up:]
+        if not used or len(self.report) == before:
+            return
+        kept = []
+        for item in self.report[before:]:
+            name = item.finding.arguments[0] if item.finding.arguments else ""
+            if name in used and item.kind is unresolved_look_up.code:
+                continue
+            if name in used and item.span == fields[name]:
+                help = f"`{name}` is a param of the sub-script: write it inside `params:`"
+                item = replace(item, finding=replace(item.finding, help=help, edits=()))
+            kept.append(item)
+        self.report[before:] = kept
 
     def misspelt_params(self, script: Word, given: tuple[Entry, ...], begin: Mark) -> None:
         """Puts the look-ups of a sub-script that failed at the call that misspells the param, or
@@ -618,6 +644,19 @@ def _has_wrong_transitions(entries: Mapping[str, Entry], fields: Mapping[str, ob
     anywhere."""
     given = entries.get("transitions")
     return given is not None and not isinstance(given.value, Map) and not fields.get("transitions")
+
+
+def _with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
+    """The items of a list of states. A further state in one item, which is reported there, is also
+    an item of its own, so that it counts as a state."""
+    for item in items:
+        yield item
+        if not isinstance(item, Map) or len(item.entries) < 2:
+            continue
+        if isinstance(item.entries[0].value, Map):
+            for each in item.entries[1:]:
+                if isinstance(each.value, Map) and str(each.key.value) not in _FIELDS_OF_STATES:
+                    yield Map((each,), each.key.span)
 
 
 def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:

@@ -73,7 +73,7 @@ VARIABLES: dict[str, Field] = {
         _row("forever", "", "flag", "base StateMachine"),
         _row("on_error", "", "name", "base StateMachine Sequence"),
         _row("connector_outcome", "", "name", "Sequence"),
-        _row("it", "", "value", "Iterator"),
+        _row("it", "", "items", "Iterator"),
         _row("it_label", "", "name", "Iterator"),
         _row("exhausted_outcome", "", "name", "Iterator"),
         _row("loop_outcomes", "", "names", "Iterator"),

@@ -14,7 +14,7 @@ from smachac.diagnostics.spelling import guesser_of
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
-from smachac.frontend.fields import READERS, as_outcomes, listed_keys, name_of
+from smachac.frontend.fields import READERS, as_outcomes, listed_keys, name_of, wrong
 from smachac.frontend.missing_outcomes import outcomes_used
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
@@ -22,7 +22,7 @@ from smachac.frontend.script import Keys, State
 from smachac.frontend.sugar import NAMES, is_own, read_sugar
 from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable
 from smachac.ir.types import ANY, EXAMPLES
 
@@ -120,7 +120,7 @@ def _known_fields(
         row = schema.VARIABLES.get(key)
         if row is not None and (owner in row.owners or key in type_.variables):
             if key not in _READ_ELSEWHERE:
-                value = READERS[row.shape](entry.value, report)
+                value = _read(key, row.shape, entry, report)
                 if key in _FIELDS and (key != "name" or owner == "base"):
                     read[key] = value
         elif key in type_.variables:
@@ -151,6 +151,44 @@ def _known_fields(
     if strays:
         read["transitions"] = (*read.get("transitions", ()), *strays)
     return read, meant
+
+
+def _read(key: str, shape: str, entry: Entry, report: Report) -> object:
+    """The value of a field of the schema; one of the wrong shape, and a name that is none of the
+    choices of the field, are reported."""
+    if shape == "name" and not isinstance(entry.value, Scalar):
+        wrong(entry.value, "name", report, _one_name(key, entry))
+        return None
+    value = READERS[shape](entry.value, report)
+    if key in schema.FIELD_CHOICES and isinstance(value, Word) and value.text:
+        choices = schema.FIELD_CHOICES[key]
+        if value.text not in choices:
+            message = f"`{value.text}` is not a value of `{key}`"
+            help = did_you_mean(value.text, choices) or f"use one of {listed(choices)}"
+            arguments = ("choice", key, value.text)
+            report.append(wrong_shape(value.span, message, help, arguments=arguments))
+    return value
+
+
+def _one_name(key: str, entry: Entry) -> str | None:
+    """The help for a list or a mapping in place of one name: the only name in it, or where several
+    can be written."""
+    value = entry.value
+    trees = [each.value for each in value.entries] if isinstance(value, Map) else []
+    trees = [*value.items] if isinstance(value, Seq) else trees
+    words = [name_of(each) for each in trees]
+    if len(words) == 1 and words[0] is not None:
+        return f"write one name: `{entry.key.value}: {words[0].text}`"
+    return _SEVERAL.get(key)
+
+
+_SEVERAL = {
+    "initial": "write one state; to begin several at once, put them into a Concurrence",
+    "on_error": "write one state; errors of one state have their own `error:` in its `transitions`",
+    "robot": "write one robot; several robots in one world are a description with `parts:`",
+    "scene": "write one file, which has the bodies of all",
+}
+"""The help for a field with one name that has several."""
 
 
 def _outcomes(entries: Entries, type_: StateType) -> set[str]:
@@ -230,6 +268,8 @@ def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterato
         of_schema = owner != "base" and row is not None and owner in row.owners
         if entry is None or (of_schema and not (name in NAMES and is_own(name, type_))):
             continue
+        if row is not None and row.shape == "name" and not isinstance(entry.value, Scalar):
+            continue  # reported
         known = type_.variables.get(name)
         role = known.role if known is not None else ""
         called = name == "callbacks" or role in ("callbacks", "conditions")

@@ -111,7 +111,9 @@ def _read_interface(
     unclear = tree.get("io_keys") is not None  # reported; which keys are inputs is not known
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
-    sections = {key: as_map(fields[key], report) if key in fields else () for key in _SECTIONS}
+    sections = {
+        key: as_map(fields[key], report, "{}") if key in fields else () for key in _SECTIONS
+    }
     code = _code(sections["code"], report)
     parts = ("variables", "input_keys", "output_keys", "outcomes")
     given = frozenset(part for part in parts if _is_starred(sections[part]))

@@ -15,11 +15,11 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
-from smachac.frontend.fields import as_name, as_names, pairs_of, wrong
+from smachac.frontend.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
-from smachac.frontend.values import as_value
+from smachac.frontend.values import UNKNOWN, as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
-from smachac.ir.nodes import Outcome, StateType
+from smachac.ir.nodes import Expression, Outcome, StateType
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
@@ -42,6 +42,7 @@ MEANT_PARTS: Mapping[str, str] = dict.fromkeys(
 """Other words for a part of sugar, which are not its misspelt names."""
 
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
+_SENTENCE = re.compile(r"(?:for )?([A-Za-z_]\w*) in ([A-Za-z_]\w*)")
 _DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
 
 
@@ -80,7 +81,7 @@ def read_sugar(
         timeout = None
     if wrong_retry and used.isdisjoint({EXHAUSTED, PREEMPTED}.difference(own)):
         retry = None
-    if wrong_loop and used.isdisjoint({PREEMPTED}.difference(own)):
+    if wrong_loop and PREEMPTED not in {*own, *used}:
         for_each = None
     sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
     return _with_known_outcomes(sugar, own, led, report)
@@ -200,7 +201,9 @@ def _mapping_for(entry: Entry) -> str:
     value, text = entry.value, entry.value.span.text
     if entry.key.value == "for_each":
         items = text if isinstance(value, (Seq, Scalar)) and "\n" not in text and text else "KEY"
-        return f"write `for_each: {{item: NAME, in: {items}}}`"
+        sentence = _SENTENCE.fullmatch(text)
+        item, items = (sentence[1], sentence[2]) if sentence is not None else ("NAME", items)
+        return f"write `for_each: {{item: {item}, in: {items}}}`"
     number = value.value if isinstance(value, Scalar) and type(value.value) is int else 3
     return f"write `retry: {{on: [OUTCOME], max: {number}}}`, with the outcomes to try again after"
 
@@ -233,14 +236,18 @@ def _tries(tree: Tree, report: Report) -> int:
 def _for_each(entry: Entry, report: Report) -> ForEach | None:
     required = {"item": "NAME", "in": "items"}
     parts = _parts(entry, ("item", "in", "on"), required, report)
-    if parts is None or not {"item", "in"} <= parts.keys():
+    if parts is None:
+        sentence = _SENTENCE.fullmatch(entry.value.span.text)
+        if sentence is None:
+            return None
+        items = replace(as_value(entry.value), data=Expression(text=UNKNOWN, span=entry.value.span))
+        return ForEach(item=sentence[1], items=items, on=(), span=entry.key.span)
+    if not {"item", "in"} <= parts.keys():
         return None
     item = as_name(parts["item"], report)
     on = as_names(parts["on"], report) if "on" in parts else ()
-    items = parts["in"]
-    if isinstance(items, Map) or (isinstance(items, Scalar) and not isinstance(items.value, str)):
-        wrong(items, "items", report)
+    before = len(report)
+    items = as_items(parts["in"], report)
+    if item is None or len(report) > before:
         return None
-    if item is None:
-        return None
-    return ForEach(item=item.text, items=as_value(items), on=on, span=entry.key.span)
+    return ForEach(item=item.text, items=items, on=on, span=entry.key.span)

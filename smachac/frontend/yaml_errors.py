@@ -52,7 +52,7 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
         span = Span(source, *wide.span())
         return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
     stop = _stop(source.text, error)
-    readers = (_open_or_stray, _colon, _indentation, _value)
+    readers = (_space, _open_or_stray, _colon, _indentation, _value)
     faults = (reader(stop) for reader in readers)
     message = ", ".join(part for part in (stop.problem, stop.context) if part)
     unknown = _Fault(message or "this is not YAML", None, stop.at)
@@ -92,10 +92,37 @@ def _one_line(text: object) -> str:
     return " ".join(str(text).split()) if text else ""
 
 
+_SPACES = re.compile(r"[ \t-]*([^\S\x00-\x7f]|[\u200b-\u200d\u2060\ufeff])[^\S\n]*")
+"""The beginning of a line with a character that looks like a space, and is none for YAML."""
+
+_SPACE_NAMES = {
+    0xA0: "a no-break space",
+    0xFEFF: "a byte order mark",
+    0x200B: "a space of no width",
+}
+
+
+def _space(stop: _Stop) -> _Fault | None:
+    """A character in the indentation of the line, or of one of those above it, that is no space for
+    YAML, as copied text contains it."""
+    here = stop.at - len(stop.before)
+    for start in (here, *(start for start, _ in _lines_above(stop, 2))):
+        found = _SPACES.match(stop.text, start)
+        if found is not None:
+            code = ord(found[1])
+            name = _SPACE_NAMES.get(code, "a character that looks like a space")
+            message = f"there is {name} (U+{code:04X}) in the indentation"
+            return _Fault(message, "replace it with spaces", found.start(1), found.end(1))
+    return None
+
+
 _UNCLOSED = re.compile(r"expected ',' or '([]}])', but got '(.*)'")
 _FOUND = re.compile(
     r"expected (?:<block end>|the node content|'<document start>'), but found '(.)'"
 )
+_VALUES_BESIDE = re.compile(r": [^\s,:{}\[\]]+ ([^\W\d]\w*)$")
+"""A value and a key in one line of a mapping in braces, without a comma between them."""
+
 _OPENING = {"]": "[", "}": "{"}
 _TOKENS = {"<stream end>": "the end of the text", "<scalar>": "text"}
 
@@ -111,6 +138,9 @@ def _open_or_stray(stop: _Stop) -> _Fault | None:
         if token == "<stream end>":
             message = f"this {kind} is not closed: there is no `{end}` up to the end of the text"
             return _Fault(message, help, stop.first)
+        beside = _VALUES_BESIDE.search(stop.before)
+        if beside is not None and token in (":", "<value>"):
+            help = f"write a `,` before `{beside[1]}`, or put text that contains `:` in quotes"
         if token == "<scalar>":
             help = f"write a `,` between two values, or close the {kind} with `{end}`"
         message = f"expected `,` or `{end}`, found {found}"

@@ -285,6 +285,25 @@ def _deepest_bracket(text: str) -> int:
     return max(depths, default=0)
 
 
+MOST_NAMES_SHOWN = 6
+"""The most names of a key that a help shows."""
+
+
+def _jinja_look_up(items: list[Tree], span: Span) -> Seq | None:
+    """The look-up that is meant by `{{ name }}` or `{{ params.name }}`, a mapping in a mapping."""
+    if len(items) != 2 or not isinstance(items[0], Map) or items[1].span.text:
+        return None
+    entries = items[0].entries
+    if len(entries) != 1 or entries[0].value.span.text:
+        return None
+    key = entries[0].key
+    name = str(key.value).removeprefix("params.")
+    if not key.plain or not name.isidentifier():
+        return None
+    word = Scalar(name, True, key.source, key.end - len(name), key.end)
+    return Seq((Scalar("params", True, *span), word), span)
+
+
 class _Open:
     """A collection that is being built. `before` is the number of nodes before it, `around` are the
     items of the collection around it."""
@@ -366,6 +385,7 @@ class _Builder:
                         arguments=("document",),
                     )
                 )
+                self.root = None  # what the rest of the text defines would be reported as missing
                 break
 
     def _scalar(self, event: Any) -> None:
@@ -421,8 +441,17 @@ class _Builder:
         done = self.stack.pop()
         if done.flow:
             self.end = event.end_mark.index
+        span = Span(self.source, done.start, self.end)
+        look_up = _jinja_look_up(self.items, span) if done.flow else None
+        if look_up is not None:
+            name = look_up.items[1].span.text
+            help = f"a param is looked up with `[params, {name}]`"
+            message = "`{{ }}` is for templates, not for scripts"
+            self.report.append(wrong_shape(span, message, help, arguments=("braces", name)))
+            self._close(done, look_up)
+            return
         entries = self._entries(self.items, done.flow)
-        self._close(done, Map(entries, Span(self.source, done.start, self.end)))
+        self._close(done, Map(entries, span))
 
     def _close_list(self, event: Any) -> None:
         done = self.stack.pop()
@@ -480,9 +509,7 @@ class _Builder:
         pairs = iter(items)
         for key, value in zip(pairs, pairs, strict=True):
             if not isinstance(key, Scalar):
-                message = "a key must be a name, not a list or a mapping"
-                help = "write a name before the colon"
-                self.report.append(wrong_shape(key.span, message, help, arguments=("key",)))
+                entries += self._wrong_key(key, value)
                 continue
             if key.value == "<<" and key.plain:
                 merged.extend(self._merge(value))
@@ -502,6 +529,21 @@ class _Builder:
                 first[_identity(entry.key)] = entry.key
                 entries.append(entry)
         return tuple(entries)
+
+    def _wrong_key(self, key: Tree, value: Tree) -> Iterator[Entry]:
+        """SM004 for a key that is a list or a mapping; the entries that a list of names stands
+        for, each with the value."""
+        names = key.items if isinstance(key, Seq) else ()
+        meant = [name for name in names if isinstance(name, Scalar) and name.value is not None]
+        help = "write a name before the colon"
+        if meant and len(meant) == len(names) <= MOST_NAMES_SHOWN:
+            text = value.span.text if isinstance(value, Scalar) and value.span.text else "..."
+            rows = ", ".join(f"{name.span.text}: {text}" for name in meant)
+            help = f"write an entry for each name: `{rows}`"
+        message = "a key must be a name, not a list or a mapping"
+        self.report.append(wrong_shape(key.span, message, help, arguments=("key",)))
+        for name in meant:
+            yield Entry(name, value)
 
     def _separated(self, key: Scalar, value: Scalar) -> tuple[Scalar, Scalar]:
         """The key and the value that are meant by `{key:value}`, which YAML reads as a key without

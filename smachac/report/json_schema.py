@@ -49,6 +49,7 @@ SHAPES: Mapping[str, Schema] = {
     "text": {"type": ["string", "number", "boolean", "array"]},
     "flag": {"type": "boolean"},
     "value": {},
+    "items": {"type": ["array", "string"]},
     "map": {"type": "object"},
     "pairs": {"type": "object", "additionalProperties": {"$ref": "#/definitions/name"}},
     "rules": {"type": "object", "additionalProperties": {"$ref": "#/definitions/pairs"}},

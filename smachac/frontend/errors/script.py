@@ -23,6 +23,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.diagnostics.wording import listed
+from smachac.frontend.schema import VARIABLES
 
 
 class Owner(NamedTuple):
@@ -217,6 +218,8 @@ def unknown_variable(
     effect = "SMACH or FlexBE has such a field, smachac has not" if foreign else None
     if word.text in ELSEWHERE and not sure:
         effect, foreign = ELSEWHERE[word.text]
+    if not (sure or foreign) and owner.part == "variable":
+        foreign = _misplaced(word.text)
     return Finding(
         span=word.span,
         message=f"`{word.text}` is not a {owner.part} of {owner.text}",
@@ -226,6 +229,18 @@ def unknown_variable(
         severity=severity,
         effect=effect,
     )
+
+
+def _misplaced(word: str) -> str | None:
+    """The help for a variable of the language that only other owners have."""
+    row = VARIABLES.get(word)
+    if row is None or not row.owners or "state" in row.owners:
+        return None
+    if row.owners == {"base"}:
+        return f"write it at the top of the script: no state has `{word}`"
+    owners = [f"`{owner}`" for owner in sorted(row.owners - {"base"})]
+    owners += ["the script itself"] if "base" in row.owners else []
+    return f"remove it here, or move it: only {' and '.join(owners)} can have `{word}`"
 
 
 def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]) -> str | None:
