@@ -61,6 +61,15 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
     return [(step, guess(step.outcome)) for step in unknown]
 
 
+CATCH_ALL = frozenset(["*", "_", "any", "default", "else", "other", "others", "otherwise"])
+"""Words that other languages use for all cases that are not listed."""
+
+
+def is_catch_all(step: Transition) -> bool:
+    """Whether a transition for an unknown outcome is meant for all outcomes without one."""
+    return step.outcome in CATCH_ALL
+
+
 def corrected(container: Linear) -> Linear:
     """A container with misspelt targets and outcomes corrected, where a near name exists.
 

@@ -16,6 +16,7 @@ from smachac.analysis.outcome_rules import (
 )
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.outcomes import inverted_rules
 from smachac.checks.rule import rule
 from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -94,7 +95,10 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     children = {child.name: child for child in container.children}
     guess = guesser(children)
     states = f"use one of its states: {listed(children)}" if children else "add states to it"
+    inverted = inverted_rules(container)
     for entry in container.rules:
+        if entry in inverted:  # SM103 reports them
+            continue
         for word in entry.ignored:
             if word.text not in children:
                 yield Finding(
@@ -240,18 +244,22 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     if any(is_open(child) for child in container.children):
         return
     endings = [name for child in container.children for name in outcome_names(child)]
-    for name, _ in container.final_map if endings else ():
-        if name == container.exhausted_outcome or name in endings:
+    known = [*endings, container.exhausted_outcome]
+    spans = container.final_spans or (container.span,) * len(container.final_map)
+    for (name, result), span in zip(container.final_map if endings else (), spans, strict=False):
+        if name in known:
             continue
+        inverted = result in known and name in outcome_names(container)
+        turned = f"the outcome that is renamed comes first: `{result}: {name}`"
         yield Finding(
-            span=container.span,
+            span=span,
             message=f"the final outcome map of `{container.name}` renames `{name}`, but its state"
             " never ends with that outcome",
             arguments=(name,),
-            help=did_you_mean(guesser(endings)(name))
-            or f"use one of the outcomes of its state: {listed(endings)}",
+            help=(turned if inverted else did_you_mean(guesser(known)(name)))
+            or f"use one of the outcomes with which it can end: {listed(known)}",
             effect="the entry has no effect",
-            related=calls(container, container.span),
+            related=calls(container, span),
             node=path,
         )
 

@@ -10,6 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
     children_names,
+    is_catch_all,
     is_open,
     leads_somewhere,
     places_of,
@@ -218,6 +219,16 @@ def _unknown_outcomes(path: str, container: Container) -> Iterator[Finding]:
             yield from unknown_endings(f"{path}/{child.name}", child)
 
 
+def _catch_all(child: Node, step: Transition) -> str | None:
+    """The help for a transition that is meant for all outcomes without one."""
+    handled = {each.outcome for each in child.transitions}
+    rest = [name for name in outcome_names(child) if name not in handled]
+    if not is_catch_all(step) or not rest:
+        return None
+    rows = ", ".join(f"{name}: {step.target}" for name in rest)
+    return f"each outcome has its own transition: write `{rows}`"
+
+
 def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     unknown = unknown_outcomes(child)
     if not unknown:
@@ -236,7 +247,7 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
             span=step.span,
             message=message,
             arguments=(own_name(child, step.span), step.outcome),
-            help=retried or did_you_mean(meant) or known,
+            help=retried or _catch_all(child, step) or did_you_mean(meant) or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),

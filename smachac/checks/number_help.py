@@ -22,6 +22,9 @@ _GROUP = re.compile(r"\[([^\[\]]*)\]")
 def number_meant(text: str, wanted: Type) -> str | None:
     """The help for a text where a number is due; None if the text looks like no number."""
     unit, text = unit_of(wanted), text.strip()
+    value, hash_sign, comment = text.partition("#")
+    if hash_sign and re.fullmatch(_NUMBER, value):
+        return f"a comment needs a space before its `#`: `{value} #{comment}`"
     found = _COMMA.fullmatch(text)
     if found is not None:
         return f"a decimal comma? write `{found[1]}.{found[2]}`"

@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, places_of, unknown_outcomes
+from smachac.analysis.control_flow import Linear, is_catch_all, places_of, unknown_outcomes
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Node, Outcome, StateMachine, Transition
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Node,
+    Outcome,
+    OutcomeRule,
+    StateMachine,
+    Transition,
+)
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import outcome_names
 
@@ -77,8 +85,12 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
         results.append(("`default_outcome` is", container.default_outcome, container.default_span))
     declared = frozenset(outcome_names(container))
     guess = places_of(container)
+    inverted = inverted_rules(container)
+    if inverted:
+        yield _inverted(path, container, inverted)
+    reported = {entry.outcome for entry in inverted}
     for source, name, span in results:
-        if name not in declared:
+        if name not in declared and name not in reported:
             meant = guess(name)
             yield Finding(
                 span=span,
@@ -89,6 +101,42 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
                 related=calls(container, span),
                 node=path,
             )
+
+
+def inverted_rules(container: Concurrence) -> tuple[OutcomeRule, ...]:
+    """The rules `STATE: {outcome of the state: outcome of the concurrence}` of an outcome map, in
+    which outcomes and states have changed places."""
+    declared = frozenset(outcome_names(container))
+    children = {child.name: child for child in container.children}
+
+    def is_inverted(entry: OutcomeRule) -> bool:
+        child = children.get(entry.outcome)
+        return (
+            child is not None
+            and entry.outcome not in declared
+            and bool(entry.when)
+            and all(part.child not in children and part.outcome in declared for part in entry.when)
+        )
+
+    return tuple(entry for entry in container.rules if is_inverted(entry))
+
+
+def _inverted(path: str, container: Concurrence, inverted: tuple[OutcomeRule, ...]) -> Finding:
+    first = inverted[0]
+    rules: dict[str, list[str]] = {}
+    for entry in inverted:
+        for part in entry.when:
+            rules.setdefault(part.outcome, []).append(f"{entry.outcome}: {part.child}")
+    shown = ", ".join(f"{name}: {{{', '.join(parts)}}}" for name, parts in rules.items())
+    return Finding(
+        span=first.span,
+        message=f"the outcome map of `{container.name}` begins a rule with its state"
+        f" `{first.outcome}`, not with one of its outcomes",
+        arguments=(own_name(container, first.span), first.outcome),
+        help=f"the outcome comes first: `outcome_map: {{{shown}}}`",
+        related=calls(container, first.span),
+        node=path,
+    )
 
 
 def endings(container: nodes.Iterator) -> Iterator[tuple[str, str, str]]:
@@ -171,7 +219,10 @@ def unhandled(child: Node) -> list[Outcome]:
     handled = {step.outcome for step in child.transitions}
     if all(outcome.name in handled for outcome in child.outcomes):
         return []
-    handled.update(meant for _, meant in unknown_outcomes(child) if meant)
+    unknown = unknown_outcomes(child)
+    if any(is_catch_all(step) for step, _ in unknown):
+        return []
+    handled.update(meant for _, meant in unknown if meant)
     return [outcome for outcome in child.outcomes if outcome.name not in handled]
 
 

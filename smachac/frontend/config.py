@@ -38,6 +38,9 @@ LEVELS: Mapping[str, Severity | None] = {
 """The severities that a project file may set."""
 
 
+_OTHER_WORDS = dict.fromkeys(("ignore", "none", "disable", "disabled", "false", "never"), "off")
+"""Words of other tools for a severity."""
+
 MOST_DOTS = 200
 """The most dots of a line, and so the most parts of a key."""
 
@@ -87,13 +90,20 @@ def read_project(
         report.append(_not_toml(source, str(error)))
         return Project(readable=False)
     settings = data if path.name == "smachac.toml" else _tool(data)
+    if settings is None and _looks_like_settings(data.get("smachac")):
+        message = "`[smachac]` of a pyproject.toml is not read"
+        _wrong(source, "smachac", message, "write `[tool.smachac]`", report, ("table", "smachac"))
     if not isinstance(settings, dict):
         return None
     folders: dict[str, tuple[Path, ...]] = {}
     texts: dict[str, tuple[str, ...]] = {}
     policy, ros = Policy(), DEFAULT_ROS
     for key, value in settings.items():
-        if key not in SETTINGS:
+        if key == "tool" and path.name == "smachac.toml" and _tool(data) is not None:
+            message = "`[tool.smachac]` is for pyproject.toml; all of smachac.toml is for smachac"
+            help = "write its settings without a table, and `[severity]` for the severities"
+            _wrong(source, key, message, help, report, ("setting", key))
+        elif key not in SETTINGS:
             message = f"`{key}` is not a setting of smachac"
             _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
         elif key == "severity":
@@ -128,6 +138,13 @@ def read_project(
     )
 
 
+def _looks_like_settings(table: object) -> bool:
+    return isinstance(table, dict) and not table.keys().isdisjoint(SETTINGS)
+
+
+_WITHOUT_QUOTES = re.compile(r"[ \t]*(?:\"?[\w.-]+\"?)[ \t]*=[ \t]*([^\W\d][\w./-]*)[ \t]*(?:#|$)")
+"""A setting with a text that has no quotes."""
+
 _YAML_LINE = re.compile(r"[ \t]*([\w-]+)[ \t]*(:)(?=[ \t]|$)")
 _BRACKETS = {"[": "]", "{": "}"}
 _PART = re.compile(r""" "(?:\\.|[^"\\\n])*" | '[^'\n]*' | \#[^\n]* | [][{}] """, re.VERBOSE)
@@ -158,6 +175,10 @@ def _not_toml(source: Source, error: str) -> Diagnostic:
         if found is not None:
             span = Span(source, start + found.start(2), start + found.end(2))
             message, help = f"`:` follows `{found[1]}`", f"TOML writes `{found[1]} = [...]`"
+        bare = _WITHOUT_QUOTES.match(source.line(line))
+        if bare is not None and start + bare.start(1) <= at <= start + bare.end(1):
+            span = Span(source, start + bare.start(1), start + bare.end(1))
+            message, help = f"`{bare[1]}` is a text without quotes", f'write `"{bare[1]}"`'
     at = span.start if position is not None else len(source.text)
     opened = _open_bracket(source.text, at)
     if opened is not None and (message.startswith("Unclosed") or _NEXT.match(source.text, at)):
@@ -204,6 +225,8 @@ def _severities(
             message = f"`{word}` is not a severity"
             arguments = ("severity", code, str(word))
             help = _near(str(word), LEVELS)
+            if word in _OTHER_WORDS:
+                help = f"did you mean `{_OTHER_WORDS[word]}`?"
             _wrong(source, code, message, help, report, arguments, at_value=True)
         elif codes and code in codes and codes[code].firm and word != "error":
             help = "remove the line: no program can be generated with this fault"

@@ -79,7 +79,7 @@ def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> No
 
 
 def _mapping_help(tree: Seq, value: str) -> str | None:
-    """How a list that stands in place of a mapping is written, if its items show that."""
+    """The help for a list in place of a mapping: the mapping of its mappings, or of its names."""
     entries = _entries_meant(tree)
     pairs = []
     for entry in entries:
@@ -92,7 +92,9 @@ def _mapping_help(tree: Seq, value: str) -> str | None:
     shown = ", ".join(pairs)
     if not pairs or len(pairs) > _MOST_SHOWN or len(pairs) < len(tree.items) or "\n" in shown:
         return None
-    return f"write it as `{{{shown}}}`"
+    if all(is_known_wrong(entry.value) for entry in entries) and entries and value == "...":
+        return f"write a mapping with a value for each name: `{{{shown}}}`"
+    return f"write one mapping: `{{{shown}}}`"
 
 
 _MOST_SHOWN = 6
@@ -100,13 +102,13 @@ _MOST_SHOWN = 6
 
 
 def _entries_meant(tree: Seq) -> tuple[Entry, ...]:
-    """The entries of a list in place of a mapping: its items of one entry each, and its names
-    without values. Their values are `known_wrong`."""
+    """The entries of a list in place of a mapping: its items of one entry each, and its names,
+    whose values are `known_wrong`."""
     entries: list[Entry] = []
     for item in tree.items:
         if isinstance(item, Map) and len(item.entries) == 1:
             entries += item.entries
-        elif isinstance(item, Scalar) and str(item.value).isidentifier() and item.plain:
+        elif isinstance(item, Scalar) and item.plain and str(item.value).isidentifier():
             entries.append(Entry(item, known_wrong(item.span)))
     return tuple(entries)
 
@@ -217,10 +219,10 @@ def as_outcome(word: Word, tree: Tree, report: Report, *more: str) -> Outcome:
     )
 
 
-def as_map(tree: Tree, report: Report, value: str = "VALUE") -> tuple[Entry, ...]:
+def as_map(tree: Tree, report: Report, value: str = "...") -> tuple[Entry, ...]:
     """A mapping of names to anything; a null block (`userdata:` with nothing) is an error. Of a
-    list, which is one too, the entries are those that are probably meant; `value` stands in the help
-    for the value of a name alone."""
+    list, which is one too, the entries are those that are probably meant. `value` stands in the
+    help for the value of a name alone."""
     if not isinstance(tree, Map):
         nothing = isinstance(tree, Scalar) and tree.value is None
         help = "write `{}`, or remove the key" if nothing else None
@@ -228,23 +230,9 @@ def as_map(tree: Tree, report: Report, value: str = "VALUE") -> tuple[Entry, ...
             help = _mapping_help(tree, value)
         if isinstance(tree, Scalar) and tree.plain and JOINED.fullmatch(str(tree.value)):
             help = spaced(str(tree.value))
-        if isinstance(tree, Seq):
-            help = _one_mapping(tree)
         wrong(tree, "map", report, help)
         return _entries_meant(tree) if isinstance(tree, Seq) else ()
     return tuple([entry for entry in tree.entries if _names(entry.key, report)])
-
-
-def _one_mapping(tree: Seq) -> str | None:
-    """The help for a list in place of a mapping: the mapping of its names, or of its mappings."""
-    inner = [entry for item in tree.items if isinstance(item, Map) for entry in item.entries]
-    if inner and all(isinstance(entry.value, Scalar) for entry in inner):
-        parts = [f"{entry.key.value}: {entry.value.span.text}" for entry in inner]
-        return f"write one mapping: `{{{', '.join(parts)}}}`"
-    names = [item.value for item in tree.items if isinstance(item, Scalar)]
-    if names and all(isinstance(name, str) for name in names):
-        return f"write a mapping with a value for each name: `{{{names[0]}: ...}}`"
-    return None
 
 
 def _names(key: Scalar, report: Report) -> bool:
@@ -260,6 +248,8 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
     becomes the empty name, as a look-up that fails does; so a key has a value all the same."""
     pairs = []
     entries = tree.entries if isinstance(tree, Map) else as_map(tree, report)
+    if isinstance(tree, Seq):  # it is not known what names alone mean
+        entries = tuple(entry for entry in entries if not is_known_wrong(entry.value))
     for entry in entries:
         key = as_name(entry.key, report)
         if key is not None:

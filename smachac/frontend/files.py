@@ -72,7 +72,12 @@ def _not_text(path: Path, error: UnicodeDecodeError) -> Diagnostic:
     span = Span(Source(str(path), text), len(text), len(text))
     byte = error.object[error.start]
     message = f"the byte 0x{byte:02x} is not valid in {error.encoding.upper()}"
-    return unreadable_file(span, message, arguments=("byte", f"{byte:02x}"))
+    help = "save the file as UTF-8"
+    if error.object[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        help = f"{help}: it seems to be UTF-16"
+    elif byte >= 0xA0:
+        help = f"{help}: it seems to be Latin-1, with `{chr(byte)}` here"
+    return unreadable_file(span, message, help, arguments=("byte", f"{byte:02x}"))
 
 
 class TooBigError(Exception):

@@ -444,6 +444,7 @@ def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) 
         loop_outcomes=tuple(loops),
         loop_spans=() if breaks else tuple(word.span for word in state.loop_outcomes),
         final_map=tuple(final.items()),
+        final_spans=tuple({key.text: key.span for key, _ in state.final_outcome_map}.values()),
     )
 
 

@@ -236,7 +236,8 @@ class _Resolver:
                 continue
             flat = is_flat(entry.value)
             if flat and key not in TYPED:
-                entries[key] = entry
+                is_look_up = scope and isinstance(entry.value, Seq)
+                entries[key] = self.fill(key, entry, scope, flat=True) if is_look_up else entry
                 continue
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)

@@ -12,7 +12,7 @@ from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import NOWHERE, Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.data_files import plain, span_at
-from smachac.frontend.errors.references import bad_robot
+from smachac.frontend.errors.references import bad_robot, package_help
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
 from smachac.frontend.urdf import XACRO, UrdfError, read_joints, read_urdf
@@ -269,9 +269,8 @@ class _Reader:
         text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)
         try:
             if text is None:
-                raise DataError(
-                    f"the file `{data.urdf}` was not found", ("urdf",), "put it beside this file"
-                )
+                help = package_help(data.urdf) or "put it beside this file"
+                raise DataError(f"the file `{data.urdf}` was not found", ("urdf",), help)
             known, turning, links = read_joints(text)
             description.check(data, known, links)
             for limb in data.limbs:

@@ -30,6 +30,13 @@ def sub_script_state(
         report.append(bad_sub_script(at, message, call.span, help, arguments=(fault,)))
 
     start = Span(tree.span.source, tree.span.start, tree.span.start + 1)
+    if isinstance(tree, Map) and tree.get("states") is not None:
+        own = tree.get("name")
+        word = own.value.span.text.upper() if own is not None else "NAME"
+        help = f"write `- {word}:` first, and indented below it `template: StateMachine`"
+        message = "a sub-script must be a list with one state; this is a machine"
+        refuse(start, "shape", message, f"{help} and the rest without `name:`")
+        return None
     if not isinstance(tree, Seq):
         refuse(start, "shape", f"a sub-script must be a list with one state, not {kind_of(tree)}")
         return None

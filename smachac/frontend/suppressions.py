@@ -151,9 +151,21 @@ def suppress(
     given = [fit for text in texts for fit in suppressions_in(text, report, codes, parse)]
     rest, used = apply_suppressions(report, given)
     unused = [fit for fit in given if complete and fit not in used]
-    rest += unused_allowances(Word(fit.code, fit.span) for fit in unused if fit.span.source is main)
+    own = [fit for fit in unused if fit.span.source is main]
+    words = [Word(fit.code, fit.span) for fit in own]
+    rest += unused_allowances(words, _codes_instead(own, rest) if own else {})
     others = tuple(fit for fit in unused if fit.span.source is not main)
     return Suppressed(rest, tuple(given), others)
+
+
+def _codes_instead(unused: Iterable[Suppression], report: Report) -> dict[Span, str]:
+    """The code of the only finding on the line that a suppression without effect applies to, which
+    is probably meant, by the place of the suppression."""
+    codes: dict[tuple[Source, int], set[str]] = {}
+    for item in report:
+        codes.setdefault((item.span.source, item.span.line), set()).add(item.code)
+    found = ((fit, codes.get((fit.span.source, fit.line), set())) for fit in unused)
+    return {fit.span: next(iter(here)) for fit, here in found if len(here) == 1}
 
 
 def apply_suppressions(

@@ -534,7 +534,7 @@ class _Builder:
         """SM004 for a key that is a list or a mapping; the entries that a list of names stands
         for, each with the value."""
         names = key.items if isinstance(key, Seq) else ()
-        meant = [name for name in names if isinstance(name, Scalar) and name.value is not None]
+        meant = [name for name in names if isinstance(name, Scalar) and isinstance(name.value, str)]
         help = "write a name before the colon"
         if meant and len(meant) == len(names) <= MOST_NAMES_SHOWN:
             text = value.span.text if isinstance(value, Scalar) and value.span.text else "..."

@@ -335,7 +335,8 @@ class Iterator(_Container):
     The items are the value `items`, or the userdata of the container in `items_key`; `items_span`
     is their place. Outcomes in `loop_outcomes` continue with the next item; other outcomes end the
     iteration. The last outcome, or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
-    `loop_spans` are the places of `loop_outcomes` in the script; empty if it does not name them.
+    `loop_spans` and `final_spans` are the places of `loop_outcomes` and of the entries of
+    `final_map` in the script; empty if it does not name them.
     """
 
     keyword: ClassVar[str] = "iterator"
@@ -347,6 +348,7 @@ class Iterator(_Container):
     loop_outcomes: tuple[str, ...] = ()
     loop_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     final_map: tuple[tuple[str, str], ...] = ()
+    final_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
 
 
 Container: TypeAlias = StateMachine | Sequence | Concurrence | Iterator

@@ -7,6 +7,7 @@ A place is the path of keys and indices from the outermost value: `("arms", "lef
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -173,8 +174,23 @@ def text(data: Any, place: Place) -> str:
 def number(data: Any, place: Place) -> float:
     """A finite number."""
     if isinstance(data, bool) or not isinstance(data, int | float) or not math.isfinite(data):
-        raise DataError(f"a number is expected, not {shown(data)}", place)
+        raise DataError(f"a number is expected, not {shown(data)}", place, _number_meant(data))
     return float(data)
+
+
+_WITH_UNIT = re.compile(r"\s*([-+]?\d*\.?\d+)\s*(mm|cm|m|kg|g|deg|rad|N|°)\s*")
+_TO_SI = {"mm": 1e-3, "cm": 1e-2, "g": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
+
+
+def _number_meant(data: Any) -> str | None:
+    """The help for a number that is written with its unit, or with a decimal comma."""
+    found = _WITH_UNIT.fullmatch(data) if isinstance(data, str) and len(data) < 40 else None
+    if found is not None:
+        meant = float(found[1]) * _TO_SI.get(found[2], 1.0)
+        return f"write the number without its unit: `{meant:.10g}`"
+    if isinstance(data, str) and re.fullmatch(r"-?\d{1,9},\d{1,9}", data):
+        return f"a decimal comma? write `{data.replace(',', '.')}`"
+    return None
 
 
 @shape({"type": "number", "exclusiveMinimum": 0})
@@ -307,7 +323,8 @@ def named(
     @shape(schema)
     def read(data: Any, place: Place) -> tuple[tuple[str, T], ...]:
         if not isinstance(data, Mapping) or len(data) < least:
-            raise DataError(f"a mapping of names is expected, not {shown(data)}", place)
+            found = "a list" if isinstance(data, list | tuple) else shown(data)
+            raise DataError(f"a mapping of names is expected, not {found}", place, _by_name(data))
         return tuple(pair(*entry, place) for entry in data.items())
 
     def pair(name: Any, value: Any, place: Place) -> tuple[str, T]:
@@ -318,6 +335,18 @@ def named(
         return name, item(value, below)
 
     return read
+
+
+def _by_name(data: Any) -> str | None:
+    """The help for a list of named values in place of a mapping."""
+    if not isinstance(data, list | tuple) or not data or not isinstance(data[0], Mapping):
+        return None
+    first = data[0]
+    name = first.get("name") if "name" in first else next(iter(first), None)
+    if not isinstance(name, str):
+        return None
+    without = ", without `name:` inside" if "name" in first else ""
+    return f"write `{name}:` with its keys below it, without the `-`{without}"
 
 
 def values(shape: Shape[tuple[tuple[str, T], ...]]) -> Shape[tuple[T, ...]]:

@@ -72,6 +72,8 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
 
 
 def _names_used(_: str, node: Node, types: Mapping[str, StateType]) -> Iterator[_Use]:
+    if isinstance(node, Leaf) and not node.type:
+        return  # SM005: it is not known what its fields are
     for code in _codes(node, types):
         yield from _uses(node, code)
 

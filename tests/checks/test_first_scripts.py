@@ -4,10 +4,16 @@ shows what to write."""
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 
-from smachac.diagnostics.diagnostic import Severity
+from smachac.diagnostics.diagnostic import Report, Severity
+from smachac.diagnostics.source import Source
+from smachac.driver import CODES
+from smachac.frontend.config import read_project
+from smachac.frontend.errors.references import package_help
+from smachac.robots.fields import DataError, named, number
 from tests.trust.project_text import analysed
 
 PATROL = """\
@@ -73,7 +79,7 @@ MAPPINGS = [
         "{found: GRAB, nothing: aborted}",
         "[found: GRAB, nothing: aborted]",
         "SM004",
-        "write it as `{found: GRAB, nothing: aborted}`",
+        "write one mapping: `{found: GRAB, nothing: aborted}`",
     ),
     (
         "{found: GRAB, nothing: aborted}",
@@ -81,7 +87,7 @@ MAPPINGS = [
         "SM004",
         "write an entry for each name: `nothing: aborted`",
     ),
-    ("{blocks: [red, green]}", "[blocks]", "SM004", "write it as `{blocks: VALUE}`"),
+    ("{blocks: [red, green]}", "[blocks]", "SM004", "with a value for each name: `{blocks: ...}`"),
     (
         "{held: BOTH, slipped: LET_GO}",
         "{held: BOTH slipped: LET_GO}",
@@ -153,6 +159,149 @@ def test_a_slip_is_one_finding_that_shows_what_to_write(
     assert help in (found[2] or "")
 
 
+PLACES = [
+    (
+        "slipped: LET_GO}",
+        "default: LET_GO}",
+        "SM102 default",
+        "each outcome has its own transition: write `slipped: LET_GO`",
+    ),
+    (
+        "{ready: {LIGHT: done, DRIVE: done}}",
+        "{LIGHT: {done: ready}, DRIVE: {done: ready}}",
+        "SM103 LIGHT",
+        "the outcome comes first: `outcome_map: {ready: {LIGHT: done, DRIVE: done}}`",
+    ),
+    (
+        "{placed: counted, put: aborted}",
+        "{counted: placed, put: aborted}",
+        "SM403 counted",
+        "the outcome that is renamed comes first: `placed: counted`",
+    ),
+    (
+        "{placed: counted, put: aborted}",
+        "{placed: counted, put: aborted, lost: aborted}",
+        "SM403 lost",
+        "with which it can end: `aborted`, `placed`, `put`",
+    ),
+    (
+        "  - LET_GO:",
+        "  - PARK:  # smachac: allow SM210 later\n      template: ScriptedState\n"
+        "      outcomes: [open]\n      transitions: {open: aborted}\n  - LET_GO:",
+        "SM021 SM210",
+        "on this line SM201 occurs: correct its fault, or write `allow SM201`",
+    ),
+    (
+        "      template: ScriptedState\n      outcomes: [held, slipped]",
+        "      class: flexbe_states.grab.Grab\n      outcomes: [held, slipped]",
+        "SM005 class",
+        "write `template:` in place of `class:`",
+    ),
+]
+
+
+@pytest.mark.parametrize(("before", "after", "place", "help"), PLACES)
+def test_a_finding_of_a_rule_is_at_the_slip(before: str, after: str, place: str, help: str) -> None:
+    assert PATROL.count(before) == 1
+    found = reported({"main.yml": PATROL.replace(before, after)})
+    (mine,) = [each for each in found if f"{each[0]} {each[1]}" == place]
+    assert help in (mine[2] or "")
+    assert "SM019" not in [code for code, _, _ in found]
+
+
+def test_a_transition_for_all_other_outcomes_is_one_finding() -> None:
+    main = PATROL.replace("slipped: LET_GO}", "default: LET_GO}")
+    assert [code for code, _, _ in reported({"main.yml": main})] == ["SM102"]
+
+
+def test_an_inverted_outcome_map_is_one_finding() -> None:
+    inverted = "{LIGHT: {done: ready}, DRIVE: {done: ready}}"
+    main = PATROL.replace("{ready: {LIGHT: done, DRIVE: done}}", inverted)
+    assert [code for code, _, _ in reported({"main.yml": main})] == ["SM103"]
+
+
+def test_a_comment_beside_a_number() -> None:
+    main = PATROL.replace(
+        "template: ScriptedState\n      outcomes: [held, slipped]",
+        "template: SleepState\n      time: 0.5# short",
+    )
+    found = {code: help for code, _, help in reported({"main.yml": main})}
+    assert found["SM304"] == "a comment needs a space before its `#`: `0.5 # short`"
+
+
+SETTINGS = [
+    (
+        "smachac.toml",
+        '[tool.smachac]\nscripts = ["parts"]\n',
+        "write its settings without a table, and `[severity]` for the severities",
+    ),
+    ("pyproject.toml", '[smachac]\nscripts = ["parts"]\n', "write `[tool.smachac]`"),
+    ("smachac.toml", "[severity]\nSM105 = off\n", 'write `"off"`'),
+    ("smachac.toml", '[severity]\nSM105 = "ignore"\n', "did you mean `off`?"),
+]
+
+
+@pytest.mark.parametrize(("name", "text", "help"), SETTINGS)
+def test_a_slip_in_the_settings(name: str, text: str, help: str) -> None:
+    report: Report = []
+    read_project(Source(name, text), Path(name), report, CODES)
+    assert [(item.code, item.finding.help) for item in report] == [("SM007", help)]
+
+
+def test_another_tool_may_have_a_table_of_that_name() -> None:
+    report: Report = []
+    text = '[smachac]\nline = 3\n[project]\nname = "cell"\n'
+    assert read_project(Source("pyproject.toml", text), Path("pyproject.toml"), report) is None
+    assert report == []
+
+
+DATA = [
+    ([{"table": {}}], "write `table:` with its keys below it, without the `-`"),
+    (
+        [{"name": "arm", "home": []}],
+        "write `arm:` with its keys below it, without the `-`, without `name:` inside",
+    ),
+    (["arm"], None),
+]
+
+
+@pytest.mark.parametrize(("data", "help"), DATA)
+def test_a_list_in_place_of_named_values(data: object, help: str | None) -> None:
+    with pytest.raises(DataError) as raised:
+        named(number)(data, ())
+    assert raised.value.help == help
+
+
+NUMBERS = [
+    ("0.2kg", "write the number without its unit: `0.2`"),
+    ("40 mm", "write the number without its unit: `0.04`"),
+    ("90deg", "write the number without its unit: `1.570796327`"),
+    ("0,5", "a decimal comma? write `0.5`"),
+    ("heavy", None),
+]
+
+
+@pytest.mark.parametrize(("data", "help"), NUMBERS)
+def test_a_number_with_its_unit(data: str, help: str | None) -> None:
+    with pytest.raises(DataError) as raised:
+        number(data, ())
+    assert raised.value.help == help
+
+
+@pytest.mark.parametrize(
+    ("path", "help"),
+    [
+        (
+            "package://arm/urdf/arm.urdf",
+            "`package://` is not replaced here: write the path from this file, such as `arm.urdf`",
+        ),
+        ("urdf/arm.urdf", None),
+    ],
+)
+def test_a_path_that_ros_replaces(path: str, help: str | None) -> None:
+    assert package_help(path) == help
+
+
 CALL = """\
 name: pick
 outcomes: [succeeded]
@@ -185,6 +334,21 @@ def test_a_misspelt_look_up(word: str) -> None:
     ]
 
 
+def test_a_call_by_a_path_that_ros_replaces() -> None:
+    main = CALL.replace("script: grip", "script: $(find cell)/scripts/grip.yml")
+    assert reported({"main.yml": main, "grip.yml": GRIP})[-1][2] == (
+        "write `script: grip`, and add its folder to `scripts = [...]` in `smachac.toml`"
+    )
+
+
+def test_a_call_of_a_machine() -> None:
+    grip = "name: grip\noutcomes: [done]\nstates: []\n"
+    assert reported({"main.yml": CALL, "grip.yml": grip})[-1][2] == (
+        "write `- GRIP:` first, and indented below it `template: StateMachine` and the rest"
+        " without `name:`"
+    )
+
+
 def test_a_list_whose_second_text_is_no_param() -> None:
     grip = GRIP.replace("[params, limb]", "[params, limb]\n    steps: [param, left]")
     assert "SM004" not in [code for code, _, _ in reported({"main.yml": CALL, "grip.yml": grip})]
@@ -212,5 +376,5 @@ def test_an_interface_with_a_list_of_outcomes() -> None:
     grab = "name: Grab\noutcomes: [held, slipped]\n"
     main = PATROL.replace("ScriptedState\n      outcomes: [held, slipped]", "Grab")
     assert reported({"main.yml": main, "templates/Grab.yml": grab}) == [
-        ("SM004", "[held, slipped]", "write it as `{held: {}, slipped: {}}`")
+        ("SM004", "[held, slipped]", "write one mapping: `{held: {}, slipped: {}}`")
     ]

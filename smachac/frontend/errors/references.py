@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import PurePath
@@ -19,6 +20,18 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, guesser_of, respelt
 from smachac.diagnostics.wording import listed
+
+_PACKAGE = re.compile(r"package://|file://|\$\(find|\$\{|\$\(")
+"""The beginnings of paths that ROS replaces when a program is launched."""
+
+
+def package_help(path: str) -> str | None:
+    """The help for a path with a part that ROS replaces."""
+    found = _PACKAGE.search(path)
+    if found is None:
+        return None
+    last = path.rpartition("/")[2]
+    return f"`{found[0]}` is not replaced here: write the path from this file, such as `{last}`"
 
 
 def _where(word: Word, file: str, searched: Sequence[str], known: Sequence[str]) -> str:
@@ -65,9 +78,17 @@ def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) 
         span=word.span,
         message=f"the sub-script `{word.text}` was not found",
         arguments=(word.text,),
-        help=_where(word, f"{word.text}.yml", searched, names),
+        help=_package_of(word) or _where(word, f"{word.text}.yml", searched, names),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
+
+
+def _package_of(word: Word) -> str | None:
+    """The help for the call of a sub-script by a path with a part that ROS replaces."""
+    if package_help(word.text) is None:
+        return None
+    name = PurePath(word.text).stem
+    return f"write `script: {name}`, and add its folder to `scripts = [...]` in `smachac.toml`"
 
 
 @problem(

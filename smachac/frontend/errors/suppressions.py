@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from smachac.diagnostics.diagnostic import (
     Diagnostic,
@@ -27,7 +27,7 @@ _BEHIND = re.compile(r"[,:]?[^\S\n]*")
     Severity.WARNING,
     effect="the comment would hide the next finding of this code here",
 )
-def unused_allowance(code: Word, edits: tuple[Edit, ...] = ()) -> Finding:
+def unused_allowance(code: Word, edits: tuple[Edit, ...] = (), instead: str = "") -> Finding:
     """A comment allows a finding that does not occur on its line.
 
     The fault was corrected or never existed, and the comment would hide the next fault of that
@@ -54,19 +54,25 @@ def unused_allowance(code: Word, edits: tuple[Edit, ...] = ()) -> Finding:
         span=code.span,
         message=f"{code.text} is allowed here, but does not occur here",
         arguments=(code.text,),
-        help="remove the comment, or move it to the line on which the finding occurs",
-        edits=edits,
+        help=f"on this line {instead} occurs: correct its fault, or write `allow {instead}`"
+        if instead
+        else "remove the comment, or move it to the line on which the finding occurs",
+        edits=() if instead else edits,
     )
 
 
-def unused_allowances(codes: Iterable[Word]) -> list[Diagnostic]:
-    """SM021 for each of these codes. The edits of one remove all unused codes of its comment."""
+def unused_allowances(
+    codes: Iterable[Word], instead: Mapping[Span, str] | None = None
+) -> list[Diagnostic]:
+    """SM021 for each of these codes. The edits of one remove all unused codes of its comment.
+    `instead` are the codes that are probably meant, by the places of those in the comments."""
     lines: dict[tuple[int, int], list[Span]] = {}
     known = [(code, (id(code.span.source), code.span.line)) for code in codes]
     for code, line in known:
         lines.setdefault(line, []).append(code.span)
     cures = {line: _without(spans) for line, spans in lines.items()}
-    return [unused_allowance(code, cures[line]) for code, line in known]
+    meant = instead or {}
+    return [unused_allowance(code, cures[line], meant.get(code.span, "")) for code, line in known]
 
 
 def _without(codes: list[Span]) -> tuple[Edit, ...]:
