@@ -102,12 +102,13 @@ _MOST_SHOWN = 6
 
 
 def _entries_meant(tree: Seq) -> tuple[Entry, ...]:
-    """The entries of a list in place of a mapping: its items of one entry each, and its names,
-    whose values are `known_wrong`."""
+    """The entries of a list in place of a mapping: those of its mappings, except of remappings in
+    the form of ROS, and its names, whose values are `known_wrong`."""
     entries: list[Entry] = []
     for item in tree.items:
-        if isinstance(item, Map) and len(item.entries) == 1:
-            entries += item.entries
+        if isinstance(item, Map):
+            is_pair = {entry.key.value for entry in item.entries} == {"from", "to"}
+            entries += () if is_pair else item.entries
         elif isinstance(item, Scalar) and item.plain and str(item.value).isidentifier():
             entries.append(Entry(item, known_wrong(item.span)))
     return tuple(entries)

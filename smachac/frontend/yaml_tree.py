@@ -385,7 +385,7 @@ class _Builder:
                         arguments=("document",),
                     )
                 )
-                self.root = None  # what the rest of the text defines would be reported as missing
+                self.items = []  # what the rest of the text defines would be reported as missing
                 break
 
     def _scalar(self, event: Any) -> None:
