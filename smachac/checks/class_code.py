@@ -122,14 +122,19 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
     known = f"return one of its outcomes: {listed(own)}"
     if not outcomes:
         known = f"add outcomes to the interface `{leaf.type}`"
-    for word in facts.returns:
+    for ending in facts.endings:
+        word = ending.outcome
         if word.text not in outcomes:
+            does = "can return" if ending.possible else "returns"
+            near = f"write `{ending.meant}`" if ending.meant is not None else None
+            near = near or did_you_mean(guess(word.text)) or _without_tuple(word.text, outcomes)
             yield Finding(
                 span=word.span,
-                message=f"`{leaf.type}` returns `{word.text}`, which is not one of its outcomes",
+                message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
-                help=did_you_mean(guess(word.text)) or _without_tuple(word.text, outcomes) or known,
+                help=near or known,
                 related=_used_here(leaf),
+                severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
     if facts.silent and facts.execute is not None:

@@ -14,15 +14,21 @@ FaultKind = Literal[
     "no state",
     "no execute",
     "no method",
+    "coroutine",
     "arguments",
     "no constructor call",
     "no outcomes",
+    "data class",
+    "self twice",
+    "no self",
+    "other class",
     "hidden method",
     "defined twice",
     "no parameter",
     "required parameter",
     "no outcome",
     "undefined name",
+    "no import",
     "undefined method",
     "no list",
 ]
@@ -52,10 +58,13 @@ class Parameter:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ending:
     """A constant that `execute` returns, and the userdata keys that the code before it can set;
-    None: not known."""
+    None: not known. `possible`: an entry of a table, which may be one that is never used. `meant`
+    is the expression that was probably meant."""
 
     outcome: Word
     written: frozenset[str] | None = None
+    possible: bool = False
+    meant: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
