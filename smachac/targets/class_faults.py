@@ -79,6 +79,32 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`Outcome` of `{name}` has no `{word}`",
         "add it to `Outcome` and to the interface, or correct the name",
     ),
+    "wrong result": (
+        "`execute` of `{name}` returns `{word}`, not an outcome",
+        "write `{near}`",
+    ),
+    "wrong parameters": (
+        "`execute` of `{name}` has other parameters than its interface needs",
+        "write `{near}`",
+    ),
+    "wrong constructor": (
+        "the constructor of `{name}` has other parameters than the variables of its interface",
+        "write `{near}`",
+    ),
+    "unused outcome": (
+        "`execute` of `{name}` never returns `Outcome::{word}`",
+        "return it where it is meant, or remove it from `Outcome`, from the interface, and from the"
+        " transitions of the script",
+    ),
+    "no answer to stops": (
+        "`execute` of `{name}` never returns `Outcome::{word}`: a time limit or a stop cannot end"
+        " it",
+        "add where it waits: `if (stop.requested()) {{ stop.service(); return Outcome::{word}; }}`",
+    ),
+    "unset output": (
+        "`execute` of `{name}` never sets its output key `{word}`",
+        "write `out.{word} = ...`, or remove the key from the interface and from `Out`",
+    ),
     "no parameter": (
         "`__init__` of `{name}` does not accept `{word}`, a variable of the interface `{type}`",
         "add the parameter `{word}` to `__init__`",
@@ -92,6 +118,23 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
 }
 """The message and the help for each kind of fault."""
 
+CHECKED_ONLY = frozenset[FaultKind](["unused outcome", "no answer to stops", "unset output"])
+"""Faults of a class that a compiler accepts: a build does not fail."""
+
+EFFECTS: Mapping[FaultKind, str] = {
+    "defined twice": "",
+    "undefined name": "",
+    "undefined method": "",
+    "no import": "",
+    "unused outcome": "a transition for this outcome is never taken",
+    "no answer to stops": "a transition for this outcome is never taken",
+    "unset output": "a state that reads the key afterwards gets an old value, or fails",
+}
+"""What happens, where it differs from most faults; empty if the message contains it."""
+
+WRITTEN = frozenset[FaultKind](["wrong result", "wrong parameters", "wrong constructor"])
+"""Faults whose words contain what was probably meant."""
+
 
 def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tuple[str, str]:
     """The message and the help for a fault of a class. `lists` are the arguments of the constructor
@@ -101,7 +144,7 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         for text in WORDS[fault.kind]
     )
     near = fault.near
-    if near is None or fault.kind == "other class":
+    if near is None or fault.kind == "other class" or fault.kind in WRITTEN:
         return message, help
     if fault.kind == "no execute":
         return message, f"rename `{near}` to `execute`"
@@ -114,6 +157,6 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
 
 def class_effect(fault: ClassFault, target: str) -> str | None:
     """The effect of a fault of a class; empty if its message contains it."""
-    if fault.kind in ("defined twice", "undefined name", "undefined method", "no import"):
-        return ""
+    if fault.kind in EFFECTS:
+        return EFFECTS[fault.kind]
     return "the C++ compiler refuses the class" if target == "cpp" else None
