@@ -111,6 +111,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         execute=place,
         silent=flow.silent,
         always_silent=flow.always_silent,
+        open_end=flow.open_end,
         reads=flow.reads,
         writes=flow.writes,
         stub=execute is not None and all(map(_does_nothing, execute.body)),

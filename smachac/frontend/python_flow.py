@@ -34,7 +34,8 @@ class Flow:
     """The control flow of a function; for the fields see ClassFacts.
 
     `written` are the keys that it can set; None: not known. `passed` are the parameters that it
-    returns, each with the keys that can be set before.
+    returns, each with the keys that can be set before. `open_end` is the place of the `if`, `match`
+    or `except` after which it ends without `return`, with that word.
     """
 
     endings: tuple[Ending, ...] = ()
@@ -45,6 +46,7 @@ class Flow:
     writes: tuple[Word, ...] = ()
     written: Keys = None
     passed: tuple[tuple[str, Keys], ...] = ()
+    open_end: Word | None = None
 
 
 def is_plain(function: ast.FunctionDef) -> bool:
@@ -123,8 +125,20 @@ class _Reader:
             reads=reads,
             writes=writes,
             written=written,
+            open_end=self._open_end() if not self.path_ends.block(body) else None,
             passed=tuple(self.passed if known else [(name, None) for name, _ in self.passed]),
         )
+
+    def _open_end(self) -> Word | None:
+        """The kind of place from which control gets to the end, and its first line."""
+        kind, node = self.path_ends.open_end(self.function.body)
+        if not kind:
+            return None
+        line = getattr(node, "lineno", 1)
+        start = self.text.offset(line, getattr(node, "col_offset", 0))
+        source = self.text.source
+        end = source.line_starts[line - 1] + len(source.line(line).rstrip())
+        return Word(kind, Span(source, start, end))
 
     # --- userdata
 

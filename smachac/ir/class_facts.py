@@ -83,7 +83,8 @@ class ClassFacts:
 
     `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
     `execute` is the place of its name. `silent`: some path through it returns nothing,
-    `always_silent`: every path. `reads` and `writes` are the userdata keys that it accesses.
+    `always_silent`: every path. `open_end` is the `if`, `match` or `except` after which it returns
+    nothing. `reads` and `writes` are the userdata keys that it accesses.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
     `values` are the expressions that `execute` itself writes, each with its key.
     """
@@ -99,6 +100,7 @@ class ClassFacts:
     execute: Span | None = None
     silent: bool = False
     always_silent: bool = False
+    open_end: Word | None = None
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
     stub: bool = False

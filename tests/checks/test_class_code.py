@@ -339,6 +339,40 @@ def test_a_function_of_another_module_is_followed() -> None:
     assert lines(findings(text, **files)) == ["SM308 cell/tools.py:2 data.psoe"]
 
 
+def test_the_failure_that_is_meant() -> None:
+    text = changed(('"lost"', '"find_failed"'), ('return "lost"', 'return "find_error"'))
+    script = SCRIPT.replace("lost: lost", "find_failed: lost")
+    report = findings(text, INTERFACE.replace("lost", "find_failed"), script)
+    assert [item.help for item in report] == ["did you mean `find_failed`?"]
+
+
+@pytest.mark.parametrize(
+    ("end", "line", "words"),
+    [
+        ("match self.speed:\n            case 1.0:\n                return 'lost'",
+         "match self.speed:", "if no `case` matches, nothing is returned"),
+        ("try:\n            return look()\n        except OSError:\n            print(1)",
+         "except OSError:", "after this exception, nothing is returned"),
+        ("if self.speed:\n            return 'lost'", "if self.speed:",
+         "if this is false, nothing is returned"),
+        ("print(1)", "", ""),
+    ],
+)  # fmt: skip
+def test_where_no_outcome_is_returned(end: str, line: str, words: str) -> None:
+    report = findings(changed(('return "lost"', end)))
+    (item,) = [each for each in report if each.code == "SM309"]
+    first = item.related[0]
+    found = (first.span.text, first.message) if words else ("", "")
+    assert found == (line, words)
+
+
+def test_userdata_is_no_dictionary() -> None:
+    report = findings(changed(("userdata.tries", 'userdata.get("tries", 3)')))
+    (item,) = report
+    assert (item.code, item.span.text) == ("SM310", "userdata.get")
+    assert item.help == "read a key as `userdata.KEY`; test it with `'KEY' in userdata`"
+
+
 def test_a_stub_is_not_written_yet() -> None:
     body = (
         '    def execute(self, userdata):\n        userdata.pose = None\n        return "found"\n'
@@ -424,7 +458,10 @@ def test_a_returned_value_that_is_no_text(value: str) -> None:
 def test_the_opposite_of_an_outcome_is_no_suggestion() -> None:
     report = findings(changed(('return "lost"', 'return "not_found"')))
     (item,) = [item for item in report if item.code == "SM309"]
-    assert item.finding.help == "return one of its outcomes: `found`, `lost`, `preempted`"
+    assert item.finding.help == (
+        "return one of its outcomes: `found`, `lost`, `preempted`, or add `not_found` to the"
+        " outcomes of `FindPart` in its interface and `__init__`"
+    )
 
 
 RETRIED = SCRIPT.replace(
