@@ -84,13 +84,13 @@ def unknown_field(context: Context) -> Iterator[Finding]:
 
     Exactly: fields in lists of keys, in mappings and lists of values, in calls of the class of the
     message, in functions that receive the message, and in mappings that are published, at any
-    depth; also numbers that a function compares with text. The definitions of messages,
-    services and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of
-    `code` in the project file, in the folder of the script and in those above it up to the root of
-    the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs
-    smachac. Where there is none, nothing is checked; but a type is reported if its
-    package has other types of its kind, or its name is that of another kind. Where several are found, such as those of ROS 1 and ROS 2,
-    a finding holds for all of them.
+    depth; also numbers that a function compares with text. The definitions of messages, services
+    and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of `code` in the
+    project file, in the folder of the script and in those above it up to the root of the
+    repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs smachac.
+    Where there is none, nothing is checked; but a type is reported if its package has other types
+    of its kind, or its name is that of another kind. Where several are found, such as those of ROS
+    1 and ROS 2, a finding holds for all of them.
 
     Wrong:
         name: sm
