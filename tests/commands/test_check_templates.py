@@ -88,9 +88,9 @@ def test_scripts_without_templates_of_the_user_are_not_rendered(folder: Path) ->
 def test_a_name_that_a_template_lacks(folder: Path) -> None:
     script = str(folder / "main.yml")
     template = folder / "templates" / "T.tpl.py"
-    template.write_text(CLASS.replace("'{{ name }}'", "'{{ nam }}'"))
+    template.write_text(CLASS.replace("parent_type", "parent_typ"))
     (found,) = smachac.check(script)
-    assert (found.span.text, found.help) == ("nam", "did you mean `name`?")
+    assert (found.span.text, found.help) == ("parent_typ", "did you mean `parent_type`?")
     template.write_text(CLASS.partition("{% block body")[0].replace("CODE", "go({{ sped }})"))
     (folder / "templates" / "T.yml").write_text(
         "name: T\nvariables: {speed: {type: float}}\noutcomes: {done: {}}\n"

@@ -312,7 +312,7 @@ class _ErrorConverter:
         name = getattr(error, "undefined_name", None)
         names = (message,) if name is None else ("undefined", name)
         if name is not None:
-            near = guesser(sorted(self.names() if self.names else ()))(name)
+            near = guesser(sorted(self.names() if self.names else ())).sure(name)
             help = f"did you mean `{near}`?" if near is not None else help
             found = [*re.finditer(rf"\b{re.escape(name)}\b", span.text)]
             if len(found) == 1:
