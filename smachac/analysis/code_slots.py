@@ -198,8 +198,24 @@ def userdata_parameter(slot: CodeSlot) -> str | None:
         return None
     if not isinstance(tree, ast.Lambda) or not accepts(tree, len(slot.arguments)):
         return None
+    if swapped(tree, slot.arguments):  # SM317
+        return None
     at, names = slot.arguments.index("userdata"), parameters(tree)
     return names[at].arg if at < len(names) else None
+
+
+def swapped(tree: ast.Lambda, due: tuple[str, ...]) -> list[str]:
+    """The names of the arguments of a lambda, if they are those of its state in another order."""
+    own = [each.arg for each in parameters(tree)]
+    meant = [next((name for name in due if means(arg, name)), "") for arg in own]
+    return own if tuple(meant) != due and sorted(meant) == sorted(due) else []
+
+
+def means(own: str, argument: str) -> bool:
+    """Whether a name is that of an argument, its first letters, or a usual abbreviation of it."""
+    if argument == "userdata":
+        return own in USERDATA
+    return (len(own) > 2 and argument.startswith(own)) or own == {"message": "msg"}.get(argument)
 
 
 def undeclared_slot_reads(

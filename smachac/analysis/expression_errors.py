@@ -7,6 +7,7 @@ exclude the error.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -316,6 +317,14 @@ class _Judge:
                     effect=None if conversion(unit_of(other), unit_of(one)) else NO_MEANING,
                 )
 
+    def mixed(self, expr: Call) -> Iterator[Fault]:
+        """The first argument of a call that has another unit than the one before it."""
+        for left, right in itertools.pairwise(expr.arguments):
+            found = [*self.units(expr, self.type(left), self.type(right), left, right)]
+            if found:
+                yield found[0]
+                return
+
     def call(self, expr: Call) -> Iterator[Fault]:
         text = dotted(expr.function)
         if text is None or text.partition(".")[0] in self.names:
@@ -335,6 +344,8 @@ class _Judge:
             return
         least, most, keywords, alone, many = signature
         given = len(expr.arguments)
+        if text in ("max", "min") and given > 1:
+            yield from self.mixed(expr)
         unknown = [name for name, _ in expr.keywords if name not in keywords]
         if unknown:
             does = f"passes the argument `{unknown[0]}` to `{text}`, which does not accept it"

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
-from smachac.analysis.code_slots import CodeSlot, accepts, free_names, parameters
+from smachac.analysis.code_slots import CodeSlot, accepts, free_names, parameters, swapped
 from smachac.ir.leaf import type_text, variable_of
 from smachac.ir.message_types import (
     PARTS,
@@ -91,7 +91,7 @@ def _arguments(slot: CodeSlot, leaf: Leaf, found: Definitions) -> Mapping[ast.Na
     tree, due = slot.tree, slot.arguments
     if not isinstance(tree, ast.Lambda) or due is None or not accepts(tree, len(due)):
         return {}
-    if slot.quoted or len(slot.code.text) > MOST_CODE:
+    if slot.quoted or len(slot.code.text) > MOST_CODE or swapped(tree, due):
         return {}
     known: dict[str, Content] = {}
     for kind, definitions in leaf_definitions(leaf, found):

@@ -13,12 +13,12 @@ from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Leaf, StateType
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
 from smachac.ir.traversal import outcome_names
 
 
@@ -122,14 +122,20 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
     known = f"return one of its outcomes: {listed(own)}"
     if not outcomes:
         known = f"add outcomes to the interface `{leaf.type}`"
-    for word in facts.returns:
+    for ending in facts.endings:
+        word = ending.outcome
         if word.text not in outcomes:
+            does = "can return" if ending.possible else "returns"
+            near = f"write `{ending.meant}`" if ending.meant is not None else None
+            near = near or did_you_mean(_meant(leaf, word.text, guess))
+            near = near or _without_tuple(word.text, outcomes)
             yield Finding(
                 span=word.span,
-                message=f"`{leaf.type}` returns `{word.text}`, which is not one of its outcomes",
+                message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
-                help=did_you_mean(guess(word.text)) or _without_tuple(word.text, outcomes) or known,
+                help=near or f"{known}{'' if ending.possible else _or_declare(word, leaf)}",
                 related=_used_here(leaf),
+                severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
     if facts.silent and facts.execute is not None:
@@ -139,16 +145,63 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
             message=f"`execute` of `{leaf.type}` {does} an outcome",
             arguments=(leaf.type,),
             help=f"end each path with a `return`; {known}",
-            related=_used_here(leaf),
+            related=(*_open_end(facts), *_used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
         )
+
+
+END_OF_EXECUTE = {
+    "if": "if this is false, nothing is returned",
+    "match": "if no `case` matches, nothing is returned",
+    "except": "after this exception, nothing is returned",
+}
+"""The place from which `execute` gets to its end without `return`, by its kind."""
+
+
+def _open_end(facts: ClassFacts) -> tuple[Related, ...]:
+    """The place from which `execute` gets to its end without `return`."""
+    end = facts.open_end
+    if end is None or facts.always_silent:
+        return ()
+    return other_place(end.span, END_OF_EXECUTE[end.text])
+
+
+def _or_declare(word: Word, leaf: Leaf) -> str:
+    """The part of a help that adds a returned word to the outcomes of its type."""
+    if not word.text.isidentifier() or word.text in ("None", "True", "False"):
+        return ""
+    return (
+        f", or add `{word.text}` to the outcomes of `{leaf.type}` in its interface and `__init__`"
+    )
+
+
+def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
+    """The outcome that was probably meant: a failure for the name of a failure."""
+    near = guess(word)
+    if not is_failure(word):
+        return near if near is None or not fails(leaf, near) else None
+    if near is not None and fails(leaf, near):
+        return near
+    words = set(word.split("_"))
+    alike = [name for name in outcome_names(leaf)
+             if fails(leaf, name) and not words.isdisjoint(name.split("_"))]  # fmt: skip
+    return alike[0] if len(alike) == 1 else None
 
 
 def _without_tuple(text: str, outcomes: Collection[str]) -> str | None:
     """The help for a tuple that begins with an outcome: `return "found", 1`."""
     name = next((each for each in outcomes if text.startswith(f"('{each}',")), None)
     return f'write `return "{name}"`: a comma makes a tuple' if name is not None else None
+
+
+DICTIONARY_METHODS = frozenset(["copy", "get", "items", "pop", "setdefault", "values"])
+"""Methods of a dictionary that userdata does not have (smach.user_data)."""
+
+
+def _is_called(word: Word) -> bool:
+    """Whether an attribute in a text is called."""
+    return word.span.source.text.startswith("(", word.span.end)
 
 
 def unknown_reads(context: Context) -> Iterator[Finding]:
@@ -159,13 +212,25 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
         around = containers[path.rpartition("/")[0]]
         known = [*inputs, around.item_key] if isinstance(around, nodes.Iterator) else inputs
         for word in _first_of_each(facts.reads, known):
+            message = (
+                f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
+                " key of its interface"
+            )
+            help = did_you_mean(guesser(inputs)(word.text)) or (
+                f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
+            )
+            if word.text in DICTIONARY_METHODS and _is_called(word):
+                message = (
+                    f"the code of `{leaf.type}` calls `{word.span.text}`, but the userdata of a"
+                    " state has no methods of a dictionary"
+                )
+                name = word.span.text.rpartition(".")[0]
+                help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
             yield Finding(
                 span=word.span,
-                message=f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
-                " key of its interface",
+                message=message,
                 arguments=(word.text,),
-                help=did_you_mean(guesser(inputs)(word.text))
-                or f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`",
+                help=help,
                 related=_used_here(leaf),
                 node=path,
             )

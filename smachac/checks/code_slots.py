@@ -13,8 +13,10 @@ from smachac.analysis.code_slots import (
     code_slots,
     free_names,
     is_value,
+    means,
     parameters,
     results,
+    swapped,
     userdata_outside,
     userdata_parameter,
 )
@@ -233,7 +235,7 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             continue
         due = slot.arguments
         if accepts(tree, len(due)):
-            found = _swapped(tree, due)
+            found = swapped(tree, due)
             what = f"has the arguments {_names(found)}, but the state passes {_names(due)}"
             effect: str | None = (
                 "the arguments are passed in that order: each name has a wrong value"
@@ -259,9 +261,11 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
 def _head_help(node: Node, tree: ast.Lambda, due: tuple[str, ...]) -> str:
     """The help for a lambda with wrong arguments: its correct beginning, and the way to read a key
     that was written as an argument."""
-    help = f"begin it with `lambda {', '.join(map(_short, due))}:`"
+    mixed = swapped(tree, due)
+    names = [next((own for own in mixed if means(own, name)), _short(name)) for name in due]
+    help = f"begin it with `lambda {', '.join(names)}:`"
     read = {each.id for each in ast.walk(tree.body) if isinstance(each, ast.Name)}
-    own = [each.arg for each in parameters(tree) if not any(_means(each.arg, arg) for arg in due)]
+    own = [each.arg for each in parameters(tree) if not any(means(each.arg, arg) for arg in due)]
     keys = [name for name in own if name in read]
     if "userdata" not in due or not keys or own == [each.arg for each in parameters(tree)]:
         return help
@@ -299,25 +303,17 @@ def _head(slot: CodeSlot, tree: ast.Lambda) -> Span:
     return node_place(slot.code, whole)
 
 
-def _swapped(tree: ast.Lambda, due: tuple[str, ...]) -> list[str]:
-    """The names of the arguments of a lambda, if they are those of its state in another order."""
-    own = [each.arg for each in parameters(tree)]
-    meant = [next((name for name in due if _means(arg, name)), "") for arg in own]
-    return own if tuple(meant) != due and sorted(meant) == sorted(due) else []
-
-
-def _means(own: str, argument: str) -> bool:
-    """Whether a name is that of an argument, its first letters, or a usual abbreviation of it."""
-    if argument == "userdata":
-        return own in USERDATA
-    return (len(own) > 2 and argument.startswith(own)) or own == {"message": "msg"}.get(argument)
-
-
 NOTHING_RETURNED = {
     "list": frozenset(["append", "extend", "insert", "remove", "sort", "reverse", "clear"]),
     "mapping": frozenset(["update", "clear"]),
 }
 """The methods that change a value and return None, by the kind of the value."""
+
+NO_VALUE = frozenset([
+    "logging.info", "random.seed", "random.shuffle", "rospy.loginfo", "rospy.logwarn",
+    "rospy.sleep", "time.sleep",
+])  # fmt: skip
+"""Functions that return None."""
 
 ALWAYS_NOTHING = frozenset(["append", "extend"])
 """Those that return None whatever the value is."""
@@ -435,6 +431,13 @@ def _value_fault(
             return Fault("None", a_value, True, nothing)
         case ast.Call(func=ast.Name(id="print")) if slot.role != "callbacks":
             return Fault("None: `print` returns nothing", a_value, True, nothing)
+        case ast.Call(func=function, args=given) if ast.unparse(function) in NO_VALUE:
+            if slot.role == "callbacks":
+                return None
+            name = ast.unparse(function)
+            if name.endswith(".sleep") and slot.role == "duration" and given:
+                a_value = f"write the number of seconds: `{ast.unparse(given[0])}`"
+            return Fault(f"None: `{name}` returns nothing", a_value, True, nothing)
         case ast.Call(func=ast.Attribute(value=value, attr=method)):
             type_ = _type(context, path, node, slot, value)
             known = next(iter(kinds(type_)), "") if len(kinds(type_)) == 1 else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal
 
@@ -28,7 +29,9 @@ from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, StateType, Struct
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import expressions, remapping, walk
+
+_PARAM_IN_CODE = re.compile(r"\bparams(?:\.|\[['\"])(\w+)")
 
 
 @rule(
@@ -242,9 +245,18 @@ def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -
     )
 
 
+def _params_in_code(machine: Machine) -> set[str]:
+    """The params that code of the script names as if they were variables: `params.limit`."""
+    codes = [code.text for _, node in walk(machine.root) for code in expressions(node)]
+    return {name for text in codes for name in _PARAM_IN_CODE.findall(text)}
+
+
 def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
     """The params and types of the script that nothing uses."""
+    in_code = _params_in_code(machine) if machine.unused else set()
     for what, word, via in machine.unused:
+        if what == "param" and word.text in in_code:  # SM019
+            continue
         outside = (call for call in via if call.source is not word.span.source)
         yield Finding(
             span=word.span,

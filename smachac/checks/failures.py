@@ -267,11 +267,15 @@ def _masked_in_loop(
     """SM404 for the failures of an item after which a loop continues."""
     end = dict(loop.final_map).get(loop.exhausted_outcome, loop.exhausted_outcome)
     step = next((step for step in loop.transitions if step.outcome == end), None)
-    if end.lower() not in SUCCESSES | GOOD or (step is not None and fails(around, step.target)):
+    good = end.lower() in SUCCESSES | GOOD
+    if fails(loop, end) or (step is not None and fails(around, step.target)):
         return
     for child in loop.children:
+        declared = {each.name for each in child.outcomes if each.failure}
         for number, outcome in enumerate(loop.loop_outcomes):
-            if outcome == child.catches or not fails(child, outcome):
+            if outcome in (child.catches, end) or not fails(child, outcome):
+                continue
+            if not good and outcome not in declared:
                 continue
             span = loop.loop_spans[number] if loop.loop_spans else loop.span
             yield Finding(

@@ -10,7 +10,12 @@ from typing import NamedTuple
 
 from smachac.analysis.code_slots import CodeSlot, code_slots
 from smachac.analysis.context import Context
-from smachac.analysis.message_code import MOST_CODE, field_reads, leaf_definitions
+from smachac.analysis.message_code import (
+    MOST_CODE,
+    content_of,
+    field_reads,
+    leaf_definitions,
+)
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.message_values import value_faults
 from smachac.checks.messages import calls, did_you_mean
@@ -27,6 +32,7 @@ from smachac.ir.message_types import (
     INTEGERS,
     PARTS,
     TEXTS,
+    DefinitionKind,
     Definitions,
     FieldType,
     Message,
@@ -41,6 +47,9 @@ TYPE_KEY = "msg_type"
 
 NO_MESSAGE = frozenset(["stop", "stop_all", "remove", "remove_all"])
 """The values of the variable `action` with which a state reads no message."""
+
+NUMBERS = frozenset([*INTEGERS, *FLOATS, "bool"])
+"""The types of fields that are numbers in Python."""
 
 SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
@@ -74,13 +83,14 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     the name.
 
     Exactly: fields in lists of keys, in mappings and lists of values, in calls of the class of the
-    message, and in functions that receive the message, at any depth. The definitions of messages,
-    services and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of
-    `code` in the project file, in the folder of the script and in those above it up to the root of
-    the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs
-    smachac. Where there is none, nothing is checked; but a type is reported if its
-    package has other types of its kind. Where several are found, such as those of ROS 1 and ROS 2,
-    a finding holds for all of them.
+    message, in functions that receive the message, and in mappings that are published, at any
+    depth; also numbers that a function compares with text. The definitions of messages, services
+    and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of `code` in the
+    project file, in the folder of the script and in those above it up to the root of the
+    repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs smachac.
+    Where there is none, nothing is checked; but a type is reported if its package has other types
+    of its kind, or its name is that of another kind. Where several are found, such as those of ROS
+    1 and ROS 2, a finding holds for all of them.
 
     Wrong:
         name: sm
@@ -119,12 +129,13 @@ def unknown_field(context: Context) -> Iterator[Finding]:
         bool held
     """
     found, missing = context.machine.definitions, context.machine.missing_definitions
-    if not found and not missing:
-        return
     for path, node in context.states:
         if not isinstance(node, Leaf):
             continue
         yield from _missing_types(path, node, missing)
+        if not found:
+            continue
+        yield from _wrong_messages(context, path, node, found)
         for kind, definitions in leaf_definitions(node, found):
             for held in node.variables:
                 if held.role in PARTS[kind]:
@@ -133,6 +144,7 @@ def unknown_field(context: Context) -> Iterator[Finding]:
                     yield from _wrong_values(path, node, held, messages, found)
         for slot in code_slots(node, context.machine.state_types):
             yield from _wrong_reads(path, node, slot, found)
+            yield from _wrong_comparisons(path, node, slot, found)
 
 
 @rule(
@@ -220,18 +232,110 @@ def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterat
     """Types that a state names and that their packages do not have."""
     for role, kind in DEFINITION_KINDS.items():
         named = variable_of(leaf, role)
-        names = missing.get((kind, type_text(named))) if named is not None else None
-        if named is None or names is None:
+        if named is None:
             continue
         parts = re.split(r"[/.]", type_text(named).strip())
-        what = {"msg": "message", "srv": "service", "action": "action"}[kind]
+        absent = missing.get((kind, type_text(named)))
+        other = absent.other if absent is not None else _other_kind(parts, kind)
+        if other is not None:
+            message = f"`{type_text(named)}` is {KIND_WORDS[other]}, not {KIND_WORDS[kind]}"
+        elif absent is not None:
+            what = KIND_WORDS[kind].partition(" ")[2]
+            message = f"the package `{parts[0]}` has no {what} `{parts[-1]}`"
+        else:
+            continue
+        names = absent.names if absent is not None else ()
+        known = (
+            f"write one of {listed(names)}" if names else f"write the name of {KIND_WORDS[kind]}"
+        )
         yield Finding(
             span=_word(parts[-1], named.value.span).span,
-            message=f"the package `{parts[0]}` has no {what} `{parts[-1]}`",
+            message=message,
             arguments=(parts[0], parts[-1]),
-            help=did_you_mean(guesser(names)(parts[-1])) or f"write one of {listed(names)}",
+            help=did_you_mean(guesser(names)(parts[-1])) or known,
             effect="the program stops when it imports the type",
             related=calls(leaf, named.value.span),
+            node=path,
+        )
+
+
+KIND_WORDS: Mapping[DefinitionKind, str] = {
+    "msg": "a message",
+    "srv": "a service",
+    "action": "an action",
+}
+
+
+def _other_kind(parts: Sequence[str], kind: DefinitionKind) -> DefinitionKind | None:
+    """The kind of a type whose name has another folder: `std_msgs/msg/Bool`. In ROS 1 an action
+    can be named by its message; ROS 2 has messages such as `Drive_FeedbackMessage`."""
+    if len(parts) != 3 or (kind == "action" and parts[1] == "msg") or "_" in parts[2]:
+        return None
+    return next((each for each in KIND_WORDS if each == parts[1] and each != kind), None)
+
+
+def _wrong_messages(
+    context: Context, path: str, leaf: Leaf, found: Definitions
+) -> Iterator[Finding]:
+    """Mappings in the userdata whose fields the message of the state's key `msg_type` does not
+    have, or whose values do not fit."""
+    names = key_names(leaf.inputs, "message")
+    typed = context.types.cells.get((path, TYPE_KEY))
+    if not names or typed is None or variable(leaf, "action") in NO_MESSAGE:
+        return
+    given = [each for alike in typed.flows.values() for each in alike]
+    texts = {each.value for each in given if each.how == "value" and isinstance(each.value, str)}
+    if len(texts) != 1 or any(each.how != "value" for each in given):
+        return
+    messages = [each.part("message") for each in found.get(("msg", texts.pop()), ())]
+    for name in sorted(names) if messages else ():
+        cell = context.types.cells.get((path, name))
+        flows = [each for alike in cell.flows.values() for each in alike] if cell else []
+        for flow in flows:
+            if flow.how != "value" or not isinstance(flow.value, Struct):
+                continue
+            faults = [list(value_faults(flow.value, each, found)) for each in messages]
+            for steps, message, wanted in faults[0] if all(faults) else ():
+                fields = sorted(each.name for each in message.fields)
+                text = f"{_described(message)} has no field `{steps[-1]}`"
+                help = did_you_mean(guesser(fields)(steps[-1]))
+                help = help or f"use one of its fields: {listed(fields)}"
+                if wanted is not None:
+                    text = f"the value of `{steps[-1]}` does not fit: the field of"
+                    text += f" {_described(message)} is `{wanted}`"
+                    help = f"write a value of the type `{wanted}`{_example(wanted)}"
+                yield at(flow, text, help, (message.name, *steps), part=steps, key=wanted is None)
+
+
+def _wrong_comparisons(
+    path: str, leaf: Leaf, slot: CodeSlot, found: Definitions
+) -> Iterator[Finding]:
+    """Comparisons of a number in a message with a text, or the reverse."""
+    if not isinstance(slot.tree, ast.Lambda):
+        return
+    for node in ast.walk(slot.tree.body):
+        match node:
+            case ast.Compare(left=left, ops=[_], comparators=[ast.Constant(value=value)]):
+                pass
+            case ast.Compare(left=ast.Constant(value=value), ops=[_], comparators=[left]):
+                pass
+            case _:
+                continue
+        if not isinstance(value, str | int | float) or isinstance(node.ops[0], ast.In | ast.NotIn):
+            continue
+        content = content_of(slot, leaf, left, found)
+        fields = [each for each in content if isinstance(each, FieldType) and not each.array]
+        wrong = NUMBERS if isinstance(value, str) else TEXTS
+        if not fields or len(fields) != len(content) or {each.name for each in fields} - {*wrong}:
+            continue
+        what = ast.unparse(left)
+        yield Finding(
+            span=node_place(slot.code, node),
+            message=f"`{what}` is `{fields[0]}`: it never equals `{value!r}`",
+            arguments=(what, repr(value)),
+            help=f"compare it with a value of the type `{fields[0]}`{_example(fields[0])}",
+            effect="the condition always has the same result, or the function fails",
+            related=calls(leaf, slot.code.span),
             node=path,
         )
 

@@ -22,6 +22,12 @@ BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "_
 DYNAMIC = frozenset(["exec", "eval", "globals", "locals", "vars", "setattr", "__import__"])
 """Functions that can define a name at run time."""
 
+USUAL_MODULES = frozenset([
+    "collections", "copy", "datetime", "functools", "itertools", "json", "logging", "math", "os",
+    "random", "re", "rospy", "smach", "subprocess", "sys", "threading", "time",
+])  # fmt: skip
+"""Modules whose names nobody uses for something else that a sketch leaves out."""
+
 STATE_METHODS = frozenset([
     "execute", "request_preempt", "service_preempt", "recall_preempt", "preempt_requested",
     "register_outcomes", "get_registered_outcomes", "register_io_keys", "register_input_keys",
@@ -42,8 +48,8 @@ def undefined_names(
     module: Module, node: ast.ClassDef, outcomes: Iterable[str]
 ) -> list[ClassFault]:
     """The misspelt names in the methods of a class of a module: nothing in its text defines them,
-    and a name one slip away is defined. `outcomes` are those of the class: an outcome without
-    quotes is such a name. Other names may be those of a sketch."""
+    and a name one slip away is defined, or it is a usual module. `outcomes` are those of the class:
+    an outcome without quotes is such a name. Other names may be those of a sketch."""
     text = module.text
     if module.dynamic or not module.name or "NameError" in text.source.text:
         return []
@@ -54,6 +60,7 @@ def undefined_names(
     bound = {name for each in every for name in _bound(each)} | BUILT_IN
     ends, guess, found = set(outcomes), guesser(sorted(bound - BUILT_IN)), []
     methods = _only_methods(every)
+    owners = {each.value for each in every if isinstance(each, ast.Attribute)}
     for each in _evaluated(node):
         if (
             isinstance(each, ast.Call)
@@ -67,7 +74,9 @@ def undefined_names(
             bound.add(each.id)
             near = f'"{each.id}"' if each.id in ends else guess.sure(each.id)
             name = Word(each.id, text.span(each))
-            if near is not None:
+            if each in owners and each.id in USUAL_MODULES:
+                found.append(ClassFault(kind="no import", name=name))
+            elif near is not None:
                 found.append(ClassFault(kind="undefined name", name=name, near=near))
     return found
 

@@ -20,7 +20,9 @@ from smachac.frontend.python_modules import (
     OwnClass,
     absent_module,
     find_class,
+    is_smach_state,
     load_module,
+    names_of,
     template_module,
     with_bases,
 )
@@ -94,7 +96,7 @@ def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
 def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
     """The facts about a class."""
     own = with_bases(module, node, library)
-    flow, execute, place = _execute(own)
+    flow, execute, place = _execute(own, library)
     lists = _declared(module.text, node)
     whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
     return ClassFacts(
@@ -105,10 +107,11 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         inputs=_together(lists, "input_keys"),
         outputs=_together(lists, "output_keys"),
         endings=flow.endings,
-        complete=flow.complete,
+        complete=flow.complete and not flow.passed,
         execute=place,
         silent=flow.silent,
         always_silent=flow.always_silent,
+        open_end=flow.open_end,
         reads=flow.reads,
         writes=flow.writes,
         stub=execute is not None and all(map(_does_nothing, execute.body)),
@@ -161,7 +164,7 @@ def name_span(text: PythonText, node: ast.ClassDef | ast.FunctionDef) -> Span:
 # --- execute
 
 
-def _execute(own: OwnClass) -> tuple[Flow, ast.FunctionDef | None, Span | None]:
+def _execute(own: OwnClass, library: Library) -> tuple[Flow, ast.FunctionDef | None, Span | None]:
     """The flow of `execute`, its definition, and the place of its name."""
     found = own.method("execute")
     if found is None:
@@ -173,7 +176,7 @@ def _execute(own: OwnClass) -> tuple[Flow, ast.FunctionDef | None, Span | None]:
     overridden = sum("execute" in names for names in own.names)
     if not plain or tags or named != overridden:
         return Flow(), None, None
-    flow = Flows(own).of(module, function, function.args.args[1].arg)
+    flow = Flows(own, library).of(module, function, function.args.args[1].arg)
     return flow or Flow(), function, name_span(module.text, function)
 
 
@@ -200,12 +203,12 @@ def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFaul
     """The certain faults of a class."""
     found = _twice(module, node)
     if own.root == "unknown":
-        return found
+        return [*found, *_data_class_fault(module, node)]
     if own.root == "object":
         certain = not own.binds("get_registered_outcomes")
         return [*found, _at_class("no state", module, node)] if certain else found
     return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own),
-            *_list_faults(own)]  # fmt: skip
+            *_call_faults(own), *_list_faults(own)]  # fmt: skip
 
 
 def _at_class(
@@ -241,7 +244,7 @@ def _execute_faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[C
         return [_at_class("no execute", module, node, guesser(methods)("execute"))]
     bound = own.names[0].get("execute", ())
     if bound and isinstance(bound[-1], ast.AsyncFunctionDef) and not bound[-1].decorator_list:
-        return [_at_class("no method", module, node)]
+        return [_at_class("coroutine", module, node)]
     found = own.method("execute")
     if found is None or found[1].decorator_list:
         return []
@@ -281,6 +284,63 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
         for each in ast.walk(owner)
     )
     return [] if calls else [_at_method("no constructor call", *found)]
+
+
+def _data_class_fault(module: Module, node: ast.ClassDef) -> Iterator[ClassFault]:
+    """A `@dataclass` derived from `smach.State`: the `__init__` that it makes does not call that of
+    its base."""
+    if len(node.decorator_list) != 1:
+        return
+    (decorator,) = node.decorator_list
+    if isinstance(decorator, ast.Call) and all(each.arg != "init" for each in decorator.keywords):
+        decorator = decorator.func
+    if ast.unparse(decorator) not in ("dataclass", "dataclasses.dataclass"):
+        return
+    names, _ = names_of(node.body)
+    own = {"__init__", "__post_init__", "__new__"}.isdisjoint(names)
+    if own and len(node.bases) == 1 and is_smach_state(module, node.bases[0]):
+        yield _at_class("data class", module, node)
+
+
+def _call_faults(own: OwnClass) -> Iterator[ClassFault]:
+    """Calls of the `__init__` of the base class with the wrong `self`, or of another class."""
+    found = own.method("__init__")
+    if found is None or not found[1].args.args:
+        return
+    module, maker = found
+    owner = next(each for _, each in own.classes if maker in each.body)
+    names = {each.name for _, each in own.classes}
+    others = own.root != "state" or sum("__init__" in each for each in own.names) != 1
+    me = maker.args.args[0].arg
+    for call in ast.walk(maker):
+        match call:
+            case ast.Call(func=ast.Attribute(value=base, attr="__init__")):
+                span = module.text.span(call)
+            case _:
+                continue
+        if module.text.is_filled(span):
+            continue
+        first = call.args[0] if call.args else None
+        passes = isinstance(first, ast.Name) and first.id == me
+        match base:
+            case ast.Call(func=ast.Name(id="super"), args=[ast.Name(id=name) as place, *_]):
+                bound = module.names.get(name, ())
+                alone = len(bound) == 1 and isinstance(bound[0], ast.ClassDef)
+                if name not in names and alone and own.root == "state":
+                    word = Word(name, module.text.span(place))
+                    yield ClassFault(kind="other class", name=word, near=owner.name)
+                    continue
+            case ast.Call(func=ast.Name(id="super")):
+                pass
+            case _ if is_smach_state(module, base):
+                lists = ast.List | ast.Tuple | ast.Constant | ast.Set
+                if isinstance(first, lists) or (first is None and call.keywords):
+                    yield ClassFault(kind="no self", name=Word(me, module.text.span(base)))
+                continue
+            case _:
+                continue
+        if passes and first is not None and not others:
+            yield ClassFault(kind="self twice", name=Word(me, module.text.span(first)))
 
 
 def _list_faults(own: OwnClass) -> Iterator[ClassFault]:

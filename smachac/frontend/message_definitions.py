@@ -26,6 +26,7 @@ from smachac.ir.message_types import (
     Message,
     MessageConstant,
     MessageField,
+    Missing,
     MissingDefinitions,
 )
 from smachac.ir.nodes import DEFINITION_KINDS
@@ -117,6 +118,10 @@ def _named_types(base: State) -> dict[tuple[DefinitionKind, str], None]:
             kind = DEFINITION_KINDS.get(held.role)
             if kind is not None:
                 found[kind, type_text(held)] = None
+        for preset in state.userdata:
+            text = preset.value.data if preset.key.endswith("type") else None
+            if isinstance(text, str) and type_name(text, "msg") is not None:
+                found["msg", text] = None
     return found
 
 
@@ -127,20 +132,27 @@ def _nested(definition: Definition) -> list[str]:
 
 
 def missing_definitions_of(base: State, found: Definitions, library: Library) -> MissingDefinitions:
-    """The types in the states of a script whose package has types of their kind, but not these.
+    """The types in the states of a script whose package has types of their kind, but not these, or
+    types of these names, but of another kind.
 
     Types that ROS 1 makes of an action, such as `TestActionGoal`, and those with a definition in
     the format of the OMG (`.idl`) are not missing.
     """
-    missing: dict[tuple[DefinitionKind, str], tuple[str, ...]] = {}
+    missing: dict[tuple[DefinitionKind, str], Missing] = {}
     for kind, text in _named_types(base):
         word = type_name(text, kind)
         if (kind, text) in found or word is None or (kind != "srv" and _MADE.search(word.name)):
             continue
         files = library.definition_names(f"{word.package}/{kind}")
         names = {each.removesuffix(f".{kind}") for each in files if each.endswith(f".{kind}")}
-        if names and word.name not in names and f"{word.name}.idl" not in files:
-            missing[kind, text] = tuple(sorted(names))
+        if word.name in names or f"{word.name}.idl" in files:
+            continue
+        others = (
+            each for each in PARTS if each != kind and find_definitions(str(word), each, library)
+        )
+        other = next(others, None)
+        if names or other is not None:
+            missing[kind, text] = Missing(tuple(sorted(names)), other)
     return missing
 
 

@@ -61,6 +61,26 @@ class PathEnds:
                 return word in _STOPS or word.startswith("raise_") or self.never_returns(function)
         return False
 
+    def open_end(self, body: list[ast.stmt]) -> tuple[str, ast.AST]:
+        """Where control comes from at the end of statements that do not end: the kind of place,
+        and its statement or handler."""
+        last = body[-1]
+        match last:
+            case ast.If(orelse=[]):
+                return "if", last
+            case ast.If(body=inner, orelse=other):
+                return self.open_end(other if self.block(inner) else inner)
+            case ast.With(body=inner):
+                return self.open_end(inner)
+            case ast.Match(cases=cases):
+                case = next((each for each in cases if not self.block(each.body)), None)
+                return ("match", last) if case is None else self.open_end(case.body)
+            case ast.Try(handlers=handlers, body=inner):
+                handler = next((each for each in handlers if not self.block(each.body)), None)
+                if self.block(inner) and handler is not None:
+                    return "except", handler
+        return "", last
+
     def _is_endless(self, loop: ast.For | ast.While) -> bool:
         """Whether the head of a loop never ends it."""
         if isinstance(loop, ast.While):

@@ -1,19 +1,21 @@
 """The control flow of `execute`: returned constants, paths without an outcome, userdata accesses.
 
-Calls of methods of the same object and of functions of the same module are followed. The keys that
-can be set before a `return` are an upper bound: where the userdata is passed to other code, they
-are not known.
+Calls of methods of the same object and of functions in modules of the user are followed. The keys
+that can be set before a `return` are an upper bound: where the userdata is passed to other code,
+they are not known.
 """
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from smachac.diagnostics.source import Span, Word
+from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
-from smachac.frontend.python_modules import Module, OwnClass, constant
+from smachac.frontend.python_constants import entries, member, table
+from smachac.frontend.python_modules import Module, OwnClass, constant, find_function
 from smachac.ir.class_facts import Ending
 
 METHODS = frozenset(["extract", "keys", "merge", "update"])
@@ -31,7 +33,9 @@ _Functions = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.expr
 class Flow:
     """The control flow of a function; for the fields see ClassFacts.
 
-    `written` are the keys that it can set; None: not known.
+    `written` are the keys that it can set; None: not known. `passed` are the parameters that it
+    returns, each with the keys that can be set before. `open_end` is the place of the `if`, `match`
+    or `except` after which it ends without `return`, with that word.
     """
 
     endings: tuple[Ending, ...] = ()
@@ -41,6 +45,8 @@ class Flow:
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
     written: Keys = None
+    passed: tuple[tuple[str, Keys], ...] = ()
+    open_end: Word | None = None
 
 
 def is_plain(function: ast.FunctionDef) -> bool:
@@ -63,9 +69,11 @@ def _is_generator(function: ast.FunctionDef) -> bool:
 class Flows:
     """The flows of the methods of a class and of functions, each analysed once."""
 
-    def __init__(self, own: OwnClass) -> None:
+    def __init__(self, own: OwnClass, library: Library) -> None:
         self.own = own
+        self.library = library
         self.assigned = own.assigned().keys()
+        self.functions: dict[tuple[str, str], tuple[Module, ast.FunctionDef] | None] = {}
         self._known: dict[tuple[ast.FunctionDef, str], Flow | None] = {}
 
     def of(self, module: Module, function: ast.FunctionDef, userdata: str) -> Flow | None:
@@ -94,6 +102,7 @@ class _Reader:
         self.called: dict[ast.Call, Flow | None] = {}
         self.effect: dict[ast.AST, frozenset[str]] = {}
         self.endings: list[Ending] = []
+        self.passed: list[tuple[str, Keys]] = []
         self.complete = True
 
     def flow(self) -> Flow:
@@ -106,7 +115,7 @@ class _Reader:
         reads, writes = ((), ()) if rebound else self._accesses()
         known = not rebound and self._is_closed() and not filled
         self._block(body, NONE)
-        endings = self.endings if known else [Ending(outcome=e.outcome) for e in self.endings]
+        endings = self.endings if known else [replace(e, written=None) for e in self.endings]
         written = self._effects(self.function) if known else None
         return Flow(
             endings=tuple(endings),
@@ -116,7 +125,20 @@ class _Reader:
             reads=reads,
             writes=writes,
             written=written,
+            open_end=self._open_end() if not self.path_ends.block(body) else None,
+            passed=tuple(self.passed if known else [(name, None) for name, _ in self.passed]),
         )
+
+    def _open_end(self) -> Word | None:
+        """The kind of place from which control gets to the end, and its first line."""
+        kind, node = self.path_ends.open_end(self.function.body)
+        if not kind:
+            return None
+        line = getattr(node, "lineno", 1)
+        start = self.text.offset(line, getattr(node, "col_offset", 0))
+        source = self.text.source
+        end = source.line_starts[line - 1] + len(source.line(line).rstrip())
+        return Word(kind, Span(source, start, end))
 
     # --- userdata
 
@@ -135,7 +157,11 @@ class _Reader:
     def _follow_calls(self) -> None:
         """The flows of the functions that get the userdata."""
         for node in self.nodes:
-            if isinstance(node, ast.Call) and self._passes(node):
+            if (
+                isinstance(node, ast.Call)
+                and self._passes(node)
+                and access_of(node, self.userdata) is None
+            ):
                 self.called[node] = self._call(node)
 
     def _passes(self, call: ast.Call) -> bool:
@@ -147,18 +173,28 @@ class _Reader:
         found = self._target(call.func)
         if found is None:
             return None
-        module, function, bound = found
+        module, function, _ = found
+        given = self._arguments(call)
+        if given is None:
+            return None
+        names = [name for name, value in given.items()
+                 if isinstance(value, ast.Name) and value.id == self.userdata]  # fmt: skip
+        return self.flows.of(module, function, "".join(names)) if len(names) <= 1 else None
+
+    def _arguments(self, call: ast.Call) -> dict[str, ast.expr] | None:
+        """The arguments of a call of a method or function of the user, by parameter; None where
+        they are not known."""
+        found = self._target(call.func)
+        if found is None:
+            return None
+        _, function, bound = found
         parameters = [each.arg for each in function.args.args][bound:]
         named = {each.arg for each in (*function.args.args, *function.args.kwonlyargs)}
         if function.args.posonlyargs or any(isinstance(each, ast.Starred) for each in call.args):
             return None
-        given = list(zip(parameters, call.args, strict=False))
-        given += [(str(each.arg), each.value) for each in call.keywords if each.arg in named]
-        if len(given) != len(call.args) + len(call.keywords):
-            return None
-        names = [name for name, value in given
-                 if isinstance(value, ast.Name) and value.id == self.userdata]  # fmt: skip
-        return self.flows.of(module, function, "".join(names)) if len(names) <= 1 else None
+        given = dict(zip(parameters, call.args, strict=False))
+        given |= {each.arg: each.value for each in call.keywords if each.arg in named and each.arg}
+        return given if len(given) == len(call.args) + len(call.keywords) else None
 
     def _target(self, called: ast.expr) -> tuple[Module, ast.FunctionDef, int] | None:
         """The method or function that a call runs, and the number of arguments it has already."""
@@ -172,15 +208,13 @@ class _Reader:
                     case [ast.Name(id="staticmethod")]:
                         return module, function, 0
                 return (module, function, 1) if is_plain(function) else None
-            case ast.Name(id=name):
-                local = any(
-                    isinstance(each, ast.Name) and each.id == name
-                    and not isinstance(each.ctx, ast.Load)
-                    for each in self.nodes
-                )  # fmt: skip
-                match self.module.names.get(name, ()):
-                    case (ast.FunctionDef() as function,) if not local and is_plain(function):
-                        return self.module, function, 0
+            case ast.Name() | ast.Attribute():
+                name = next(
+                    (each.id for each in ast.walk(called) if isinstance(each, ast.Name)), ""
+                )
+                found = None if self._is_local(name) else self._function(called)
+                if found is not None and is_plain(found[1]):
+                    return *found, 0
         return None
 
     def _never_returns(self, called: ast.expr) -> bool:
@@ -190,7 +224,24 @@ class _Reader:
             return False
         module, function, _ = found
         flow = self.flows.of(module, function, "")
-        return flow is not None and flow.complete and not flow.silent and not flow.endings
+        return (
+            flow is not None and flow.complete and not (flow.silent or flow.endings or flow.passed)
+        )
+
+    def _function(self, called: ast.expr) -> tuple[Module, ast.FunctionDef] | None:
+        """The function of a module that a call names, found once for each expression."""
+        key = (self.module.text.source.name, ast.unparse(called))
+        if key not in self.flows.functions:
+            self.flows.functions[key] = find_function(self.module, called, self.flows.library)
+        return self.flows.functions[key]
+
+    def _is_local(self, name: str) -> bool:
+        """Whether the function binds a name itself."""
+        return any(
+            (isinstance(each, ast.Name) and each.id == name and not isinstance(each.ctx, ast.Load))
+            or (isinstance(each, ast.arg) and each.arg == name)
+            for each in self.nodes
+        )  # fmt: skip
 
     def _is_closed(self) -> bool:
         """Whether only this function and those it calls can write the userdata."""
@@ -204,6 +255,8 @@ class _Reader:
                     uses -= known
                 case ast.Compare(ops=[ast.In() | ast.NotIn()], comparators=[ast.Name(id=name)]):
                     uses -= name == self.userdata
+                case ast.Call():
+                    uses -= access_of(node, self.userdata) is not None
         for flow in self.called.values():
             uses -= flow is not None and flow.written is not None
         return uses == 0
@@ -215,10 +268,9 @@ class _Reader:
             todo = [node]
             while todo:
                 each = todo.pop()
-                if isinstance(each, ast.Attribute | ast.Subscript):
-                    key = key_of(each, self.userdata)
-                    if key is not None and not isinstance(each.ctx, ast.Load):
-                        found.add(key)
+                access = access_of(each, self.userdata)
+                if access is not None and not access.read:
+                    found.add(access.key)
                 flow = self.called.get(each) if isinstance(each, ast.Call) else None
                 found.update(flow.written or () if flow is not None else ())
                 todo.extend(ast.iter_child_nodes(each))
@@ -240,18 +292,16 @@ class _Reader:
                     tried.update(inner for each in node.body for inner in ast.walk(each))
         updated = {each.target for each in self.nodes if isinstance(each, ast.AugAssign)}
         for node in self.nodes:
-            if not isinstance(node, ast.Attribute | ast.Subscript) or node in tried:
+            access = access_of(node, self.userdata) if node not in tried else None
+            if access is None or access.key in tested:
                 continue
-            key = key_of(node, self.userdata)
-            if key is None or key in tested:
-                continue
-            span = self.text.span(node)
+            span = self.text.span(access.place)
             if self.text.is_filled(span):
                 continue
-            if isinstance(node.ctx, ast.Load) or node in updated:
-                reads.append(Word(key, span))
-            if not isinstance(node.ctx, ast.Load):
-                writes.append(Word(key, span))
+            if access.read or node in updated:
+                reads.append(Word(access.key, span))
+            if not access.read:
+                writes.append(Word(access.key, span))
         inner = [
             flow for call, flow in self.called.items() if flow is not None and call not in tried
         ]
@@ -355,6 +405,17 @@ class _Reader:
                 bound = [names for names in self.flows.own.names if name in names]
                 text = constant(bound[0], name) if bound else None
                 return name not in self.flows.assigned and self._add(text, span, before)
+            case ast.Attribute(value=ast.Name(id=owner), attr=name):
+                return not self._is_local(owner) and self._member(owner, name, span, before)
+            case ast.Attribute(
+                value=ast.Attribute(value=ast.Name(id=owner), attr=name), attr="value"
+            ) if not self._is_local(owner):
+                one = member(self.module, owner, name, self.flows.library)
+                return one is not None and self._add(one.value or one.text, span, before)
+            case ast.Subscript(value=kept, slice=key):
+                return self._entries(kept, key, before)
+            case ast.Call(func=ast.Attribute(value=kept, attr="get"), args=[key, default]):
+                return self._entries(kept, key, before) and self._constants(default, before)
             case ast.Call():
                 return self._results(value, before)
             case _ if _is_no_text(value):
@@ -367,11 +428,45 @@ class _Reader:
             self.endings.append(Ending(outcome=Word(text, span), written=before))
         return text is not None
 
+    def _member(self, owner: str, name: str, span: Span, before: Keys) -> bool:
+        """As `_constants` for a constant of a class, `Result.GOOD`. A member of an enumeration is
+        not equal to its value."""
+        found = member(self.module, owner, name, self.flows.library)
+        if found is None or found.text is not None:
+            return found is not None and self._add(found.text, span, before)
+        meant = f"{owner}.{name}.value" if found.value is not None else None
+        word = Word(f"{owner}.{name}", span)
+        self.endings.append(Ending(outcome=word, written=before, meant=meant))
+        return True
+
+    def _entries(self, kept: ast.expr, key: ast.expr, before: Keys) -> bool:
+        """As `_constants` for an item of a dictionary. Which one, is known for a constant key."""
+        values = None
+        match kept:
+            case ast.Dict():
+                values = entries(kept, key)
+            case ast.Name(id=name) if not self._is_local(name):
+                found = table(self.module, name)
+                values = entries(found, key) if found is not None else None
+        if values is None:
+            return False
+        certain = isinstance(key, ast.Constant)
+        first = len(self.endings)
+        known = [self._constants(one, before) for value in values for one in alternatives(value)]
+        if not certain:
+            self.endings[first:] = [
+                replace(each, written=None, possible=True) for each in self.endings[first:]
+            ]
+        return all(known)
+
     def _named(self, name: str, span: Span, before: Keys) -> bool:
         """As `_constants` for a local variable that has only constants, or a constant of the
         module."""
         stores = [each for each in self.nodes if isinstance(each, ast.Name) and each.id == name
                   and not isinstance(each.ctx, ast.Load)]  # fmt: skip
+        if not stores and self._is_passed(name):
+            self.passed.append((name, before))
+            return True
         other = any(isinstance(each, ast.arg) and each.arg == name for each in self.nodes)
         other = other or any(isinstance(each, ast.Global | ast.Nonlocal) for each in self.nodes)
         if other:
@@ -389,6 +484,27 @@ class _Reader:
             self._constants(each, before)
         return True
 
+    def _is_passed(self, name: str) -> bool:
+        """Whether a name is a parameter of the function that no condition of it examines."""
+        given = self.function.args
+        own = [each.arg for each in (*given.args, *given.kwonlyargs)]
+        every = [each.arg for each in self.nodes if isinstance(each, ast.arg)]
+        if own.count(name) != 1 or every.count(name) != 1 or name in (self.own_name, self.userdata):
+            return False
+        tests: list[ast.AST] = []
+        for node in self.nodes:
+            match node:
+                case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test):
+                    tests.append(test)
+                case ast.Match(subject=test) | ast.Assert(test=test):
+                    tests.append(test)
+                case ast.Compare() | ast.BoolOp() | ast.comprehension() | ast.Subscript():
+                    tests.append(node)
+                case ast.Call(func=ast.Attribute(attr="get" | "pop")):
+                    tests.append(node)
+        names = (each for test in tests for each in ast.walk(test) if isinstance(each, ast.Name))
+        return all(each.id != name for each in names)
+
     def _results(self, call: ast.Call, before: Keys) -> bool:
         """As `_constants` for what a method or function of the user returns."""
         flow = self.called.get(call) if call in self.called else self._call(call)
@@ -397,8 +513,17 @@ class _Reader:
         for each in flow.endings:
             written = each.written if call in self.called else NONE
             known = None if written is None else _both(before, written)
-            self.endings.append(Ending(outcome=each.outcome, written=known))
-        return flow.complete and not flow.silent
+            self.endings.append(replace(each, written=known))
+        given = self._arguments(call) or {}
+        complete = flow.complete and not flow.silent
+        for name, written in flow.passed:
+            value = given.get(name)
+            set_before = (written or NONE) if call in self.called else NONE
+            known = None if written is None else _both(before, set_before)
+            values = [] if value is None else [*alternatives(value)]
+            certain = [self._constants(each, known) for each in values]
+            complete = complete and certain != [] and all(certain)
+        return complete
 
 
 def _is_no_text(value: ast.expr) -> bool:
@@ -432,13 +557,29 @@ def _either(*several: Keys) -> Keys:
     return NONE.union(*reached) if reached else None
 
 
-def key_of(node: ast.AST, name: str) -> str | None:
-    """The key of the userdata that an expression accesses."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Access:
+    """A key of the userdata that an expression reads or, otherwise, writes, with its place."""
+
+    key: str
+    read: bool
+    place: ast.expr
+
+
+def access_of(node: ast.AST, name: str) -> Access | None:
+    """The access of an expression to the userdata of a name."""
     match node:
-        case ast.Attribute(value=ast.Name(id=owner), attr=key) if owner == name:
-            return None if key in METHODS or key.startswith("_") else key
-        case ast.Subscript(value=ast.Name(id=owner), slice=ast.Constant(str() as key)):
-            return key if owner == name else None
+        case ast.Attribute(value=ast.Name(id=owner), attr=key, ctx=ctx) if owner == name:
+            if key not in METHODS and not key.startswith("_"):
+                return Access(key=key, read=isinstance(ctx, ast.Load), place=node)
+        case ast.Subscript(value=ast.Name(id=owner), slice=ast.Constant(str() as key), ctx=ctx):
+            if owner == name:
+                return Access(key=key, read=isinstance(ctx, ast.Load), place=node)
+        case ast.Call(
+            func=ast.Name(id="getattr" | "setattr" as function),
+            args=[ast.Name(id=owner), ast.Constant(str() as key) as place, *_],
+        ) if owner == name:
+            return Access(key=key, read=function == "getattr", place=place)
     return None
 
 

@@ -163,6 +163,55 @@ def find_class(
     return None
 
 
+def find_function(
+    module: Module, called: ast.expr, library: Library
+) -> tuple[Module, ast.FunctionDef] | None:
+    """The function of a module that an expression names, also where the module imports it:
+    `refine`, `tools.refine`."""
+    match called:
+        case ast.Name(id=name):
+            match module.names.get(name, ()):
+                case (ast.FunctionDef() as function,):
+                    return module, function
+                case (ast.ImportFrom() as imported,) if imported in module.text.tree.body:
+                    own = next(each.name for each in imported.names
+                               if (each.asname or each.name) == name)  # fmt: skip
+                    return _function_in(source_module(module, imported), own, library)
+        case ast.Attribute(value=ast.Name() | ast.Attribute() as owner, attr=name):
+            imported_module = _module_name(module, ast.unparse(owner))
+            return _function_in(imported_module, name, library) if imported_module else None
+    return None
+
+
+def _function_in(
+    module_name: str, name: str, library: Library
+) -> tuple[Module, ast.FunctionDef] | None:
+    module = load_module(module_name, library)
+    if not isinstance(module, Module) or module.dynamic:
+        return None
+    match module.names.get(name, ()):
+        case (ast.FunctionDef() as function,) if function in module.text.tree.body:
+            return module, function
+    return None
+
+
+def _module_name(module: Module, written: str) -> str | None:
+    """The dotted name of the imported module that is written so in a module: `tools` after
+    `from cell import tools`."""
+    head, _, rest = written.partition(".")
+    match module.names.get(head, ()):
+        case (ast.ImportFrom() as node,) if node in module.text.tree.body and not rest:
+            own = next(each.name for each in node.names if (each.asname or each.name) == head)
+            return f"{source_module(module, node)}.{own}".lstrip(".")
+        case (ast.Import() as node,) if node in module.text.tree.body:
+            for alias in node.names:
+                if alias.asname == head and not rest:
+                    return alias.name
+                if alias.asname is None and alias.name == written:
+                    return written
+    return None
+
+
 def _imported(
     module: Module, node: ast.ImportFrom, name: str, library: Library, steps: int
 ) -> tuple[Module, ast.ClassDef] | None:
@@ -196,7 +245,7 @@ def with_bases(module: Module, node: ast.ClassDef, library: Library) -> OwnClass
             root = "object"
             break
         base = node.bases[0]
-        if _is_smach_state(module, base):
+        if is_smach_state(module, base):
             root = "state"
             break
         found = None
@@ -211,11 +260,11 @@ def with_bases(module: Module, node: ast.ClassDef, library: Library) -> OwnClass
                 classes.append(found)
         else:
             root = "unknown"
-    names = tuple(_names(each.body)[0] for _, each in classes)
+    names = tuple(names_of(each.body)[0] for _, each in classes)
     return OwnClass(classes=tuple(classes), names=names, root=root)
 
 
-def _is_smach_state(module: Module, base: ast.expr) -> bool:
+def is_smach_state(module: Module, base: ast.expr) -> bool:
     """Whether an expression is the class `State` of SMACH. In a template, whose imports are in
     other templates, it is by its name."""
     match base:
@@ -255,13 +304,13 @@ def constant(names: Names, name: str) -> str | None:
 
 
 def _module(text: PythonText, name: str, *, package: bool) -> Module:
-    names, dynamic = _names(text.tree.body)
+    names, dynamic = names_of(text.tree.body)
     if "__getattr__" in names:
         dynamic = True
     return Module(text=text, name=name, package=package, names=names, dynamic=dynamic)
 
 
-def _names(body: list[ast.stmt]) -> tuple[Names, bool]:
+def names_of(body: list[ast.stmt]) -> tuple[Names, bool]:
     """The statements that bind each name in a body, in their order, and whether there can be
     other names."""
     found: dict[str, list[ast.AST]] = {}

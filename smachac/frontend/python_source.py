@@ -52,8 +52,8 @@ class PythonText:
 
 
 def python_text(source: Source, *, template: bool) -> PythonText | None:
-    """A text of Python; None if it cannot be parsed. Raises RecursionError and MemoryError if it
-    is nested too deeply."""
+    """A text of Python; None if it is not valid. Raises RecursionError and MemoryError if it is
+    nested too deeply."""
     text = source.text
     if len(text) > LONGEST or _NOT_PORTABLE_LINES.search(text):
         return None
@@ -66,7 +66,10 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
-            return PythonText(source=source, tree=ast.parse(text), filled=filled)
+            tree = ast.parse(text)
+            if not template:  # finds `await` outside `async`, and `return` outside a function
+                compile(text, "", "exec", dont_inherit=True)
+            return PythonText(source=source, tree=tree, filled=filled)
     except (SyntaxError, ValueError):
         return None
 
@@ -79,7 +82,7 @@ def syntax_error(source: Source) -> Word | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
-            ast.parse(text)
+            compile(text, "", "exec", dont_inherit=True)
     except SyntaxError as error:
         line = min(max(error.lineno or 1, 1), len(source.line_starts))
         length = len(source.line(line))

@@ -14,15 +14,27 @@ FaultKind = Literal[
     "no state",
     "no execute",
     "no method",
+    "coroutine",
     "arguments",
     "no constructor call",
     "no outcomes",
+    "data class",
+    "self twice",
+    "no self",
+    "other class",
     "hidden method",
     "defined twice",
     "no parameter",
     "required parameter",
     "no outcome",
+    "wrong result",
+    "wrong parameters",
+    "wrong constructor",
+    "unused outcome",
+    "no answer to stops",
+    "unset output",
     "undefined name",
+    "no import",
     "undefined method",
     "no list",
 ]
@@ -52,10 +64,13 @@ class Parameter:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ending:
     """A constant that `execute` returns, and the userdata keys that the code before it can set;
-    None: not known."""
+    None: not known. `possible`: an entry of a table, which may be one that is never used. `meant`
+    is the expression that was probably meant."""
 
     outcome: Word
     written: frozenset[str] | None = None
+    possible: bool = False
+    meant: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,7 +83,8 @@ class ClassFacts:
 
     `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
     `execute` is the place of its name. `silent`: some path through it returns nothing,
-    `always_silent`: every path. `reads` and `writes` are the userdata keys that it accesses.
+    `always_silent`: every path. `open_end` is the `if`, `match` or `except` after which it returns
+    nothing. `reads` and `writes` are the userdata keys that it accesses.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
     `values` are the expressions that `execute` itself writes, each with its key.
     """
@@ -84,6 +100,7 @@ class ClassFacts:
     execute: Span | None = None
     silent: bool = False
     always_silent: bool = False
+    open_end: Word | None = None
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
     stub: bool = False

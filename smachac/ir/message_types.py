@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.types import ANY, Type
@@ -105,9 +105,17 @@ Definitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], tuple[Definition, 
 """By kind and name as in the script all definitions that were found: those of several versions of
 ROS can differ. The messages in their fields are in it, too: `("msg", "geometry_msgs/Pose")`."""
 
-MissingDefinitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], tuple[str, ...]]"
-"""The types of a script that their packages do not have, by kind and name as in the script, with
-the names of the types of that kind that the package has."""
+
+class Missing(NamedTuple):
+    """A type that its package does not have: the names of the types of that kind that the package
+    has, and the kind of its type with this name."""
+
+    names: tuple[str, ...]
+    other: DefinitionKind | None = None
+
+
+MissingDefinitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], Missing]"
+"""The types of a script that their packages do not have, by kind and name as in the script."""
 
 
 def userdata_type(wanted: FieldType) -> Type:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import ClassFault
+from smachac.targets.class_faults import about_class, class_effect
 
 
 @problem(
@@ -451,6 +452,8 @@ def _syntax_help(message: str) -> str:
     if message.endswith("was never closed"):
         closing = {"'('": ")", "'['": "]", "'{'": "}"}.get(message.split(" ")[0])
         return f"close the bracket: write `{closing}`" if closing else "close the bracket"
+    if message == "'await' outside async function":
+        return "remove `await`, or write `asyncio.run(...)` in its place"
     if message.startswith("unterminated"):
         return "write the quotation mark at the end of the text"
     if message.startswith("expected an indented block"):
@@ -479,8 +482,9 @@ def bad_class(
 
     Exactly: the class is read, never run. A program makes the state with the variables that a
     script sets, passed by their names. `check` reports a warning; a build for the language of the
-    class fails. Found are also misspelt names, methods of `self` that no class defines, and keys
-    that are not in a list. Where a name can be defined elsewhere, nothing is reported.
+    class fails. Found are also misspelt names, usual modules that are not imported, methods of
+    `self` that no class defines, and keys that are not in a list. Where a name can be defined
+    elsewhere, nothing is reported.
 
     Wrong:
         name: sm
@@ -525,92 +529,15 @@ def bad_class(
             def execute(self, userdata):
                 return "done"
     """
-    message, help = _about_class(fault, state_type, name, lists)
-    if fault.near is not None:
-        written = fault.kind == "no list" or fault.near.startswith('"')
-        help = f"write `{fault.near}`" if written else f"did you mean `{fault.near}`?"
-        if fault.kind == "no execute":
-            help = f"rename `{fault.near}` to `execute`"
+    message, help = about_class(fault, state_type, name, lists)
     return Finding(
         span=fault.name.span,
         message=message,
         arguments=(target, state_type, fault.kind, fault.name.text),
         help=help,
-        effect=_class_effect(fault, target),
+        effect=class_effect(fault, target),
         related=used,
     )
-
-
-def _class_effect(fault: ClassFault, target: str) -> str | None:
-    """The effect of a fault of a class; empty if its message contains it."""
-    if fault.kind in ("defined twice", "undefined name", "undefined method"):
-        return ""
-    return "the C++ compiler refuses the class" if target == "cpp" else None
-
-
-def _about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tuple[str, str]:
-    """The message and the help for a fault of a class. `lists` are the arguments of the constructor
-    of `smach.State` that fit the interface."""
-    word = fault.name.text
-    match fault.kind:
-        case "no state":
-            return f"the class `{name}` is not derived from `smach.State`", (
-                f"write `class {word}(smach.State):`"
-            )
-        case "no execute":
-            return f"the class `{name}` has no method `execute`", (
-                "add the method `execute`, which returns an outcome"
-            )
-        case "no method":
-            return f"`execute` of `{name}` returns a generator or a coroutine, not an outcome", (
-                "write it as a plain method: `def execute(self, userdata):` without `yield`"
-            )
-        case "arguments":
-            return f"`execute` of `{name}` must accept exactly one argument: the userdata", (
-                "write `def execute(self, userdata):`"
-            )
-        case "no constructor call":
-            return f"`__init__` of `{name}` does not call `__init__` of `smach.State`", (
-                f"write `super().__init__({lists})` as the first line of `__init__`"
-            )
-        case "no outcomes":
-            return f"the class `{name}` has no `__init__`, so the state has no outcomes", (
-                f"add `def __init__(self):` with the line `super().__init__({lists})`"
-            )
-        case "hidden method":
-            return f"`self.{word}` hides the method `{word}` of `smach.State`, which SMACH calls", (
-                f"give the attribute another name, such as `self.own_{word}`"
-            )
-        case "undefined name":
-            return f"`{word}` is used in `{name}`, but nothing defines it: Python stops there", (
-                "define it in the module, or import it"
-            )
-        case "undefined method":
-            return f"neither `{name}` nor `smach.State` defines `{word}`: Python stops here", (
-                f"define `{word}` in the class, or correct the name"
-            )
-        case "no list":
-            return f"`{word}` of `{name}` must be a list: SMACH cannot use another collection", (
-                f"write `{word}=[...]`"
-            )
-        case "defined twice":
-            return f"`{word}` is defined twice: only the last definition counts", (
-                "remove one of them, or give it another name"
-            )
-        case "no outcome":
-            return f"`Outcome` of `{name}` has no `{word}`", (
-                "add it to `Outcome` and to the interface, or correct the name"
-            )
-        case "required parameter":
-            return f"`__init__` of `{name}` requires `{word}`, which is not a variable of" + (
-                f" the interface `{state_type}`"
-            ), (
-                f"give `{word}` a default value, or add it to the `variables` of"
-                f" `{state_type}.yml` and set it at the state"
-            )
-    return f"`__init__` of `{name}` does not accept `{word}`, a variable of" + (
-        f" the interface `{state_type}`"
-    ), f"add the parameter `{word}` to `__init__`"
 
 
 @problem("SM610", "param-fixed-at-build", Severity.WARNING)

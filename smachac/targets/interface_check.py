@@ -18,6 +18,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
+from smachac.targets.class_faults import CHECKED_ONLY
 from smachac.targets.errors import (
     Difference,
     bad_class,
@@ -111,6 +112,8 @@ def type_faults(
     if found is None:
         return
     for fault in found.faults:
+        if fault.kind in CHECKED_ONLY and not checked:
+            continue
         used: tuple[Related, ...] = (
             Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`"),
         )

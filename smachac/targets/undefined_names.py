@@ -169,6 +169,8 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
     if word in USERDATA and own:
         why = f"`{word}` is not this function's argument (`{own[0]}`)"
         return NameFix(f"write `{own[0]}`", why, _edits(use, own[0]))
+    if word == "params":
+        return _param_fix(use)
     if word in CONSTANTS:
         return NameFix(f"write `{CONSTANTS[word]}`", edits=_edits(use, CONSTANTS[word]))
     keys = [key.name for key in use.node.inputs]
@@ -186,6 +188,28 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
         return NameFix(f"did you mean `{near if near in own else f'{own[0]}.{near}'}`?")
     near = guesser(FUNCTIONS)(word)
     return NameFix(f"did you mean `{near}`?") if near is not None else None
+
+
+def _param_fix(use: _Use) -> NameFix:
+    """The cure of `params.speed` in code: a look-up."""
+    tree = python_tree(use.code.text)
+    for each in ast.walk(tree) if tree is not None else ():
+        match each:
+            case ast.Attribute(value=ast.Name(id="params"), attr=param):
+                pass
+            case ast.Subscript(value=ast.Name(id="params"), slice=ast.Constant(str() as param)):
+                pass
+            case _:
+                continue
+        before, found, after = use.code.text.partition(ast.unparse(each))
+        if found:
+            parts = [f"'{part}'" for part in (before, after) if part]
+            parts.insert(1 if before else 0, f"[params, {param}]")
+            return NameFix(
+                f"a param is looked up outside of code: write `[{', '.join(parts)}]`",
+                f"`params.{param}` is used in code, which has no name `params`",
+            )
+    return NameFix("a param is looked up outside of code: `[params, NAME]`")
 
 
 def _is_called(use: _Use) -> bool:

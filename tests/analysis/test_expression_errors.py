@@ -206,6 +206,9 @@ def told(text: str) -> list[str]:
         ("ud.n not in ['a', 'b']", ["`ud.n not in ['a', 'b']` is always true:"
                                     " `int` never equals `str`"]),
         ("ud.rad - ud.deg", ["`ud.rad - ud.deg` combines `float<rad>` and `float<deg>`"]),
+        ("max(1.0, ud.rad, ud.deg)",
+         ["`max(1.0, ud.rad, ud.deg)` combines `float<rad>` and `float<deg>`"]),
+        ("min(ud.rad, 2.0, ud.rad)", []),
         ("ud.rad < ud.deg", ["`ud.rad < ud.deg` combines `float<rad>` and `float<deg>`"]),
         # Evaluated in some runs only.
         ("ud.s + 1 if ud.n else 0", ["`ud.s + 1` adds `str` and `int` (perhaps)"]),

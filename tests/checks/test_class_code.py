@@ -129,7 +129,8 @@ def test_a_correct_class() -> None:
         (changed(("(self, speed)", "(self)"), ("= speed", "= 1")),
          ["SM609 cell/find.py:4 FindPart"], "add the parameter `speed` to `__init__`"),
         (changed(("(self, speed)", "(self, sped)"), ("= speed", "= sped")),
-         ["SM609 cell/find.py:4 FindPart"], "did you mean `sped`?"),
+         ["SM609 cell/find.py:5 sped"],
+         "rename the parameter `sped` to `speed`, or correct the name in the interface"),
         (changed(("(self, speed)", "(self, speed, camera)")),
          ["SM609 cell/find.py:5 camera"], None),
         (changed(("(self, userdata)", "(self)")), ["SM609 cell/find.py:11 execute"], None),
@@ -226,6 +227,152 @@ def test_what_cannot_be_judged_and_what_is_correct(pair: tuple[str, str]) -> Non
     assert lines(findings(text)) == []
 
 
+@pytest.mark.parametrize(
+    ("pairs", "found", "help"),
+    [
+        # an outcome that passes through a parameter
+        ([('return "lost"', 'return self.end("lots")\n\n    def end(self, outcome):\n'
+           "        print(outcome)\n        return outcome")],
+         ['SM309 cell/find.py:19 "lots"'], "did you mean `lost`?"),
+        ([('return "lost"', 'return end(3, result="lots")'),
+          ("import smach\n", "import smach\n\n\ndef end(n, result):\n    return result\n")],
+         ['SM309 cell/find.py:23 "lots"'], "did you mean `lost`?"),
+        # members of classes and enumerations, entries of tables
+        ([('return "lost"', "return Result.LOST"), ("import smach\n", "import enum\nimport smach\n"
+           '\n\nclass Result(enum.Enum):\n    LOST = "lost"\n')],
+         ["SM309 cell/find.py:24 Result.LOST"], "write `Result.LOST.value`"),
+        ([('return "lost"', "return Result.LOST.value"),
+          ("import smach\n", "import enum\nimport smach\n"
+           '\n\nclass Result(enum.Enum):\n    LOST = "lots"\n')],
+         ["SM309 cell/find.py:24 Result.LOST.value"], "did you mean `lost`?"),
+        ([('return "lost"', "return Result.LOST"),
+          ("import smach\n", 'import smach\n\n\nclass Result:\n    LOST = "lots"\n')],
+         ["SM309 cell/find.py:23 Result.LOST"], "did you mean `lost`?"),
+        ([('return "lost"', "return ENDS[userdata.tries]"),
+          ("import smach\n", 'import smach\n\nENDS = {1: "lost", 2: "lots"}\n')],
+         ['SM309 cell/find.py:3 "lots"'], "did you mean `lost`?"),
+        ([('return "lost"', 'return {1: "lost"}.get(userdata.tries, "lots")')],
+         ['SM309 cell/find.py:19 "lots"'], "did you mean `lost`?"),
+        # userdata by name
+        ([("userdata.tries", 'getattr(userdata, "trys")')],
+         ['SM310 cell/find.py:12 "trys"'], "did you mean `tries`?"),
+        ([("userdata.pose = pose", 'setattr(userdata, "psoe", pose)')],
+         ['SM308 cell/find.py:17 "psoe"'], "did you mean `pose`?"),
+        # constructors
+        ([("super().__init__(\n", "super().__init__(self, \n")],
+         ["SM609 cell/find.py:6 self"], None),
+        ([("super().__init__(\n", "smach.State.__init__(\n")],
+         ["SM609 cell/find.py:6 smach.State"], None),
+        ([("super()", "super(Other, self)"), ("import smach\n", "import smach\n\n\n"
+           "class Other(smach.State):\n    pass\n")], ["SM609 cell/find.py:10 Other"], None),
+        ([("import smach\n", "from dataclasses import dataclass\nimport smach\n"),
+          (HEAD, "@dataclass\n" + HEAD), ("    def __init__(self, speed):\n" + LISTS
+           + "        self.speed = speed\n", "    speed: float\n")],
+         ["SM609 cell/find.py:6 FindPart"], None),
+        # Python
+        ([("            if self.pre", "            time.sleep(1.0)\n            if self.pre")],
+         ["SM609 cell/find.py:13 time"], "write `import time` at the top of the file"),
+        ([("def execute", "async def execute")], ["SM609 cell/find.py:4 FindPart"], None),
+        ([("pose = camera", "pose = await camera")],
+         ["SM608 cell/find.py:15 await camera.look(self.speed)"],
+         "remove `await`, or write `asyncio.run(...)` in its place"),
+    ],
+)  # fmt: skip
+def test_values_and_calls_of_other_kinds(
+    pairs: list[tuple[str, str]], found: list[str], help: str | None
+) -> None:
+    report = findings(changed(*pairs))
+    assert lines(report) == found
+    if help is not None:
+        assert report[0].help == help
+
+
+SILENT_PAIRS: list[list[tuple[str, str]]] = [
+    # a parameter that the function examines or changes
+    [('return "lost"', 'return self.end("again")\n\n    def end(self, outcome):\n'
+      '        if outcome == "again":\n            return "lost"\n        return outcome')],
+    [('return "lost"', 'return self.end("again")\n\n    def end(self, outcome):\n'
+      '        return {"again": "lost"}.get(outcome, outcome)')],
+    [('return "lost"', 'return self.end("x")\n\n    def end(self, outcome):\n'
+      '        outcome = "lost"\n        return outcome')],
+    # a table or a constant that the module changes
+    [('return "lost"', "return ENDS[userdata.tries]"),
+     ("import smach\n", 'import smach\n\nENDS = {1: "lots"}\nENDS[1] = "lost"\n')],
+    [('return "lost"', "return Result.LOST"), ("import smach\n", "import smach\n\n\n"
+      'class Result:\n    LOST = "lots"\n\n\nResult.LOST = "lost"\n')],
+    # enumerations whose members are texts
+    [('return "lost"', "return Result.LOST"), ("import smach\n", "import enum\nimport smach\n\n\n"
+      'class Result(str, enum.Enum):\n    LOST = "lost"\n')],
+    [('return "lost"', "return Result.LOST"), ("import smach\n", "import enum\nimport smach\n\n\n"
+      'class Result(enum.Enum):\n    LOST = "lost"\n    def __eq__(self, other):\n'
+      "        return self.value == other\n")],
+    [("userdata.tries", "getattr(userdata, NAME)"),
+     ("import smach\n", 'import smach\nNAME = "x"\n')],
+    [("super()", "super(FindPart, self)")],
+    [("super()", "super(Skill, self)"), ("(smach.State)", "(Skill)"),
+     ("import smach\n", "import smach\n\n\nclass Skill(smach.State):\n    pass\n")],
+    # a constructor of the base class with a parameter for the object
+    [("super().__init__(\n", "super().__init__(self,\n"), ("(smach.State)", "(Skill)"),
+     ("import smach\n", "import smach\n\n\nclass Skill(smach.State):\n"
+      "    def __init__(self, owner, **lists):\n        super().__init__(**lists)\n")],
+    [("import smach\n", "from dataclasses import dataclass\nimport smach\n"),
+     (HEAD, "@dataclass(eq=False)\n" + HEAD), ("    def __init__(self, speed):\n"
+      + LISTS + "        self.speed = speed\n",
+      "    speed: float\n\n    def __post_init__(self):\n" + LISTS)],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("pairs", SILENT_PAIRS)
+def test_values_and_calls_that_are_correct(pairs: list[tuple[str, str]]) -> None:
+    assert lines(findings(changed(*pairs))) == []
+
+
+def test_a_function_of_another_module_is_followed() -> None:
+    text = changed((SET, "                tools.keep(userdata, pose)\n"),
+                   ("import smach\n", "import smach\nfrom cell import tools\n"))  # fmt: skip
+    tools = "def keep(data, value):\n    data.{} = value\n"
+    files = {"cell/tools.py": tools.format("psoe")}
+    assert lines(findings(text, **files)) == ["SM308 cell/tools.py:2 data.psoe"]
+    assert lines(findings(text, **{"cell/tools.py": tools.format("pose")})) == []
+    text = changed((SET, "                keep(userdata, pose)\n"),
+                   ("import smach\n", "import smach\nfrom .tools import keep\n"))  # fmt: skip
+    assert lines(findings(text, **files)) == ["SM308 cell/tools.py:2 data.psoe"]
+
+
+def test_the_failure_that_is_meant() -> None:
+    text = changed(('"lost"', '"find_failed"'), ('return "lost"', 'return "find_error"'))
+    script = SCRIPT.replace("lost: lost", "find_failed: lost")
+    report = findings(text, INTERFACE.replace("lost", "find_failed"), script)
+    assert [item.help for item in report] == ["did you mean `find_failed`?"]
+
+
+@pytest.mark.parametrize(
+    ("end", "line", "words"),
+    [
+        ("match self.speed:\n            case 1.0:\n                return 'lost'",
+         "match self.speed:", "if no `case` matches, nothing is returned"),
+        ("try:\n            return look()\n        except OSError:\n            print(1)",
+         "except OSError:", "after this exception, nothing is returned"),
+        ("if self.speed:\n            return 'lost'", "if self.speed:",
+         "if this is false, nothing is returned"),
+        ("print(1)", "", ""),
+    ],
+)  # fmt: skip
+def test_where_no_outcome_is_returned(end: str, line: str, words: str) -> None:
+    report = findings(changed(('return "lost"', end)))
+    (item,) = [each for each in report if each.code == "SM309"]
+    first = item.related[0]
+    found = (first.span.text, first.message) if words else ("", "")
+    assert found == (line, words)
+
+
+def test_userdata_is_no_dictionary() -> None:
+    report = findings(changed(("userdata.tries", 'userdata.get("tries", 3)')))
+    (item,) = report
+    assert (item.code, item.span.text) == ("SM310", "userdata.get")
+    assert item.help == "read a key as `userdata.KEY`; test it with `'KEY' in userdata`"
+
+
 def test_a_stub_is_not_written_yet() -> None:
     body = (
         '    def execute(self, userdata):\n        userdata.pose = None\n        return "found"\n'
@@ -311,7 +458,10 @@ def test_a_returned_value_that_is_no_text(value: str) -> None:
 def test_the_opposite_of_an_outcome_is_no_suggestion() -> None:
     report = findings(changed(('return "lost"', 'return "not_found"')))
     (item,) = [item for item in report if item.code == "SM309"]
-    assert item.finding.help == "return one of its outcomes: `found`, `lost`, `preempted`"
+    assert item.finding.help == (
+        "return one of its outcomes: `found`, `lost`, `preempted`, or add `not_found` to the"
+        " outcomes of `FindPart` in its interface and `__init__`"
+    )
 
 
 RETRIED = SCRIPT.replace(

@@ -360,3 +360,38 @@ def test_a_duration_with_a_unit_is_corrected_at_its_preset() -> None:
     (item,) = [item for item in report if item.code == "SM318"]
     assert item.finding.help == "write the number without its unit: `2`"
     assert [place.span.text for place in item.finding.related] == ["2s"]
+
+
+def test_a_function_that_returns_nothing() -> None:
+    (item,) = found("time", "'`lambda ud: time.sleep(2.5)`'")
+    assert (item.code, item.finding.help) == ("SM318", "write the number of seconds: `2.5`")
+    assert shown("condition", "'lambda ud: random.shuffle(ud.seen)'") == [
+        ("SM318", "random.shuffle(ud.seen)")
+    ]
+    assert shown("callback", "'lambda ud: time.sleep(1)'") == []
+
+
+def test_swapped_arguments_have_no_other_findings() -> None:
+    (item,) = found("msg_cb", "'lambda ud, msg: msg.data'")
+    assert item.code == "SM317"
+    assert item.finding.help == "begin it with `lambda msg, ud:`"
+
+
+def test_a_param_in_code() -> None:
+    text = (
+        "name: sm\noutcomes: [done]\nparams: {limit: 3, other: 4}\nuserdata: {n: 1}\nstates:\n"
+        "  - A:\n      template: ConditionalOutcomeState\n      outcomes: [low]\n"
+        "      input_keys: [n]\n      callbacks: {low: CODE}\n      default_outcome: high\n"
+        "      transitions: {low: done, high: done}\n"
+    )
+    wrong = text.replace("CODE", "'lambda ud: ud.n < params.limit'")
+    report = analyse(Source("main.yml", wrong), memory_library({}, BUILT_IN), []).report
+    assert [(item.code, item.span.text) for item in report] == [
+        ("SM306", "other"),
+        ("SM019", "params"),
+    ]
+    help = report[1].help or ""
+    meant = "['lambda ud: ud.n < ', [params, limit]]"
+    assert help == f"a param is looked up outside of code: write `{meant}`"
+    right = text.replace("CODE", meant).replace(", other: 4", "")
+    assert analyse(Source("main.yml", right), memory_library({}, BUILT_IN), []).report == []

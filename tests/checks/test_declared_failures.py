@@ -137,6 +137,25 @@ def test_a_container_declares_its_failures() -> None:
     assert "SM204 13" not in found(CONTAINER.replace("FAILURE", "false"))
 
 
+DECLARED_LOOP = """\
+name: sm
+template: Base
+outcomes: [succeeded, failed]
+userdata: {parts: [a, b]}
+states:
+  - PICK:
+      template: Grasp
+      for_each: {item: part, in: parts, on: [grasped, OTHER]}
+      transitions: {grasped: succeeded, preempted: failed, timeout: failed, lost: failed}
+"""
+
+
+@pytest.mark.parametrize(("other", "lines"), [("lost", ["SM404 8"]), ("timeout", [])])
+def test_a_loop_that_continues_after_a_declared_failure(other: str, lines: list[str]) -> None:
+    given = DECLARED_LOOP.replace("OTHER", other).replace(f", {other}: failed", "")
+    assert found(given, Grasp=GRASP) == lines
+
+
 def test_outcomes_are_a_list_or_a_mapping() -> None:
     assert found(CONTAINER.replace("FAILURE", "1"))[0] == "SM004 7"
     assert found(CONTAINER.replace("failure: FAILURE", "failur: true"))[0] == "SM003 7"

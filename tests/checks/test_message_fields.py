@@ -199,3 +199,82 @@ def test_null_is_no_type() -> None:
     assert untyped(script) == [("null", "`service` of `GRASP` is null: it names no type")]
     script = ACTION.format(type="null", goal="{room: a}")
     assert untyped(script) == [("null", "`action` of `TIDY` is null: it names no type")]
+
+
+LAMP = {"cell_msgs/msg/Lamp.msg": "bool on\n", **FILES}
+
+
+@pytest.mark.parametrize(
+    ("type", "files", "found"),
+    [
+        ("cell_msgs/Lamp", LAMP, ("Lamp", "`cell_msgs/Lamp` is a message, not a service")),
+        ("cell_msgs/Tidy", LAMP, ("Tidy", "`cell_msgs/Tidy` is an action, not a service")),
+        ("std_msgs/msg/Bool", {}, ("Bool", "`std_msgs/msg/Bool` is a message, not a service")),
+        ("std_msgs/Bool", {}, None),
+        ("cell_msgs/Grasp", LAMP, None),
+    ],
+)
+def test_a_type_of_another_kind(
+    type: str, files: dict[str, str], found: tuple[str, str] | None
+) -> None:
+    lines = [each[:2] for each in faults(service("request: null", type=type), files)]
+    assert lines == ([found] if found is not None else [])
+
+
+PUBLISH = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {speed: DATA, msg_type: TYPE}
+states:
+  - GO:
+      template: PublishMsgState
+      action: once
+      input_keys: [msg, msg_type]
+      remapping: {msg: speed}
+      transitions: {succeeded: done, aborted: failed}
+"""
+SPEED = {
+    "cell_msgs/msg/Speed.msg": "Axis linear\nAxis angular\nstring frame\n",
+    "cell_msgs/msg/Axis.msg": "float64 x\nfloat64 y\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("data", "found"),
+    [
+        ("{linear: {x: 0.1}, angular: {yaw: 0.2}}", ["yaw"]),
+        ("{liner: {x: 0.1}}", ["liner"]),
+        ("{linear: {x: fast}}", ["fast"]),
+        ("{linear: {x: 1}, frame: map}", []),
+        ("[[0.1, 0.0], [0.0, 0.0], map]", []),
+    ],
+)
+def test_a_published_mapping(data: str, found: list[str]) -> None:
+    script = PUBLISH.replace("DATA", data).replace("TYPE", "cell_msgs/msg/Speed")
+    assert [each[0] for each in faults(script, SPEED)] == found
+    assert faults(script.replace("cell_msgs/msg/Speed", "other_msgs/Speed"), SPEED) == []
+
+
+def test_a_published_mapping_of_an_unknown_type() -> None:
+    script = PUBLISH.replace("DATA", "{liner: 1}").replace("TYPE", "cell_msgs/Speed")
+    script = script.replace("userdata: {", "input_keys: [msg_type]\nuserdata: {")
+    assert faults(script.replace(", msg_type: cell_msgs/Speed", ""), SPEED) == []
+
+
+@pytest.mark.parametrize(
+    ("condition", "found"),
+    [
+        ("result.count == 'OK'", "result.count == 'OK'"),
+        ("'OK' != result.count", "'OK' != result.count"),
+        ("result.count > 3", ""),
+        ("status == 'OK'", ""),
+        ("result.count in (1, 2)", ""),
+        ("str(result.count) == '3'", ""),
+    ],
+)
+def test_a_number_compared_with_a_text(condition: str, found: str) -> None:
+    function = f"lambda ud, status, result: 'succeeded' if {condition} else 'aborted'"
+    script = ACTION.format(type="cell_msgs/Tidy", goal="{room: hall}")
+    script = script.replace("      goal", f'      result_cb: "{function}"\n      goal')
+    assert [each[0] for each in faults(script)] == ([found] if found else [])

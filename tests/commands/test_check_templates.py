@@ -83,3 +83,22 @@ def test_scripts_without_templates_of_the_user_are_not_rendered(folder: Path) ->
     library = driver.analyse_script(path).library
     assert library is not None
     assert uses_own_templates(analysis.machine, library)
+
+
+def test_a_name_that_a_template_lacks(folder: Path) -> None:
+    script = str(folder / "main.yml")
+    template = folder / "templates" / "T.tpl.py"
+    template.write_text(CLASS.replace("parent_type", "parent_typ"))
+    (found,) = smachac.check(script)
+    assert (found.span.text, found.help) == ("parent_typ", "did you mean `parent_type`?")
+    template.write_text(CLASS.partition("{% block body")[0].replace("CODE", "go({{ sped }})"))
+    (folder / "templates" / "T.yml").write_text(
+        "name: T\nvariables: {speed: {type: float}}\noutcomes: {done: {}}\n"
+    )
+    (folder / "main.yml").write_text(
+        SCRIPT.replace("template: T, outcomes: [done]", "template: T, speed: 1.0")
+    )
+    (found,) = [item for item in smachac.check(script) if item.code == "SM605"]
+    assert found.span.text == "sped"
+    assert found.help is not None
+    assert found.help.startswith("accept the parameter `speed` in `__init__`")

@@ -250,7 +250,7 @@ def test_what_must_be_edited_fails(tmp_path: Path, capsys: pytest.CaptureFixture
     for words in (
         "main.yml:2:1: edit: `ode_name` is not a variable of the script [SM003]",
         "[SM101]",
-        "Bad.tpl.py:1:1: edit: the template uses `gone`, which is not defined [SM605]",
+        "Bad.tpl.py:1:20: edit: the template uses `gone`, which is not defined [SM605]",
         "Unused.tpl:1:",
         "0 of 4 files work as they are, 4 have to be edited",
     ):
@@ -270,7 +270,7 @@ def test_an_error_covers_the_name_that_it_is_about_and_no_other(
     template = "{% block body %}{{ gone }}\n{{ go }}{% endblock %}"
     (tmp_path / "Bad.tpl.py").write_text(template)
     text = migrated(capsys, str(tmp_path))[1]
-    assert "Bad.tpl.py:1:1: edit: the template uses `gone`, which is not defined [SM605]" in text
+    assert "Bad.tpl.py:1:20: edit: the template uses `gone`, which is not defined [SM605]" in text
     assert "no script gives `go`" in text
     assert "no script gives `gone`" not in text
 

@@ -6,10 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source
-from smachac.driver import analyse
+from smachac.driver import analyse, build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
+from smachac.targets import load_target
 
 SCRIPT = """
 name: sm
@@ -97,3 +99,130 @@ def test_a_header_without_a_folder(header: str, known: bool) -> None:
     report = analyse(Source("main.yml", SCRIPT), memory_library(files, BUILT_IN), []).report
     expected = ["SM608 did you mean `grasp.hpp`?"] if known else []
     assert [f"{item.code} {item.help}" for item in report] == expected
+
+
+PUSH = """
+name: Push
+variables: {speed: {type: float, default: 0.1}, name: {type: str, default: left}}
+input_keys: {depth: float}
+output_keys: {force: float}
+outcomes: {done: {}, stuck: {}, preempted: {}}
+code: {cpp: {header: arm/push.hpp, class: "arm::Push", with: "arm::Arm& arm"}}
+"""
+PUSH_CLASS = """\
+#include "smachac/smachac.hpp"
+namespace arm {
+class Push {
+public:
+  enum class Outcome { done, stuck, preempted };
+  struct In { double depth; };
+  struct Out { smachac::Key<double> &force; };
+
+  Push(Arm &arm, double speed, const std::string &name) : arm_(arm), speed_(speed), name_(name) {}
+
+  Outcome execute(In in, Out out, smachac::Stop &stop) {
+    while (!arm_.at(in.depth)) {
+      if (stop.requested()) {
+        stop.service();
+        return Outcome::preempted;
+      }
+      if (arm_.force() > 10.0) return give_up();
+    }
+    out.force = arm_.force();
+    return Outcome::done;
+  }
+
+private:
+  Outcome give_up() { return Outcome::stuck; }
+  Arm &arm_;
+  double speed_;
+  std::string name_;
+};
+}
+"""
+PUSH_SCRIPT = """
+name: sm
+outcomes: [done, lost, stopped]
+userdata: {depth: 0.1}
+output_keys: [force]
+states:
+  - PUSH: {template: Push, transitions: {done: done, stuck: lost, preempted: stopped}}
+"""
+SIGNATURE = "Outcome execute(In in, Out out, smachac::Stop &stop)"
+STOP = PUSH_CLASS[PUSH_CLASS.index("      if (stop") : PUSH_CLASS.index("      if (arm_")]
+
+
+def push_findings(*pairs: tuple[str, str]) -> list[str]:
+    text = PUSH_CLASS
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": PUSH, "arm/push.hpp": text}
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    return [f"{each.code} {each.span.line} {each.span.text}: {each.help}" for each in report]
+
+
+@pytest.mark.parametrize(
+    ("pair", "found"),
+    [
+        (("  Outcome execute", "  bool execute"), f"11 bool: write `{SIGNATURE}`"),
+        (("  Outcome execute", "  virtual std::string execute"), "11 std::string: write"),
+        ((", smachac::Stop &stop", ""), f"11 execute: write `{SIGNATURE}`"),
+        (("In in, ", ""), f"11 execute: write `{SIGNATURE}`"),
+        (("Arm &arm, double speed, ", "Arm &arm, "),
+         "9 Push: write `Push(arm::Arm &arm, double speed, const std::string &name_)`"),
+        (("return give_up()", "return Outcome::done"), None),
+        (("  Outcome give_up() { return Outcome::stuck; }\n", ""), None),
+        ((STOP, ""), "5 preempted: add where it waits: `if (stop.requested()) { stop.service();"
+         " return Outcome::preempted; }`"),
+        (("    out.force = arm_.force();\n", ""), "7 force: write `out.force = ...`, or"),
+    ],
+)  # fmt: skip
+def test_members_of_a_class(pair: tuple[str, str], found: str | None) -> None:
+    lines = push_findings(pair)
+    if found is None:  # another method names the outcome, or it is not known
+        assert lines == []
+    else:
+        (line,) = lines
+        assert line.startswith(f"SM609 {found}")
+
+
+def test_an_outcome_that_no_code_names() -> None:
+    (line,) = push_findings(
+        ("return give_up()", "return Outcome::done"), (" return Outcome::stuck;", " throw 1;")
+    )
+    assert line.startswith("SM609 5 stuck: return it where it is meant, or remove it from")
+
+
+def test_a_build_accepts_an_outcome_that_no_code_names() -> None:
+    text = PUSH_CLASS.replace(STOP, "")
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": PUSH, "arm/push.hpp": text}
+    library = memory_library(files, BUILT_IN)
+    checked = analyse(Source("main.yml", PUSH_SCRIPT), library, []).checked
+    target, built = load_target("cpp"), list[Diagnostic]()
+    assert checked is not None
+    assert target is not None
+    assert build(checked, target, library, built)
+    assert built == []
+
+
+@pytest.mark.parametrize(
+    "pairs",
+    [
+        [],
+        [("  Outcome execute", "  [[nodiscard]] auto execute"), ("Stop &stop) {", "Stop &) {")],
+        [("{ return Outcome::stuck; }", ";"), (STOP, "")],
+        [(STOP, ""), ("return Outcome::done", "return arm_.end<Outcome>()")],
+        [(STOP, ""), ("return Outcome::done", "Outcome end = Outcome::done; return end")],
+        [(STOP, ""), ("return Outcome::done", "return static_cast<Outcome>(2)")],
+        [(SIGNATURE + " {", SIGNATURE + ";\n  void other(Out out) {"), (STOP, "")],
+        [("    out.force = arm_.force();\n", "    arm_.fill(out);\n")],
+        [("    out.force = arm_.force();\n", "    auto &[f] = out;\n")],
+        [("  Push(Arm", "  template <class A> Push(A"), ("Out out, ", "")],
+        [("const std::string &name)", "std::string name, int more = 1)"),
+         ("name_(name)", "name_(name)")],
+        [("  Push(Arm", "  Push() = default;\n  Push(Arm")],
+    ],
+)  # fmt: skip
+def test_members_that_cannot_be_judged(pairs: list[tuple[str, str]]) -> None:
+    assert push_findings(*pairs) == []

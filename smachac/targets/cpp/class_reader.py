@@ -10,12 +10,14 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from smachac.diagnostics.source import NOWHERE, Source, Span, Word
+from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
+from smachac.targets.cpp.header_text import Part, without_literals
 from smachac.targets.cpp.identifiers import identifier
+from smachac.targets.cpp.member_faults import member_faults
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import ClassCode, class_code, field_type, interface_hash
 from smachac.targets.interface_check import Declared, Words
@@ -23,10 +25,6 @@ from smachac.targets.interface_check import Declared, Words
 LONGEST = 200_000
 """The length of the longest header that is read, in characters."""
 
-_NO_CODE = re.compile(
-    r"""(?P<kept>\b\d[\w.']*)|//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""",
-    re.DOTALL,
-)
 _CLASS = (
     r"(?<!enum )\b(?:class|struct)\s+(?:\w+\s+)?(?P<name>{})\b(?P<base>[^;(){{}}=]{{0,1000}})\{{"
 )
@@ -47,47 +45,6 @@ KNOWN = {"bool", "double", "float", "int", "std::int64_t", "std::string"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Part:
-    """A part of a header, without comments and string literals; `start` is its offset."""
-
-    source: Source
-    text: str
-    start: int = 0
-
-    def word(self, text: str, at: int, end: int) -> Word:
-        return Word(text, Span(self.source, self.start + at, self.start + end))
-
-    def only(self, pattern: str) -> re.Match[str] | None:
-        """The match of a pattern, if there is exactly one."""
-        found = list(re.finditer(pattern, self.text))
-        return found[0] if len(found) == 1 else None
-
-    def member(self, pattern: str) -> re.Match[str] | None:
-        """The match of a pattern outside braces, if the pattern has exactly one match."""
-        found = self.only(pattern)
-        before = self.text[: found.start()] if found is not None else ""
-        return found if before.count("{") == before.count("}") else None
-
-    def inside(self, head: re.Match[str] | None) -> _Part | None:
-        """The part between the brace at the end of a head and the matching closing brace."""
-        depth = 1
-        for found in re.finditer(r"[{}]", self.text[head.end() :]) if head is not None else ():
-            depth += 1 if found.group() == "{" else -1
-            if depth == 0 and head is not None:
-                text = self.text[head.end() : head.end() + found.start()]
-                return _Part(source=self.source, text=text, start=self.start + head.end())
-        return None
-
-    def split(self, mark: str) -> Iterator[tuple[int, str]]:
-        """The pieces between marks that are not blank, each with its offset."""
-        at = 0
-        for piece in self.text.split(mark):
-            if piece.strip():
-                yield at, piece
-            at += len(piece) + 1
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class _Field:
     """A field of `In` or `Out`: its name and the text of its type."""
 
@@ -105,7 +62,7 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         return _absent(code, absent_header(code.header, library))
     if len(source.text) > LONGEST:
         return None
-    whole = _Part(source=source, text=without_literals(source.text))
+    whole = Part(source=source, text=without_literals(source.text))
     name = code.name.rpartition("::")[2]
     if not re.search(rf"\b{re.escape(name)}\b|^\s*#\s*define\b", whole.text, re.M):
         return _absent(code, _absent_class(name, whole))
@@ -117,6 +74,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     inputs, outputs = (_fields(body, name, derived=derived) for name in ("In", "Out"))
     place = whole.word(name, *head.span("name"))
     outcomes = _outcomes(body, [each.name for each in type_.outcomes])
+    stale = _stale(body, interface_hash(type_))
+    others = () if derived or stale else member_faults(code, whole, body, outcomes)
     return Declared(
         name=code.name.removeprefix("::"),
         span=place.span,
@@ -127,8 +86,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
             *_other_fields("In", inputs, type_.input_keys),
             *_other_fields("Out", outputs, type_.output_keys),
         ),
-        stale=_stale(body, interface_hash(type_)),
-        faults=tuple(_faults(body, place, outcomes, derived=derived)),
+        stale=stale,
+        faults=(*_faults(body, place, outcomes, derived=derived), *others),
     )
 
 
@@ -153,7 +112,7 @@ def absent_header(header: str, library: Library) -> ClassFault | None:
     return ClassFault(kind="no module", name=Word(header, NOWHERE), near=meant)
 
 
-def _absent_class(name: str, whole: _Part) -> ClassFault | None:
+def _absent_class(name: str, whole: Part) -> ClassFault | None:
     """The fault that a header has no class of a name; None if it includes other headers of the
     user, which can define it."""
     included = re.findall(r'^\s*#\s*include\s*"([^"]*)"', whole.source.text, re.M)
@@ -164,7 +123,7 @@ def _absent_class(name: str, whole: _Part) -> ClassFault | None:
 
 
 def _faults(
-    body: _Part, name: Word, outcomes: Words | None, *, derived: bool
+    body: Part, name: Word, outcomes: Words | None, *, derived: bool
 ) -> Iterator[ClassFault]:
     """A missing `execute`, and uses of enumerators that `Outcome` does not have."""
     if not derived and not re.search(r"\bexecute\b", body.text):
@@ -179,17 +138,7 @@ def _faults(
             yield ClassFault(kind="no outcome", name=word, near=guess(found[1]))
 
 
-def without_literals(text: str) -> str:
-    """C++ in which comments and literals, except numbers, are replaced by blanks: every other
-    character keeps its offset."""
-    return _NO_CODE.sub(_blank, text)
-
-
-def _blank(found: re.Match[str]) -> str:
-    return found["kept"] or re.sub(r"[^\n]", " ", found.group())
-
-
-def _stale(body: _Part, wanted: str) -> Word | None:
+def _stale(body: Part, wanted: str) -> Word | None:
     """The place of an outdated interface hash, with the present hash as its text; None if the class
     has the present one or none."""
     found = body.member(_NUMBER)
@@ -209,7 +158,7 @@ def _number(text: str) -> int | None:
         return None
 
 
-def _outcomes(body: _Part, names: Iterable[str]) -> Words | None:
+def _outcomes(body: Part, names: Iterable[str]) -> Words | None:
     part = body.inside(body.member(_OUTCOME))
     if part is None or re.search(r"[\[{(]", part.text):
         return None
@@ -224,7 +173,7 @@ def _outcomes(body: _Part, names: Iterable[str]) -> Words | None:
     return tuple(words)
 
 
-def _fields(body: _Part, name: str, *, derived: bool) -> list[_Field] | None:
+def _fields(body: Part, name: str, *, derived: bool) -> list[_Field] | None:
     """The fields of a struct; empty if the class does not mention it; None if it cannot be read."""
     if not derived and not re.search(rf"\b{name}\b", body.text):
         return []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.diagnostics.source import NOWHERE
+from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFacts, ClassFault
@@ -55,7 +55,8 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
     for name in sorted(passed - known) if "variables" not in type_.given else ():
         near = guess(name)
         meant.add(near)
-        word = facts.name._replace(text=name)
+        place = next((p.word.span for p in facts.parameters if p.word.text == near), None)
+        word = Word(name, place or facts.name.span)
         yield ClassFault(kind="no parameter", name=word, near=near)
     passed |= {"node"} if node else set()
     passed |= type_.given | ({"outcomes"} if type_.optional else set())

@@ -4,11 +4,13 @@ user."""
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, count
 from textwrap import indent
 
 from smachac.analysis.code_slots import called_with_userdata
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.spelling import guesser
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
 from smachac.ir.leaf import variable_of
@@ -445,10 +447,26 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
                 "class_name": used.class_name,
                 "defined_headers": module.defined_headers,
             }
-            module.gather(module.blocks.page(code, variables), leaf)
+            try:
+                module.gather(module.blocks.page(code, variables), leaf)
+            except BlockError as error:
+                raise BlockError(_own_variable(error.diagnostic, type_)) from error
     module.used[leaf.type] = used
     module.names.named.add(used.class_name)
     return used
+
+
+def _own_variable(found: Diagnostic, type_: StateType) -> Diagnostic:
+    """An undefined name in the class of a template, with the help for a variable of the interface:
+    the class is printed once for all states of its type."""
+    match found.finding.arguments:
+        case ("undefined", name):
+            near = name if name in type_.variables else guesser(type_.variables)(name)
+            if near is not None:
+                help = f"accept the parameter `{near}` in `__init__`, keep it as `self.{near}`, and"
+                help += f" write `self.{near}` here: all states of the type share the class"
+                return replace(found, finding=replace(found.finding, help=help))
+    return found
 
 
 def _own_name(class_name: str, type_: str, module: ModuleParts) -> str:

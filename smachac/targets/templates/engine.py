@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source, Span
+from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from jinja2.runtime import Context as JinjaContext
 
 Find = Callable[[str], Source | None]
+Names = Callable[[], Mapping[str, object]]
 
 SKIPPED = ("meta", "upper_comments", "lower_comments", "introspection_server", "spin")
 """Blocks that are printed only on request."""
@@ -197,9 +199,10 @@ class Blocks:
             return ""
         return Page(self, file, context.get_all(), page.target).text(page.target)
 
-    def _converting(self, file: str) -> _ErrorConverter:
-        """The `with` block in which exceptions of Jinja become a BlockError."""
-        return _ErrorConverter(self, file)
+    def _converting(self, file: str, names: Names | None = None) -> _ErrorConverter:
+        """The `with` block in which exceptions of Jinja become a BlockError. `names` gives
+        the variables of the template."""
+        return _ErrorConverter(self, file, names)
 
 
 class Page:
@@ -239,7 +242,7 @@ class Page:
 
     def render(self, block: str, *, alone: bool = False) -> str:
         """One block, without the line ends around it. Raises BlockError."""
-        with self.blocks._converting(self.file):
+        with self.blocks._converting(self.file, self.context.get_all):
             return self.text(block, alone=alone).strip("\n").rstrip()
 
     def text(self, block: str, *, alone: bool = False) -> str:
@@ -293,9 +296,10 @@ class _ErrorConverter:
     """A `with` block that converts exceptions of Jinja to a BlockError with the line of the
     template."""
 
-    def __init__(self, blocks: Blocks, file: str) -> None:
+    def __init__(self, blocks: Blocks, file: str, names: Names | None) -> None:
         self.blocks = blocks
         self.file = file
+        self.names = names
 
     def __enter__(self) -> None:
         return None
@@ -307,6 +311,13 @@ class _ErrorConverter:
         message, help = _message_and_help(error)
         name = getattr(error, "undefined_name", None)
         names = (message,) if name is None else ("undefined", name)
+        if name is not None:
+            near = guesser(sorted(self.names() if self.names else ())).sure(name)
+            help = f"did you mean `{near}`?" if near is not None else help
+            found = [*re.finditer(rf"\b{re.escape(name)}\b", span.text)]
+            if len(found) == 1:
+                start = span.start + found[0].start()
+                span = Span(span.source, start, start + len(name))
         raise BlockError(template_error(span, message, help, names)) from error
 
     def _place(self, error: Exception, trace: Any) -> Span:

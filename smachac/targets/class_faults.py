@@ -1,0 +1,162 @@
+"""The words for faults of classes (SM609): what is wrong, and what to write."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from smachac.ir.class_facts import ClassFault, FaultKind
+
+WORDS: Mapping[FaultKind, tuple[str, str]] = {
+    "no state": (
+        "the class `{name}` is not derived from `smach.State`",
+        "write `class {word}(smach.State):`",
+    ),
+    "no execute": (
+        "the class `{name}` has no method `execute`",
+        "add the method `execute`, which returns an outcome",
+    ),
+    "no method": (
+        "`execute` of `{name}` returns a generator, not an outcome",
+        "write `return` in place of `yield`",
+    ),
+    "coroutine": (
+        "`execute` of `{name}` returns a coroutine, not an outcome",
+        "write `def execute(self, userdata):`, and `asyncio.run(...)` for what it awaits",
+    ),
+    "arguments": (
+        "`execute` of `{name}` must accept exactly one argument: the userdata",
+        "write `def execute(self, userdata):`",
+    ),
+    "no constructor call": (
+        "`__init__` of `{name}` does not call `__init__` of `smach.State`",
+        "write `super().__init__({lists})` as the first line of `__init__`",
+    ),
+    "no outcomes": (
+        "the class `{name}` has no `__init__`, so the state has no outcomes",
+        "add `def __init__(self):` with the line `super().__init__({lists})`",
+    ),
+    "data class": (
+        "the `__init__` that `@dataclass` makes for `{name}` does not call that of `smach.State`",
+        "add `def __post_init__(self):` with the line `super().__init__({lists})`",
+    ),
+    "self twice": (
+        "`super()` passes `{word}` already: here it is passed twice",
+        "remove `{word}`: write `super().__init__({lists})`",
+    ),
+    "no self": (
+        "`smach.State.__init__` is called without `{word}`",
+        "write `super().__init__({lists})`",
+    ),
+    "other class": (
+        "`super({word}, ...)` is in the class `{near}`, which is not derived from `{word}`",
+        "write `super().__init__({lists})`",
+    ),
+    "hidden method": (
+        "`self.{word}` hides the method `{word}` of `smach.State`, which SMACH calls",
+        "give the attribute another name, such as `self.own_{word}`",
+    ),
+    "undefined name": (
+        "`{word}` is used in `{name}`, but nothing defines it: Python stops there",
+        "define it in the module, or import it",
+    ),
+    "no import": (
+        "`{word}` is used in `{name}`, but not imported: Python stops there",
+        "write `import {word}` at the top of the file",
+    ),
+    "undefined method": (
+        "neither `{name}` nor `smach.State` defines `{word}`: Python stops here",
+        "define `{word}` in the class, or correct the name",
+    ),
+    "no list": (
+        "`{word}` of `{name}` must be a list: SMACH cannot use another collection",
+        "write `{word}=[...]`",
+    ),
+    "defined twice": (
+        "`{word}` is defined twice: only the last definition counts",
+        "remove one of them, or give it another name",
+    ),
+    "no outcome": (
+        "`Outcome` of `{name}` has no `{word}`",
+        "add it to `Outcome` and to the interface, or correct the name",
+    ),
+    "wrong result": (
+        "`execute` of `{name}` returns `{word}`, not an outcome",
+        "write `{near}`",
+    ),
+    "wrong parameters": (
+        "`execute` of `{name}` has other parameters than its interface needs",
+        "write `{near}`",
+    ),
+    "wrong constructor": (
+        "the constructor of `{name}` has other parameters than the variables of its interface",
+        "write `{near}`",
+    ),
+    "unused outcome": (
+        "`execute` of `{name}` never returns `Outcome::{word}`",
+        "return it where it is meant, or remove it from `Outcome`, from the interface, and from the"
+        " transitions of the script",
+    ),
+    "no answer to stops": (
+        "`execute` of `{name}` never returns `Outcome::{word}`: a time limit or a stop cannot end"
+        " it",
+        "add where it waits: `if (stop.requested()) {{ stop.service(); return Outcome::{word}; }}`",
+    ),
+    "unset output": (
+        "`execute` of `{name}` never sets its output key `{word}`",
+        "write `out.{word} = ...`, or remove the key from the interface and from `Out`",
+    ),
+    "no parameter": (
+        "`__init__` of `{name}` does not accept `{word}`, a variable of the interface `{type}`",
+        "add the parameter `{word}` to `__init__`",
+    ),
+    "required parameter": (
+        "`__init__` of `{name}` requires `{word}`, which is not a variable of the interface"
+        " `{type}`",
+        "give `{word}` a default value, or add it to the `variables` of `{type}.yml` and set it at"
+        " the state",
+    ),
+}
+"""The message and the help for each kind of fault."""
+
+CHECKED_ONLY = frozenset[FaultKind](["unused outcome", "no answer to stops", "unset output"])
+"""Faults of a class that a compiler accepts: a build does not fail."""
+
+EFFECTS: Mapping[FaultKind, str] = {
+    "defined twice": "",
+    "undefined name": "",
+    "undefined method": "",
+    "no import": "",
+    "unused outcome": "a transition for this outcome is never taken",
+    "no answer to stops": "a transition for this outcome is never taken",
+    "unset output": "a state that reads the key afterwards gets an old value, or fails",
+}
+"""What happens, where it differs from most faults; empty if the message contains it."""
+
+WRITTEN = frozenset[FaultKind](["wrong result", "wrong parameters", "wrong constructor"])
+"""Faults whose words contain what was probably meant."""
+
+
+def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tuple[str, str]:
+    """The message and the help for a fault of a class. `lists` are the arguments of the constructor
+    of `smach.State` that fit the interface."""
+    message, help = (
+        text.format(word=fault.name.text, name=name, type=state_type, lists=lists, near=fault.near)
+        for text in WORDS[fault.kind]
+    )
+    near = fault.near
+    if near is None or fault.kind == "other class" or fault.kind in WRITTEN:
+        return message, help
+    if fault.kind == "no execute":
+        return message, f"rename `{near}` to `execute`"
+    if fault.kind == "no parameter":
+        what = f"rename the parameter `{near}` to `{fault.name.text}`"
+        return message, f"{what}, or correct the name in the interface"
+    written = fault.kind == "no list" or near.startswith('"')
+    return message, f"write `{near}`" if written else f"did you mean `{near}`?"
+
+
+def class_effect(fault: ClassFault, target: str) -> str | None:
+    """The effect of a fault of a class; empty if its message contains it."""
+    if fault.kind in EFFECTS:
+        return EFFECTS[fault.kind]
+    return "the C++ compiler refuses the class" if target == "cpp" else None

@@ -1,0 +1,177 @@
+"""Faults in the members of a C++ class that its header shows: `execute` and the constructors.
+
+What a header can express in another form, such as inherited members, templates, default arguments
+and code in other files, is left to the compiler.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from smachac.diagnostics.source import Word
+from smachac.ir.class_facts import ClassFault
+from smachac.ir.traversal import PREEMPTED
+from smachac.targets.cpp.header_text import Part
+from smachac.targets.cpp.identifiers import identifier
+from smachac.targets.cpp.types import UnportableError
+from smachac.targets.cpp.user_classes import ClassCode, left_to_scripts, parameter_type, stops
+
+_EXECUTE = re.compile(r"\bexecute\s*\(([^()]*)\)")
+_ACCESS = re.compile(r"\b(?:public|private|protected)\s*:(?!:)")
+_RESULTS = re.compile(
+    r"(?:\[\[\w+\]\]\s*)?(?:(?:virtual|inline)\s+)*"
+    r"(?P<type>void|bool|int|double|float|(?:std::)?(?:string|u?int\d+_t|size_t))"
+)
+_ELSEWHERE = re.compile(
+    r"\busing\b|\btypedef\b|\bauto\b|<\s*Outcome\s*>|(?<!class )(?<!struct )\bOutcome\s*[({]"
+    r"|\bOutcome\s+\w+\s*[=;,)]"
+)
+"""Text after which an outcome can be returned without its name: conversions, aliases, variables."""
+_RETURN = re.compile(r"\breturn\b([^;]*);")
+
+Words = tuple[Word, ...]
+
+
+def member_faults(
+    code: ClassCode, whole: Part, body: Part, outcomes: Words | None
+) -> Iterator[ClassFault]:
+    """The faults of a class that is not derived from another one."""
+    if "template" in body.text or left_to_scripts(code.type):
+        return
+    yield from _constructor_faults(code, body)
+    found = [each for each in _EXECUTE.finditer(body.text) if _is_member(body, each.start())]
+    if len(found) != 1:
+        return
+    (head,) = found
+    before = re.split(r"[;{}]", body.text[: head.start()])[-1]
+    result = _RESULTS.fullmatch(_ACCESS.sub(" ", before).strip())
+    place = (head.start(), head.start() + len("execute"))
+    wanted = f"Outcome execute({', '.join(_arguments(code))})"
+    if result is not None:
+        at = body.text.rfind(result["type"], 0, head.start())
+        word = body.word(result["type"], at, at + len(result["type"]))
+        yield ClassFault(kind="wrong result", name=word, near=wanted)
+        return
+    if _count(head[1]) not in (None, len(_arguments(code))):
+        yield ClassFault(kind="wrong parameters", name=body.word("execute", *place), near=wanted)
+        return
+    run = _body_of(body, head.end())
+    if run is not None and outcomes is not None:
+        yield from _unused(whole, body, run, outcomes)
+        yield from _unset(code, body, run, head[1])
+
+
+def _is_member(body: Part, at: int) -> bool:
+    """Whether a place is outside the braces in a class."""
+    return body.text.count("{", 0, at) == body.text.count("}", 0, at)
+
+
+def _arguments(code: ClassCode) -> list[str]:
+    """The parameters that `execute` needs."""
+    type_ = code.type
+    given = (
+        ("In in", bool(type_.input_keys)),
+        ("Out out", bool(type_.output_keys)),
+        ("smachac::Stop &stop", stops(type_)),
+    )
+    return [text for text, needed in given if needed]
+
+
+def _count(parameters: str) -> int | None:
+    """The number of parameters in a list; None if it has defaults or other forms."""
+    text = parameters
+    while (shorter := re.sub(r"<[^<>]*>", "", text)) != text:
+        text = shorter
+    if re.search(r"[=<>\[\]{}]|\.\.\.", text):
+        return None
+    pieces = [each.strip() for each in text.split(",")]
+    return 0 if pieces in ([""], ["void"]) else len(pieces)
+
+
+def _body_of(body: Part, at: int) -> Part | None:
+    """The body of a function whose list of parameters ends at a place; None if it is elsewhere."""
+    head = re.compile(r"\s*(?:const\s*)?(?:noexcept\s*)?\{").match(body.text, at)
+    return body.inside(head)
+
+
+def _constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
+    """Constructors none of which takes the variables of the interface."""
+    name = code.name.rpartition("::")[2]
+    made = re.compile(rf"(?<![~\w:]){re.escape(name)}\s*\(")
+    heads = [each for each in made.finditer(body.text) if _is_member(body, each.start())]
+    try:
+        variables = [
+            f"{parameter_type(each.type)} {identifier(key)}".replace("& ", "&")
+            for key, each in code.type.variables.items()
+        ]
+    except UnportableError:
+        return
+    wanted = [*code.parameters, *variables]
+    if not heads or "using" in body.text or any(not _is_plain(each) for each in wanted):
+        return
+    for head in heads:
+        found = re.compile(r"([^()]*)\)").match(body.text, head.end())
+        count = _count(found[1]) if found is not None else None
+        if found is None or count is None or count == len(wanted):
+            return
+    word = body.word(name, heads[0].start(), heads[0].start() + len(name))
+    near = f"{name}({', '.join(wanted)})"
+    yield ClassFault(kind="wrong constructor", name=word, near=near)
+
+
+def _is_plain(parameter: str) -> bool:
+    return "std::any" not in parameter
+
+
+def _unused(whole: Part, body: Part, run: Part, outcomes: Words) -> Iterator[ClassFault]:
+    """The outcomes that no code in the header names, if every `return` of `execute` names one. A
+    class with one outcome in use is not written yet."""
+    returned = [each[1] for each in _RETURN.finditer(run.text)]
+    functions = _outcome_functions(body)
+    if _ELSEWHERE.search(body.text) or functions is None:
+        return
+    for each in returned:
+        called = re.fullmatch(r"\s*(\w+)\s*\(.*\)\s*", each, re.DOTALL)
+        inner = called is not None and called[1] in functions
+        if "Outcome::" not in each.replace(" ", "") and not inner:
+            return
+    names = {each: identifier(each.text) for each in outcomes}
+    used = {each for each, name in names.items()
+            if len(re.findall(rf"\b{re.escape(name)}\b", whole.text)) > 1}  # fmt: skip
+    if len(used) < 2:
+        return
+    for word in outcomes:
+        if word not in used:
+            stop = word.text == PREEMPTED
+            yield ClassFault(kind="no answer to stops" if stop else "unused outcome", name=word)
+
+
+def _outcome_functions(body: Part) -> set[str] | None:
+    """The methods that return outcomes; None if the body of one is elsewhere."""
+    found = set()
+    for head in re.finditer(r"\bOutcome\s+(\w+)\s*\([^()]*\)", body.text):
+        if _body_of(body, head.end()) is None:
+            return None
+        found.add(head[1])
+    return found
+
+
+def _unset(code: ClassCode, body: Part, run: Part, parameters: str) -> Iterator[ClassFault]:
+    """The output keys that `execute` does not name, if it passes `Out` to no other function."""
+    named = re.search(r"\bOut\s*&?\s*(\w+)", parameters)
+    if named is None:
+        return
+    uses = re.findall(rf"\b{re.escape(named[1])}\b\s*(\.?)", run.text)
+    unused = len(re.findall(rf"\(\s*void\s*\)\s*{re.escape(named[1])}\b", run.text))
+    if uses.count("") > unused:
+        return
+    fields = body.inside(body.member(r"\bstruct\s+Out\s*\{"))
+    if fields is None:
+        return
+    for key in code.type.output_keys:
+        name = identifier(key.name)
+        inside = re.search(rf"\b{re.escape(name)}\b", fields.text)
+        used = re.search(rf"\b{re.escape(named[1])}\s*\.\s*{re.escape(name)}\b", run.text)
+        if inside is not None and used is None:
+            yield ClassFault(kind="unset output", name=fields.word(key.name, *inside.span()))
