@@ -185,7 +185,7 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
 
     from smachac.driver import compile_script
     from smachac.targets.python import TARGET
-    from smachac.targets.python.ros import is_node
+    from smachac.targets.python.ros import is_node, may_be_node
 
     files, report = compile_script(analysis, TARGET)
     print_report(without_notes(report), arguments, sys.stderr)
@@ -198,10 +198,13 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     node = is_node(machine, library, library.ros)
     if node and not arguments.ros:
         return usage("this script is a ROS node: --ros runs it, --mock plays a scenario")
-    if arguments.ros and library.ros == 2 and not node:
+    if arguments.ros and not may_be_node(machine, library, library.ros):
         return usage("this script is no ROS node: run it without --ros")
-    if node and find_spec("rclpy") is None:
-        return usage("--ros needs rclpy: start smachac with the Python of ROS 2")
+    if arguments.ros_args is not None and library.ros == 1:
+        return usage("--ros-args passes arguments of ROS 2, and the project has `ros = 1`")
+    package = {1: "rospy", 2: "rclpy"}[library.ros]
+    if arguments.ros and find_spec(package) is None:
+        return usage(f"--ros needs {package}: start smachac with the Python of ROS {library.ros}")
     arguments.node = ["--ros-args", *(arguments.ros_args or [])] if node else None
     faults: tuple[Fault, ...] | None = ()
     if arguments.faults is not None:
