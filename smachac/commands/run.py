@@ -98,6 +98,8 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_command(arguments: Namespace) -> int:
     """Run a script; the exit code."""
+    from smachac.ir.traversal import outcome_names
+
     record: Path | None = arguments.record
     if record is not None and record.suffix.lower() not in (".gif", ".mp4"):
         return usage(f"--record writes .gif and .mp4, not `{record}`")
@@ -123,6 +125,12 @@ def run_command(arguments: Namespace) -> int:
     analysis = _analysis(arguments)
     if isinstance(analysis, str):
         return usage(analysis)
+    machine = analysis.checked or _playable(analysis)
+    expected = arguments.expect
+    if machine is not None and expected is not None:
+        known = outcome_names(machine.root)
+        if expected not in known:
+            return usage(f"the machine has no outcome `{expected}`", expected, known)
     if arguments.mock is not None:
         return _run_scenario(arguments, analysis)
     return _run_program(arguments, analysis)

@@ -56,3 +56,17 @@ def test_arguments_of_ros_2_are_refused_for_ros_1(
     script.write_text(WAIT.replace("name: wait", "name: wait\ntemplate: ROSBase"))
     assert main(["run", str(script), "--ros", "--ros-args", "-p", "speed:=1.0"]) == 2
     assert "--ros-args passes arguments of ROS 2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("play", [False, True])
+def test_an_expected_outcome_that_the_machine_lacks_is_refused_before_the_run(
+    play: bool, script: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = script.with_name("scenario.yml")
+    scenario.write_text("states: {}")
+    mock = ["--mock", str(scenario)] if play else []
+    assert main(["run", str(script), "--expect", "suceeded", *mock]) == 2
+    printed = capsys.readouterr()
+    assert "the machine has no outcome `suceeded`" in printed.err
+    assert "did you mean `succeeded`?" in printed.err
+    assert not printed.out
