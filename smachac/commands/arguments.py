@@ -8,7 +8,7 @@ TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
     import pathlib
 
-SCRIPT = "the script, a YAML file"
+SCRIPT = "the script: a YAML file, not a folder"
 SCRIPTS = "scripts, folders or patterns (default: the current folder)"
 FORMAT = "format of the report"
 

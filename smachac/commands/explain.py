@@ -127,6 +127,22 @@ def _explain_code(word: str) -> int:
     if code is None and Path(word).suffix:
         return usage(f"name a state or a key of {word}, or use --failures")
     if code is None:
-        return usage(f"there is no code `{word}`", word.upper(), list(CODES))
+        return usage(_no_code(word, list(CODES)))
     print(render_code(code))
     return OK
+
+
+def _no_code(word: str, codes: list[str]) -> str:
+    """The message for a word that is no code: the codes that begin with it, the nearest code, or
+    how to name a state."""
+    from smachac.diagnostics.diagnostic import did_you_mean
+
+    begun = [code for code in codes if code.startswith(word.upper())]
+    if begun:
+        found = f"the codes that begin so: {', '.join(begun)}"
+    else:
+        found = did_you_mean(word.upper(), codes) or (
+            f"a state or a key needs its script: smachac explain main.yml {word}\n"
+            "`smachac explain --all` lists the codes"
+        )
+    return f"there is no code `{word}`\n{found}"

@@ -38,6 +38,9 @@ kinds of places in the report:
   changed   SMACHA and smachac behave differently here, or SMACHA failed here
   note      works as before; a finding of `smachac check`, or a difference without effect
 
+It changes no script and no template. In one folder that has no project file it creates one:
+smachac.toml, with `ros = 1`.
+
 exit codes: 0 nothing to edit, 1 something to edit, 2 wrong usage, 70 a bug in smachac
 """
 

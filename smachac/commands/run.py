@@ -98,6 +98,8 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_command(arguments: Namespace) -> int:
     """Run a script; the exit code."""
+    from smachac.ir.traversal import outcome_names
+
     record: Path | None = arguments.record
     if record is not None and record.suffix.lower() not in (".gif", ".mp4"):
         return usage(f"--record writes .gif and .mp4, not `{record}`")
@@ -123,6 +125,12 @@ def run_command(arguments: Namespace) -> int:
     analysis = _analysis(arguments)
     if isinstance(analysis, str):
         return usage(analysis)
+    machine = analysis.checked or _playable(analysis)
+    expected = arguments.expect
+    if machine is not None and expected is not None:
+        known = outcome_names(machine.root)
+        if expected not in known:
+            return usage(f"the machine has no outcome `{expected}`", expected, known)
     if arguments.mock is not None:
         return _run_scenario(arguments, analysis)
     return _run_program(arguments, analysis)
@@ -185,7 +193,7 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
 
     from smachac.driver import compile_script
     from smachac.targets.python import TARGET
-    from smachac.targets.python.ros import is_node
+    from smachac.targets.python.ros import is_node, may_be_node
 
     files, report = compile_script(analysis, TARGET)
     print_report(without_notes(report), arguments, sys.stderr)
@@ -198,10 +206,13 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     node = is_node(machine, library, library.ros)
     if node and not arguments.ros:
         return usage("this script is a ROS node: --ros runs it, --mock plays a scenario")
-    if arguments.ros and library.ros == 2 and not node:
+    if arguments.ros and not may_be_node(machine, library, library.ros):
         return usage("this script is no ROS node: run it without --ros")
-    if node and find_spec("rclpy") is None:
-        return usage("--ros needs rclpy: start smachac with the Python of ROS 2")
+    if arguments.ros_args is not None and library.ros == 1:
+        return usage("--ros-args passes arguments of ROS 2, and the project has `ros = 1`")
+    package = {1: "rospy", 2: "rclpy"}[library.ros]
+    if arguments.ros and find_spec(package) is None:
+        return usage(f"--ros needs {package}: start smachac with the Python of ROS {library.ros}")
     arguments.node = ["--ros-args", *(arguments.ros_args or [])] if node else None
     faults: tuple[Fault, ...] | None = ()
     if arguments.faults is not None:

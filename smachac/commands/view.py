@@ -112,8 +112,6 @@ def view_command(arguments: Namespace) -> int:
     trace = as_path(attach) if attach is not None and ros is None else None
     if trace is not None and not trace.is_file():
         return usage(f"there is no trace {trace}, and it is no port")
-    if trace is not None and (reason := _no_trace(trace)):
-        return usage(reason)
     film = None
     if arguments.film is not None:
         if trace is None:
@@ -122,6 +120,8 @@ def view_command(arguments: Namespace) -> int:
             film = _film(arguments.film)
         except FilmError as error:
             return usage(str(error))
+    if trace is not None and (reason := _no_trace(trace)):
+        return usage(reason)
     if ros is not None:
         return _serve_node(arguments, ros)
     return _serve(arguments, trace, film)
@@ -144,14 +144,20 @@ def _serve_node(arguments: Namespace, name: str) -> int:
 
 
 def _no_trace(path: Path) -> str:
-    """The reason why a file cannot be shown as a trace; empty if it can."""
+    """The reason why a file cannot be shown as a trace; empty if it can, or may become one: it has
+    no whole line yet."""
+    from smachac.targets.html.trace import read_event
+
     try:
         with path.open("rb") as stream:
-            head = stream.read(6)
+            head = stream.read(CHUNK)
     except OSError as error:
         return f"the trace {path} cannot be read: {error.strerror}"
-    if head == b"SQLite":
+    if head.startswith(b"SQLite"):
         return f"{path} is the database of a sweep, which has no events: use `smachac stats`"
+    whole = [line for line in head.split(b"\n")[:-1] if line.strip()]
+    if whole and not any(map(read_event, whole)):
+        return f"{path} is no trace: none of its lines is an event; `run --trace` writes a trace"
     return ""
 
 

@@ -52,7 +52,8 @@ def read_source(path: Path, report: Report) -> Source | None:
         report.append(_not_text(path, error))
     except (OSError, ValueError) as error:
         words = (getattr(error, "strerror", None) or str(error)).lower()
-        near = did_you_mean(path.name, _names_beside(path))
+        folder = isinstance(error, IsADirectoryError)
+        near = _script_inside(path) if folder else did_you_mean(path.name, _names_beside(path))
         message = f"this file cannot be read: {words}"
         report.append(unreadable_file(place, message, near, arguments=("read",)))
     return None
@@ -124,6 +125,14 @@ def _names_beside(path: Path) -> list[str]:
     with contextlib.suppress(OSError):
         return sorted(other.name for other in path.parent.iterdir() if other.is_file())
     return []
+
+
+def _script_inside(path: Path) -> str:
+    """The help for a folder in place of a script: a script in it, `main.yml` first."""
+    names = sorted(_names_beside(path / "main.yml"), key=lambda name: (name != "main.yml", name))
+    scripts = [name for name in names if name.endswith((".yml", ".yaml"))]
+    example = f", such as `{path / scripts[0]}`" if scripts else ""
+    return f"name a script{example}; `smachac check` also accepts folders"
 
 
 def decoded(data: bytes) -> str:

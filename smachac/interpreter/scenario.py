@@ -216,6 +216,11 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
     """
     problems: list[ScenarioProblem] = []
     steps: dict[str, tuple[ScenarioStep, ...]] = {}
+    if isinstance(data, dict) and "states" not in data:
+        near = (f"unknown key `{key}`; {help_}" for key in data
+                if (help_ := did_you_mean(str(key), ["states"])))  # fmt: skip
+        if message := next(near, None):
+            return Scenario(steps={}), [ScenarioProblem(message)]
     if not isinstance(data, dict) or not isinstance(data.get("states"), dict):
         message = "a scenario is a mapping with `states`: a mapping of paths"
         return Scenario(steps={}), [ScenarioProblem(message)]

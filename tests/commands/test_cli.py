@@ -137,6 +137,36 @@ def test_explain(capsys: pytest.CaptureFixture[str]) -> None:
     assert "Wrong" in shown
 
 
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        ("SM70", "the codes that begin so: SM701, SM702, SM703, SM704"),
+        ("sm70", "the codes that begin so: SM701, SM702, SM703, SM704"),
+        ("SM2011", "did you mean `SM211`?"),
+        ("FIND", "a state or a key needs its script: smachac explain main.yml FIND"),
+    ],
+)
+def test_a_word_that_is_no_code(word: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", word]) == 2
+    printed = capsys.readouterr().err
+    assert f"there is no code `{word}`" in printed
+    assert told in printed
+    assert "SM001" not in printed
+
+
+def test_the_states_of_a_script_are_listed_for_an_unknown_name(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["explain", GOOD, "FIND"]) == 2
+    assert "states: `CHECK_BATTERY`, `GO_HOME`" in capsys.readouterr().err
+
+
+def test_a_folder_in_place_of_a_script(broken: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (broken.parent / "a.yml").write_text("")
+    assert main(["run", str(broken.parent)]) == 1
+    assert f"help: name a script, such as `{broken}`" in capsys.readouterr().err.replace("\n", "")
+
+
 def test_targets(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["targets"]) == 0
     assert {line.split()[0] for line in capsys.readouterr().out.splitlines()} >= {

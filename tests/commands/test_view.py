@@ -234,6 +234,7 @@ def smachac(*words: object) -> subprocess.CompletedProcess[str]:
         (["view", "SCRIPT", "--film", "SCRIPT"], "--film needs the trace of the run"),
         (["view", "SCRIPT", "--attach", "SCRIPT", "--film", "SCRIPT"], "main.yml is no film"),
         (["view", "SCRIPT", "--attach", "SCRIPT", "--film", "x.gif"], "x.gif cannot be read"),
+        (["view", "SCRIPT", "--attach", "SCRIPT"], "main.yml is no trace"),
         (["view", "SCRIPT", "--port", "x"], "must be a port"),
         (["run", "SCRIPT", "--view-paused"], "--view-paused needs --view"),
         (["run", "--view", "SCRIPT"], "must be a port"),

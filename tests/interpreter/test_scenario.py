@@ -106,12 +106,18 @@ def test_what_is_wrong_is_told(states: Any, problem: str) -> None:
     assert read(states)[1] == [problem]
 
 
-@pytest.mark.parametrize("given", [None, [], {"states": []}, {"steps": {}}])
+@pytest.mark.parametrize("given", [None, [], {"states": []}, {"other": {}}])
 def test_a_scenario_is_a_mapping_of_states(given: Any) -> None:
     scenario, problems = read_scenario(given, picking())
     assert scenario.steps == {}
     assert problems == [
         ScenarioProblem("a scenario is a mapping with `states`: a mapping of paths")
+    ]
+
+
+def test_a_misspelt_key_is_named() -> None:
+    assert read_scenario({"statez": {"CHECK": True}}, picking())[1] == [
+        ScenarioProblem("unknown key `statez`; did you mean `states`?")
     ]
 
 

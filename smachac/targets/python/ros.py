@@ -170,6 +170,14 @@ def is_node(machine: Machine, library: Library, ros: Ros) -> bool:
     return any(takes_node(type_, library, ros) for type_ in types)
 
 
+def may_be_node(machine: Machine, library: Library, ros: Ros) -> bool:
+    """Whether a program is a node or, for ROS 1, may be one: there the base template makes the
+    node, and the code of a user's template is not read."""
+    if ros == 2:
+        return is_node(machine, library, ros)
+    return machine.base != "Base" or library.own_template("Base.tpl.py") is not None
+
+
 def takes_node(type_: StateType, library: Library, ros: Ros) -> bool:
     """Whether the states of a type get the node of ROS 2: the built-in types for ROS 2, and classes
     of the user whose first parameter is `node`."""
