@@ -147,10 +147,10 @@ def missing_definitions_of(base: State, found: Definitions, library: Library) ->
         names = {each.removesuffix(f".{kind}") for each in files if each.endswith(f".{kind}")}
         if word.name in names or f"{word.name}.idl" in files:
             continue
-        others = (
-            each for each in PARTS if each != kind and find_definitions(str(word), each, library)
-        )
-        other = next(others, None)
+        others: list[DefinitionKind] = [
+            each for each in PARTS if find_definitions(str(word), each, library)
+        ]
+        other = others[0] if others else None
         if names or other is not None:
             missing[kind, text] = Missing(tuple(sorted(names)), other)
     return missing
