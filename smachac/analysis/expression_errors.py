@@ -31,6 +31,7 @@ from smachac.analysis.type_lattice import (
     widened,
 )
 from smachac.analysis.units import conversion
+from smachac.diagnostics.spelling import guesser
 from smachac.ir.expressions import (
     Attribute,
     Binary,
@@ -210,11 +211,15 @@ class _Judge:
     def attribute(self, expr: Expr, value: Expr, name: str) -> Iterator[Fault]:
         type_ = self.type(value)
         if not has_attribute(type_, name):
+            near = guesser(_attributes(type_))(name)
             help: str | None = f"remove `.{name}`, or use a value of another type"
+            if near is not None:
+                help = f"did you mean `{near}`?"
             if ATTRIBUTES.get(type_.name):
                 help = None  # the nearest of its attributes
-            if kinds(type_) == {"mapping"}:
-                entry = print_expression(Index(value, Constant(name)))
+            elif kinds(type_) == {"mapping"} and near is None:
+                # In double quotes, because a script has code in single ones.
+                entry = print_expression(Index(value, Constant(name))).replace("'", '"')
                 help = f"write `{entry}` for the entry of the mapping"
             yield Fault(
                 kind="operation",
@@ -512,6 +517,12 @@ def has_attribute(type_: Type, name: str) -> bool:
         return name.startswith("_") or name in ATTRIBUTES[type_.name]
     found = kinds(type_)
     return not found or any(hasattr(each, name) for kind in found for each in _BUILT_IN[kind])
+
+
+def _attributes(type_: Type) -> list[str]:
+    """The attributes that values of a type have in Python."""
+    classes = [each for kind in kinds(type_) for each in _BUILT_IN.get(kind, ())]
+    return sorted({name for each in classes for name in dir(each) if not name.startswith("_")})
 
 
 def is_method(type_: Type, name: str) -> bool:

@@ -215,7 +215,9 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
                 span=word.span,
                 message=f"{what} `{word.text}`, which is not one of its outcomes",
                 arguments=(word.text,),
-                help=meant or f"use one of its outcomes: {listed(outcomes)}",
+                help=meant
+                or f"add `{word.text}` to the `outcomes` of `{leaf.name}` and to its transitions,"
+                f" or use one of its outcomes: {listed(outcomes)}",
                 effect="SMACH accepts only declared outcomes: the machine stops with an error",
                 related=calls(leaf, word.span),
                 node=path,

@@ -79,8 +79,7 @@ def wrong_length(context: Context) -> Iterator[Finding]:
                 have = " or ".join(map(str, lengths))
                 message = f"`{flow.origin.cell.key}` has {len(flow.value)} numbers, but the arm has"
                 help = decimal_commas(flow.origin.span.text, lengths)
-                zeros = ", ".join(["0.0"] * lengths[0])
-                help = help or f"write one number for each joint, as in `[{zeros}]`"
+                help = help or f"write one number for each joint: {have} in all"
                 yield at(flow, f"{message} {have} joints", help)
 
 

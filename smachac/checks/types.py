@@ -351,6 +351,10 @@ def _help(clash: Clash) -> str:
     given, wanted = clash.misfit.given, clash.misfit.wanted
     if clash.misfit.kind == "unit":
         return _in_wanted_unit(clash)
+    if clash.misfit.kind == "length" and given == clash.flow.type:
+        more = _of_wanted_length(clash)
+        if more is not None:
+            return more
     if wanted.name == "one_of" and given.name == "literal":
         choices = [str(choice) for choice in wanted.args]
         guess = did_you_mean(guesser(choices)(str(given.args[0])))
@@ -378,43 +382,62 @@ def _help(clash: Clash) -> str:
     return _rewrite(clash)
 
 
+def _of_wanted_length(clash: Clash) -> str | None:
+    """The help for a literal list that has too many or too few items."""
+    value, sizes = clash.flow.origin.value, sizes_of(clash.misfit.wanted)
+    if not isinstance(value, tuple) or not value or len(sizes) != 1 or len(value) == sizes[0]:
+        return None
+    if clash.misfit.wanted.name in HELP:
+        return None
+    meant = decimal_commas(clash.flow.origin.span.text, sizes)
+    if meant is not None:
+        return meant
+    lack = sizes[0] - len(value)
+    items = f"{abs(lack)} item{'s' * (abs(lack) > 1)}"
+    change = f"{'add' if lack > 0 else 'remove'} {items}: {sizes[0]} are needed"
+    return f"{change}{_other_change(clash)}"
+
+
 def _in_wanted_unit(clash: Clash) -> str:
     """The help for a number in another unit than that of its reader."""
     given, wanted = unit_of(clash.misfit.given), unit_of(clash.misfit.wanted)
     factor = conversion(given, wanted)
-    correct = f"correct the unit where {_owner(clash.cell)} reads it"
+    correct = _other_change(clash)
     if factor is None:
-        return f"use a number in `{wanted}`, or {correct}"
+        return f"use a number in `{wanted}`{correct}"
     value = clash.flow.origin.value
     if isinstance(value, int | float) and not isinstance(value, bool):
         type_ = clash.misfit.wanted
-        return f"write it in `{wanted}`: `{value * factor:.6g}` of the type `{type_}`, or {correct}"
-    return f"multiply it by {factor:.6g}, which makes `{wanted}` of `{given}`, or {correct}"
+        return f"write it in `{wanted}`: `{value * factor:.6g}` of the type `{type_}`{correct}"
+    return f"multiply it by {factor:.6g}, which makes `{wanted}` of `{given}`{correct}"
 
 
 def _rewrite(clash: Clash) -> str:
     """The help for a value of a wrong type: how the script writes a right one, and the other place
     that can be changed, if there is one."""
-    wanted, cell = clash.misfit.wanted, clash.cell
+    wanted = clash.misfit.wanted
     found = example(wanted)
     value = f"a value of the type `{wanted}`" + (f", such as `{found}`" if found else "")
-    node, change = cell.node, f"change the type of `{cell.key}`"
+    change = _other_change(clash)
+    if clash.flow.origin.how != "value":
+        owner = _owner(clash.flow.origin.cell)
+        return f"let {owner} write {value}{change}"
+    return f"write {value}{change}"
+
+
+def _other_change(clash: Clash) -> str:
+    """The change of the type where a value is read, as the end of a help; empty if the type is
+    built in."""
+    cell = clash.cell
+    node, change = cell.node, f", or change the type of `{cell.key}`"
     own = node.inputs if cell.role == "input" and node is not None else ()
     listed_here = any(
         key.name == cell.key and node is not None and key.span.source is node.span.source
         for key in own
     )
     if isinstance(node, Leaf) and not listed_here:
-        if node.built_in:
-            change = ""
-        else:
-            change += f" in the interface `{node.type}`"
-    elif node is not None:
-        change += f" at {_owner(cell)}"
-    if clash.flow.origin.how != "value":
-        owner = _owner(clash.flow.origin.cell)
-        return f"let {owner} write {value}" + (f", or {change}" if change else "")
-    return f"write {value}" + (f", or {change}" if change else "")
+        return "" if node.built_in else f"{change} in the interface `{node.type}`"
+    return f"{change} at {_owner(cell)}" if node is not None else change
 
 
 def _meant(clash: Clash) -> str | None:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser_of, respelt
-from smachac.frontend.errors.references import unresolved_look_up
+from smachac.frontend.errors.references import param_before_definition, unresolved_look_up
 from smachac.frontend.errors.script import too_big, wrong_shape
 from smachac.frontend.yaml_tree import (
     Entry,
@@ -165,8 +165,11 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
     if not isinstance(own, Map):
         return scope
     inner = dict(scope)
-    for entry in own.entries:
+    for at, entry in enumerate(own.entries):
+        before = len(report)
         value = fill_in(entry.value, inner, report)
+        if len(report) > before:
+            _mark_later(own.entries[at + 1 :], report, before)
         if value is not entry.value and _size_beyond(value, MAX_NODES):
             message = f"the look-ups in this param give it more than {MAX_NODES:,} values"
             help = "use smaller params"
@@ -174,6 +177,16 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
             value = known_wrong(entry.value.span)
         inner[str(entry.key.value)] = value
     return inner
+
+
+def _mark_later(entries: tuple[Entry, ...], report: Report, begin: int) -> None:
+    """Words the failed look-ups of a param that name one of the later params, `entries`."""
+    places = {str(entry.key.value): entry.key.span for entry in entries}
+    for at in range(begin, len(report)):
+        item = report[at]
+        name = item.finding.arguments[0] if item.kind is unresolved_look_up.code else ""
+        if name in places:
+            report[at] = param_before_definition(item, places[name])
 
 
 def _size_beyond(tree: Tree, limit: int) -> bool:

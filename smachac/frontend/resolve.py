@@ -62,7 +62,15 @@ from smachac.frontend.sub_scripts import SUB_SCRIPT_HELP, overridden, sub_script
 from smachac.frontend.type_annotations import TYPED, Aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses, look_ups
 from smachac.frontend.values import as_value
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, known_wrong
+from smachac.frontend.yaml_tree import (
+    Entry,
+    Map,
+    Scalar,
+    Seq,
+    Tree,
+    is_known_wrong,
+    known_wrong,
+)
 from smachac.ir.nodes import FixedParam, Param, Preset, StateType
 
 MAX_STATES = 1_000_000
@@ -260,6 +268,8 @@ class _Resolver:
             self.state_type(TIMER)
         if owner == "state" and _has_wrong_transitions(entries, fields):
             return _unknown(name, (), around)
+        if owner == "state" and _has_unknown_outcomes(entries):
+            return _unknown(name, fields.get("transitions", ()), around)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:
             message = f"containers are nested deeper than {MAX_NESTED:,} levels"
@@ -658,6 +668,14 @@ def _with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
             for each in item.entries[1:]:
                 if isinstance(each.value, Map) and str(each.key.value) not in _FIELDS_OF_STATES:
                     yield Map((each,), each.key.span)
+
+
+def _has_unknown_outcomes(entries: Mapping[str, Entry]) -> bool:
+    """Whether a look-up in the outcomes of a state failed, which was reported."""
+    given = entries.get("outcomes")
+    if given is None or isinstance(given.value, Scalar):
+        return given is not None and is_known_wrong(given.value)
+    return isinstance(given.value, Seq) and any(map(is_known_wrong, given.value.items))
 
 
 def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:

@@ -79,7 +79,7 @@ def test_what_does_not_fit_a_record(value: str, type_: str, help: str) -> None:
         ('len(ud.item["name"])', ""),
         ('ud.item["shlef"]', "shelf"),
         ('ud.item["name"] + 1', "convert"),
-        ("ud.item.shelf", "write `ud.item['shelf']`"),
+        ("ud.item.shelf", 'write `ud.item["shelf"]`'),
         ("ud.item[0]", "use text as the index"),
     ],
 )

@@ -66,7 +66,7 @@ def found(**parts: str) -> list[tuple[str, str, str]]:
     ("parts", "code", "place", "help"),
     [
         ({"fields": "spread: [0.1m, 0.2, 0]"}, "SM304", "0.1m", "write the number without its"),
-        ({"fields": "spread: [1, 2]"}, "SM501", "[1, 2]", "such as `[1.5, 1.5, 1.5]`"),
+        ({"fields": "spread: [1, 2]"}, "SM501", "[1, 2]", "add 1 item: 3 are needed, or change"),
         ({"fields": "spread: '1 2 3'"}, "SM304", "'1 2 3'", "`[1, 2, 3]`"),
         (
             {"fields": "parts: [{name: a, shelf: left}, {name: b, shelv: left}]"},

@@ -276,6 +276,18 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
     )
 
 
+def param_before_definition(item: Diagnostic, defined: Span) -> Diagnostic:
+    """SM015 for a look-up in a param that names a later param of the same mapping."""
+    (name,) = item.finding.arguments
+    changed = replace(
+        item.finding,
+        message=f"the param `{name}` is used before it is defined",
+        help=f"move `{name}` before this param: a param can use only those above it",
+        related=(Related(span=defined, message="defined here"),),
+    )
+    return replace(item, finding=changed)
+
+
 def look_up_of_call(item: Diagnostic, script: Word, given: Sequence[Word]) -> Diagnostic:
     """SM015 for a look-up in a sub-script, with the call: `script` is its name and the place of the
     call; `given` are the params of the call that no look-up reads."""
