@@ -90,10 +90,10 @@ def check_scripts(
                 )
             else:
                 analyses[str(path)] = analyse_alone(source, library, report, last)
-        uses[str(path)] = disk.asked_files()
+        uses[str(path)] = disk.searched_files()
 
     for path in paths:
-        disk.asked.clear()
+        disk.searched.clear()
         report: Report = []
         source = disk.read(path, report)
         if source is not None and isinstance(disk.parse(source, []), Seq):
@@ -103,7 +103,7 @@ def check_scripts(
     called = frozenset().union(*uses.values())
     alone = [path for path in alone if os.path.realpath(path) not in called]
     for path in alone:
-        disk.asked.clear()
+        disk.searched.clear()
         analyse_path(path, disk.read(path, []), [], called=False)
     for path in alone:  # one that another sub-script calls was checked through it already
         others = (used for name, used in uses.items() if name != str(path))

@@ -134,9 +134,9 @@ def _files(
     used: set[str] = set()
     for path, text in texts:
         if path not in alone:
-            disk.asked.clear()
+            disk.searched.clear()
             reports[path] = _report(path, text, scripts, templates, disk, arguments)
-            used |= disk.asked
+            used |= disk.searched_files()
     for path, text in texts:
         if path in alone:
             called = os.path.realpath(path) in used

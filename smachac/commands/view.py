@@ -277,7 +277,7 @@ class ViewedScript:
 
         arguments, disk, path = self.arguments, self._disk, self.arguments.script
         disk.refresh()
-        disk.asked.clear()
+        disk.searched.clear()
         report: Report = []
         source = disk.read(path, report)
         machine: Machine | None = None
@@ -292,7 +292,7 @@ class ViewedScript:
             )
             analysis = analyse(source, library, report)
             machine, report = analysis.machine, analysis.report
-        self._known = stamps({str(path), *disk.asked})
+        self._known = stamps({str(path), *disk.searched_files()})
         self._picture.update(machine, report)
         errors = [item for item in report if item.severity is Severity.ERROR]
         print_report(errors, arguments, sys.stderr)

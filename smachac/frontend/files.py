@@ -146,8 +146,8 @@ class Disk:
     """The files of one or several runs: each file is read once, each text is parsed once, until
     `replace` or `refresh` forgets it.
 
-    `texts` replace the files at their (real) paths. `asked` collects the paths, as given, of all
-    files that were searched, found or not; the caller may empty it. `plain`: all line ends become
+    `texts` replace the files at their (real) paths. `searched` collects the paths, as given, of
+    all files that were searched, found or not; the caller may empty it. `plain`: all line ends become
     line feeds. `refused`: the paths that are not read, as given, and why.
     """
 
@@ -161,7 +161,7 @@ class Disk:
         self.texts = dict(texts or {})
         self.refused = dict(refused or {})
         self.plain = plain
-        self.asked: set[str] = set()
+        self.searched: set[str] = set()
         self._sources: dict[str, tuple[Source | None, Report]] = {}
         self._stamps: dict[str, Stamp] = {}
         self._trees: dict[Source, tuple[Tree | None, Report]] = {}
@@ -171,7 +171,7 @@ class Disk:
         if str(path) in self.refused:
             report.append(self.refused[str(path)])
             return None
-        self.asked.add(str(path))
+        self.searched.add(str(path))
         key = os.path.realpath(path)
         if key not in self._sources:
             found: Report = []
@@ -219,13 +219,13 @@ class Disk:
         self._trees = {source: tree for source, tree in self._trees.items() if source in held}
 
     def is_file(self, path: Path) -> bool:
-        self.asked.add(str(path))
+        self.searched.add(str(path))
         return path.is_file() or (bool(self.texts) and os.path.realpath(path) in self.texts)
 
-    def asked_files(self) -> frozenset[str]:
-        """The real paths of `asked`."""
+    def searched_files(self) -> frozenset[str]:
+        """The real paths of the files in `searched`."""
         found = set()
-        for path in self.asked:
+        for path in self.searched:
             with contextlib.suppress(ValueError):  # a NUL in the name
                 found.add(os.path.realpath(path))
         return frozenset(found)

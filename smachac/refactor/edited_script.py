@@ -105,13 +105,13 @@ class EditedScript:
         for path in scripts_of([self.path.parent], self.disk):
             if os.path.realpath(path) == mine:
                 continue
-            self.disk.asked.clear()
+            self.disk.searched.clear()
             source = self.disk.read(path, [])
             if source is None or not isinstance(self.disk.parse(source, []), Map):
                 continue
             found = self.read(self.disk, path)
             if found.checked is not None and any(
-                name in changed for name in self.disk.asked_files()
+                name in changed for name in self.disk.searched_files()
             ):
                 yield path, found.checked
 

@@ -308,3 +308,18 @@ def test_a_project_of_smacha_is_for_ros_1(
     main(["migrate", str(tmp_path)])
     assert capsys.readouterr().err == ""
     assert settings.read_text("utf-8") == "ros = 2\n"
+
+
+def test_a_sub_script_of_a_relative_folder_is_read_through_its_caller(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The call replaces the template, which alone would be reported as missing."""
+    folder = tmp_path / "robot"
+    folder.mkdir()
+    call = "{script: part, template: ScriptedState, outcomes: [done], transitions: {done: done}}"
+    main_script = f"name: sm\noutcomes: [done]\nstates:\n  - A: {call}\n"
+    (folder / "main.yml").write_text(main_script)
+    (folder / "part.yml").write_text("- PART: {template: Nothing}\n")
+    monkeypatch.chdir(tmp_path)
+    _, text = migrated(capsys, "robot")
+    assert "2 of 2 files work as they are" in text
