@@ -185,9 +185,6 @@ def _as_function(slot: CodeSlot, name: str) -> tuple[Edit, ...]:
     return (Edit(span=Span(start.source, start.start, start.start), text=head),)
 
 
-MIXED_ARGUMENTS = "the state passes them by position, so each name has the value of another one"
-
-
 @rule(
     "SM317",
     "wrong-arguments",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator
+from typing import Literal
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
@@ -18,7 +19,7 @@ from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed
-from smachac.ir.nodes import Data, Leaf, Node, Struct
+from smachac.ir.nodes import Data, Leaf, Struct
 from smachac.ir.robot import Joint, Robot
 from smachac.ir.types import Type
 
@@ -498,39 +499,55 @@ def _late_frames(context: Context, robot: Robot) -> Iterator[Finding]:
     ]
     for flow in reaching_flows(flows):
         for name in _frames_in(flow):
-            later = loaded_later(context, flow, name)
-            if name not in given and later is not None:
-                where, help = when_loaded(flow, later, "frame")
-                help = help or "write another frame, such as `base`"
-                yield at(
+            if name not in given:
+                yield from loaded_too_late(
+                    context,
                     flow,
-                    f"the simulation has no frame `{name}` before {where}",
-                    help,
-                    (name,),
-                    other_place(later.span, f"`{name}` is loaded here"),
-                    severity=Severity.ERROR,
+                    name,
+                    "frame",
+                    "write another frame, such as `base`",
                     part=frame_place(flow.value),
                 )
 
 
-def when_loaded(flow: TypeFlow, later: Node, what: str) -> tuple[str, str | None]:
-    """When a body is loaded that the state of a literal uses before, and what to do."""
-    if later is flow.cell.node:
-        return f"{reader(flow)} itself loads it", None
-    help = f"run `{later.name}` before {reader(flow)}: the {what} exists only after it"
-    return f"{reader(flow)}: `{later.name}` loads it later", help
+def loaded_too_late(
+    context: Context,
+    flow: TypeFlow,
+    name: str,
+    what: Literal["frame", "body"],
+    otherwise: str,
+    *,
+    part: tuple[int | str, ...] = (),
+    key: bool = False,
+) -> Iterator[Finding]:
+    """The finding for a body, or its frame, that is loaded only after the state of a literal that
+    names it. `otherwise` is the help if that state itself loads the body; `part`, `key`: see `at`.
+    """
+    path = context.loading_order.loaded_later(flow.cell.path, name)
+    if path is None:
+        return
+    later = context.routes.nodes[path]
+    when, help = f"{reader(flow)} itself loads it", otherwise
+    if later is not flow.cell.node:
+        when = f"{reader(flow)}: `{later.name}` loads it later"
+        help = f"run `{later.name}` before {reader(flow)}: the {what} exists only after it"
+    missing = "the simulation has no frame" if what == "frame" else "there is no body"
+    yield at(
+        flow,
+        f"{missing} `{name}` before {when}",
+        help,
+        (name,),
+        other_place(later.span, f"`{name}` is loaded here"),
+        severity=Severity.ERROR,
+        part=part,
+        key=key,
+    )
 
 
 def uses_simulation(context: Context, cell: Cell) -> bool:
     """Whether the state of a cell uses the simulated world."""
     known = context.machine.state_types.get(cell.node.type) if cell.node is not None else None
     return known is not None and known.simulation
-
-
-def loaded_later(context: Context, flow: TypeFlow, body: str) -> Node | None:
-    """The state that loads a body only after the state that a literal names it for."""
-    path = context.loading_order.loaded_later(flow.cell.path, body)
-    return context.routes.nodes[path] if path is not None else None
 
 
 def is_simulated(context: Context) -> bool:

@@ -9,18 +9,17 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.robot import (
     at,
     is_simulated,
     joint_faults,
-    loaded_later,
+    loaded_too_late,
     moves_arm,
     names_in,
     part_named,
     role_of,
     uses_simulation,
-    when_loaded,
 )
 from smachac.checks.rule import rule
 from smachac.checks.value_places import steps_to_number
@@ -263,21 +262,10 @@ def _late_bodies(context: Context) -> Iterator[Finding]:
     ]
     for flow in reaching_flows(flows):
         for name in dict.fromkeys(names_in(flow.value)):
-            later = loaded_later(context, flow, name) if name not in given else None
-            if later is not None:
-                where, help = when_loaded(flow, later, "body")
-                part, is_key = part_named(flow.value, name)
-                help = help or f"remove `{name}`: the state names its own body"
-                yield at(
-                    flow,
-                    f"there is no body `{name}` before {where}",
-                    help,
-                    (name,),
-                    other_place(later.span, f"`{name}` is loaded here"),
-                    severity=Severity.ERROR,
-                    part=part,
-                    key=is_key,
-                )
+            if name not in given:
+                part, key = part_named(flow.value, name)
+                help = f"remove `{name}`: the state names its own body"
+                yield from loaded_too_late(context, flow, name, "body", help, part=part, key=key)
 
 
 def _missing_grippers(context: Context, severity: Severity | None) -> Iterator[Finding]:
