@@ -40,7 +40,7 @@ def member_faults(
     if "template" in body.text or left_to_scripts(code.type):
         return
     yield from _constructor_faults(code, body)
-    found = [each for each in _EXECUTE.finditer(body.text) if _is_member(body, each.start())]
+    found = list(_members(body, _EXECUTE))
     if len(found) != 1:
         return
     (head,) = found
@@ -62,9 +62,14 @@ def member_faults(
         yield from _unset(code, body, run, head[1])
 
 
-def _is_member(body: Part, at: int) -> bool:
-    """Whether a place is outside the braces in a class."""
-    return body.text.count("{", 0, at) == body.text.count("}", 0, at)
+def _members(body: Part, pattern: re.Pattern[str]) -> Iterator[re.Match[str]]:
+    """The matches of a pattern outside the braces in a class."""
+    at = depth = 0
+    for found in pattern.finditer(body.text):
+        depth += body.text.count("{", at, found.start()) - body.text.count("}", at, found.start())
+        at = found.start()
+        if depth == 0:
+            yield found
 
 
 def _arguments(code: ClassCode) -> list[str]:
@@ -99,7 +104,7 @@ def _constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
     """Constructors none of which takes the variables of the interface."""
     name = code.name.rpartition("::")[2]
     made = re.compile(rf"(?<![~\w:]){re.escape(name)}\s*\(")
-    heads = [each for each in made.finditer(body.text) if _is_member(body, each.start())]
+    heads = list(_members(body, made))
     try:
         variables = [
             f"{parameter_type(each.type)} {identifier(key)}".replace("& ", "&")
