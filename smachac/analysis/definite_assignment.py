@@ -375,7 +375,6 @@ class _ChildrenTogether:
     """
 
     def __init__(self, every: Mapping[str, ChildEndings]) -> None:
-        self._every = every
         self._all = {name: _either(endings.values()) for name, endings in every.items()}
         self._sure = NONE.union(*(each.sure for each in self._all.values()))
         self._trusted = NONE.union(*(each.trusted for each in self._all.values()))

@@ -38,8 +38,8 @@ LEVELS: Mapping[str, Severity | None] = {
 """The severities that a project file may set."""
 
 
-_OTHER_WORDS = dict.fromkeys(("ignore", "none", "disable", "disabled", "false", "never"), "off")
-"""Words of other tools for a severity."""
+_WORDS_FOR_OFF = frozenset(["ignore", "none", "disable", "disabled", "false", "never"])
+"""Words of other tools for the severity `off`."""
 
 MOST_DOTS = 200
 """The most dots of a line, and so the most parts of a key."""
@@ -225,8 +225,8 @@ def _severities(
             message = f"`{word}` is not a severity"
             arguments = ("severity", code, str(word))
             help = _near(str(word), LEVELS)
-            if word in _OTHER_WORDS:
-                help = f"did you mean `{_OTHER_WORDS[word]}`?"
+            if word in _WORDS_FOR_OFF:
+                help = "did you mean `off`?"
             _wrong(source, code, message, help, report, arguments, at_value=True)
         elif codes and code in codes and codes[code].firm and word != "error":
             help = "remove the line: no program can be generated with this fault"

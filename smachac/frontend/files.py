@@ -147,8 +147,8 @@ class Disk:
     `replace` or `refresh` forgets it.
 
     `texts` replace the files at their (real) paths. `searched` collects the paths, as given, of
-    all files that were searched, found or not; the caller may empty it. `plain`: all line ends become
-    line feeds. `refused`: the paths that are not read, as given, and why.
+    all files that were searched, found or not; the caller may empty it. `plain`: all line ends
+    become line feeds. `refused`: the paths that are not read, as given, and why.
     """
 
     def __init__(

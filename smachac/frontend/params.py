@@ -5,13 +5,14 @@ They may be at any depth of a value. A quoted word is data: `['params', x]` is a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.frontend.errors.references import param_before_definition, unresolved_look_up
 from smachac.frontend.errors.script import too_big, wrong_shape
+from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import (
     Entry,
     Joined,
@@ -22,6 +23,7 @@ from smachac.frontend.yaml_tree import (
     is_known_wrong,
     known_wrong,
 )
+from smachac.ir.nodes import FixedParam, Param, StateType
 
 Scope = Mapping[str, Tree]
 """The params in scope of a state."""
@@ -91,6 +93,22 @@ def look_up_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
             report.append(wrong_shape(word.span, message, help, arguments=arguments, edits=edits))
             return scope[name]
     return None
+
+
+def look_ups(tree: Tree) -> Iterator[Word]:
+    """The names of params in the look-ups of a value, at any depth."""
+    todo: list[Tree] = [tree]
+    while todo:
+        each = todo.pop()
+        if isinstance(each, Scalar):
+            continue
+        word = look_up_word(each)
+        if word is not None:
+            yield word
+            continue
+        inner: Iterable[Tree]
+        inner = (entry.value for entry in each.entries) if isinstance(each, Map) else each.items
+        todo.extend(inner)
 
 
 def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) -> Tree:
@@ -204,3 +222,22 @@ def size_up_to(tree: Tree, limit: int) -> int:
         elif isinstance(node, Map):
             stack.extend(entry.value for entry in node.entries)
     return seen
+
+
+def params_of(entry: Entry | None) -> tuple[Param, ...]:
+    """The params of the main script that have values of their own."""
+    if entry is None or not isinstance(entry.value, Map):
+        return ()
+    return tuple(
+        Param(name=str(each.key.value), value=as_value(each.value)) for each in entry.value.entries
+    )
+
+
+def fixed_params(own: Mapping[str, Entry], type_: StateType, scope: Scope) -> Iterator[FixedParam]:
+    """The look-ups in the time limit and in the retries of a state."""
+    for key in ("timeout", "retry"):
+        if key not in own or key in type_.variables:
+            continue
+        for word in look_ups(own[key].value):
+            if word.text in scope:
+                yield FixedParam(key, word, scope[word.text].span)

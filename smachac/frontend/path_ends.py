@@ -32,6 +32,7 @@ class PathEnds:
         return any(map(self.statement, body))
 
     def statement(self, node: ast.stmt) -> bool:
+        """Whether control never reaches the place after a statement."""
         match node:
             case ast.Return() | ast.Raise() | ast.Break() | ast.Continue():
                 # A loop with `break` is handled below; `continue` stays in the loop.

@@ -40,10 +40,12 @@ from smachac.frontend.params import (
     Scope,
     child_scope,
     fill_in,
+    fixed_params,
     is_flat,
     is_too_deep,
     look_up_meant,
     look_up_word,
+    params_of,
     size_up_to,
 )
 from smachac.frontend.properties import properties_of
@@ -54,24 +56,24 @@ from smachac.frontend.state_fields import (
     TEMPLATE_WORDS,
     Entries,
     accepts,
+    has_unknown_outcomes,
+    has_wrong_transitions,
     read_fields,
     with_meant_fields,
 )
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import SUB_SCRIPT_HELP, overridden, sub_script_state
 from smachac.frontend.type_annotations import TYPED, Aliases, read_aliases, typed
-from smachac.frontend.unused import Mark, Uses, look_ups
-from smachac.frontend.values import as_value
+from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import (
     Entry,
     Map,
     Scalar,
     Seq,
     Tree,
-    is_known_wrong,
     known_wrong,
 )
-from smachac.ir.nodes import FixedParam, Param, Preset, StateType
+from smachac.ir.nodes import FixedParam, Preset, StateType
 
 MAX_STATES = 1_000_000
 """The most states of a script with its sub-scripts."""
@@ -194,7 +196,7 @@ class _Resolver:
             missing_definitions=missing_definitions_of(base, definitions, self.library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
-            params=_params(entries.get("params")),
+            params=params_of(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
@@ -254,7 +256,7 @@ class _Resolver:
         entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
         if scope:
-            self.fixed_params += _fixed_params(own, type_, scope)
+            self.fixed_params += fixed_params(own, type_, scope)
         if role != "base":
             self.count += 1
         fields = read_fields(
@@ -266,9 +268,9 @@ class _Resolver:
         sugar: Sugar | None = fields.get("sugar")
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
-        if owner == "state" and _has_wrong_transitions(entries, fields):
+        if owner == "state" and has_wrong_transitions(entries, fields):
             return _unknown(name, (), around)
-        if owner == "state" and _has_unknown_outcomes(entries):
+        if owner == "state" and has_unknown_outcomes(entries):
             return _unknown(name, fields.get("transitions", ()), around)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:
@@ -650,13 +652,6 @@ class _Resolver:
         return found, role or ("StateMachine" if is_container else nested)
 
 
-def _has_wrong_transitions(entries: Mapping[str, Entry], fields: Mapping[str, object]) -> bool:
-    """Whether the transitions of a state have a wrong shape, which was reported: then it may lead
-    anywhere."""
-    given = entries.get("transitions")
-    return given is not None and not isinstance(given.value, Map) and not fields.get("transitions")
-
-
 def _with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
     """The items of a list of states. A further state in one item, which is reported there, is also
     an item of its own, so that it counts as a state."""
@@ -670,14 +665,6 @@ def _with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
                     yield Map((each,), each.key.span)
 
 
-def _has_unknown_outcomes(entries: Mapping[str, Entry]) -> bool:
-    """Whether a look-up in the outcomes of a state failed, which was reported."""
-    given = entries.get("outcomes")
-    if given is None or isinstance(given.value, Scalar):
-        return given is not None and is_known_wrong(given.value)
-    return isinstance(given.value, Seq) and any(map(is_known_wrong, given.value.items))
-
-
 def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:
     return tree.entries if isinstance(tree, Map) else ()
 
@@ -687,25 +674,6 @@ def _remapping_in_iterator(span: Span) -> Diagnostic:
     message = "the state of an Iterator cannot have a remapping: it uses the Iterator's keys"
     help = "rename the keys, or put the state into a StateMachine and remap there"
     return wrong_shape(span, message, help, arguments=("remapping",))
-
-
-def _params(entry: Entry | None) -> tuple[Param, ...]:
-    """The params of the main script that have values of their own."""
-    if entry is None or not isinstance(entry.value, Map):
-        return ()
-    return tuple(
-        Param(name=str(each.key.value), value=as_value(each.value)) for each in entry.value.entries
-    )
-
-
-def _fixed_params(own: Mapping[str, Entry], type_: StateType, scope: Scope) -> Iterator[FixedParam]:
-    """The look-ups in the time limit and in the retries of a state."""
-    for key in ("timeout", "retry"):
-        if key not in own or key in type_.variables:
-            continue
-        for word in look_ups(own[key].value):
-            if word.text in scope:
-                yield FixedParam(key, word, scope[word.text].span)
 
 
 def _unknown(name: Word, transitions: Pairs, around: _Environment) -> State:

@@ -108,6 +108,21 @@ def with_meant_fields(
     return {name: entry for name, entry in meant.items() if name is not None} | entries
 
 
+def has_wrong_transitions(entries: Mapping[str, Entry], fields: Mapping[str, object]) -> bool:
+    """Whether the transitions of a state have a wrong shape, which was reported: then it may lead
+    anywhere."""
+    given = entries.get("transitions")
+    return given is not None and not isinstance(given.value, Map) and not fields.get("transitions")
+
+
+def has_unknown_outcomes(entries: Mapping[str, Entry]) -> bool:
+    """Whether a look-up in the outcomes of a state failed, which was reported."""
+    given = entries.get("outcomes")
+    if given is None or isinstance(given.value, Scalar):
+        return given is not None and is_known_wrong(given.value)
+    return isinstance(given.value, Seq) and any(map(is_known_wrong, given.value.items))
+
+
 def _known_fields(
     entries: Entries, owner: FieldOwner, type_: StateType, report: Report
 ) -> tuple[dict[str, Any], set[str | None]]:

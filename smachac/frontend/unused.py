@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.frontend.params import look_up_word
+from smachac.frontend.params import look_ups
 from smachac.frontend.type_annotations import TYPED, type_words, words_of
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.nodes import StateType, Unused
@@ -120,22 +120,6 @@ class Uses:
             for each in self.found
             if each.word.text not in names and each.word.span not in of_use
         )
-
-
-def look_ups(tree: Tree) -> Iterator[Word]:
-    """The names of params in the look-ups of a value, at any depth."""
-    todo: list[Tree] = [tree]
-    while todo:
-        each = todo.pop()
-        if isinstance(each, Scalar):
-            continue
-        word = look_up_word(each)
-        if word is not None:
-            yield word
-            continue
-        inner: Iterable[Tree]
-        inner = (entry.value for entry in each.entries) if isinstance(each, Map) else each.items
-        todo.extend(inner)
 
 
 def _inside(tree: Tree) -> Iterator[Tree]:
