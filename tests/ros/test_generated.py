@@ -65,9 +65,14 @@ def built(folder: Path, states: str, **options: str) -> str:
 
 
 def outcome(graph: Graph, folder: Path, states: str) -> str:
-    """The outcome of a script with these states."""
-    line = graph.run(built(folder, states)).splitlines()[-1]
-    return line.removeprefix("outcome: ")
+    """The outcome of a script with these states.
+
+    It is not always the last line: `rosbag record` writes its buffered lines when it exits, and
+    that can be after the program has printed its outcome.
+    """
+    lines = graph.run(built(folder, states)).splitlines()
+    (found,) = (line for line in lines if line.startswith("outcome: "))
+    return found.removeprefix("outcome: ")
 
 
 def test_the_script_of_the_docs_runs(graph: Graph, tmp_path: Path) -> None:
