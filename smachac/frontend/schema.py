@@ -150,9 +150,10 @@ INTERFACE_FIELDS: Mapping[str, str] = {
     "doc": "What it does, in a sentence.",
     "kind": "What it is: `state`, `container` or `base`.",
     "variables": "The variables that a script sets; one without a default is required.",
-    "input_keys": "Userdata keys that it reads: {target: Pose}.",
-    "output_keys": "Userdata keys that it writes: {width: float}.",
-    "outcomes": "What it can end with: {succeeded: {}, aborted: {doc: Not reached in time.}}.",
+    "input_keys": "Userdata keys that it reads: {target: Pose}, or without types [target].",
+    "output_keys": "Userdata keys that it writes: {width: float}, or without types [width].",
+    "outcomes": "What it can end with: [succeeded, aborted], or with what they mean"
+    " {succeeded: {}, aborted: {doc: Not reached in time.}}.",
     "writes": "The outputs that only some outcomes write: {succeeded: [width]}.",
     "claims": 'Resources held while it runs: ["arm.{limb}"]; a part in braces is a variable.',
     "blocking": "It waits for the outside world, so it needs a time limit.",

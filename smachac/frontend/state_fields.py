@@ -23,7 +23,7 @@ from smachac.frontend.sugar import NAMES, is_own, read_sugar
 from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
-from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable
+from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable, VariableType
 from smachac.ir.types import ANY, EXAMPLES
 
 Entries = Mapping[str, Entry]
@@ -235,8 +235,30 @@ def _check_required(
             variable = type_.variables.get(key)
             example = examples.get(key, "")
             if variable is not None:
-                example = EXAMPLES.get(variable.type.name, "")
-            report.append(missing_variable(name.span, key, whose, related, example))
+                example = _example(variable)
+            params = entries.get("params")
+            entry = params.value.get(key) if params and isinstance(params.value, Map) else None
+            inside = entry.key.span if entry is not None else None
+            report.append(
+                missing_variable(name.span, key, whose, related, example, in_params=inside)
+            )
+
+
+def _example(variable: VariableType) -> str:
+    """A value that the variable can have; empty if there is no short one."""
+    limits = variable.limits
+    if variable.type.name == "one_of":
+        return str(variable.type.args[0])
+    if limits is not None and limits.choices:
+        return str(limits.choices[0])
+    text = EXAMPLES.get(variable.type.name, "")
+    if limits is None or variable.type.name not in ("float", "int"):
+        return text
+    if limits.least < float(text) < limits.most:
+        return text
+    least = max(limits.least, limits.most - 2)
+    middle = (least + min(limits.most, least + 2)) / 2
+    return str(round(middle) if variable.type.name == "int" else middle)
 
 
 def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:

@@ -29,7 +29,7 @@ from smachac.frontend.value_facts import (
     named,
 )
 from smachac.frontend.values import as_value
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import (
     FunctionResult,
@@ -54,11 +54,17 @@ _OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
     "inputs": ("input_keys",),
     "io_keys": ("output_keys",),
     "outputs": ("output_keys",),
+    "arguments": ("variables",),
+    "parameters": ("variables",),
+    "params": ("variables",),
 }
 """Fields that other tools have, with those of interfaces that they are meant for."""
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
+
+_LISTED = frozenset(["input_keys", "output_keys", "outcomes"])
+"""Those that can be lists of names too, as in a script."""
 
 _VARIABLE_ROLES: tuple[VariableRole, ...] = get_args(VariableRole)
 _KEY_ROLES: tuple[KeyRole, ...] = get_args(KeyRole)
@@ -111,9 +117,7 @@ def _read_interface(
     unclear = tree.get("io_keys") is not None  # reported; which keys are inputs is not known
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
-    sections = {
-        key: as_map(fields[key], report, "{}") if key in fields else () for key in _SECTIONS
-    }
+    sections = {key: _section(key, fields.get(key), report) for key in _SECTIONS}
     code = _code(sections["code"], report)
     parts = ("variables", "input_keys", "output_keys", "outcomes")
     given = frozenset(part for part in parts if _is_starred(sections[part]))
@@ -169,11 +173,27 @@ def _fields(tree: Map, report: Report) -> dict[str, Tree]:
             fields[key] = entry.value
             continue
         near = sure(key)
-        for name in _OTHER_FIELDS.get(key, (near,) if near is not None else ()):
+        names = _OTHER_FIELDS.get(key, (near,) if near is not None else ())
+        for name in names:
             meant[name] = entry.value
-        word, owner = Word(key, entry.key.span), Owner("interface", "an interface")
-        report.append(unknown_variable(word, owner, INTERFACE_FIELDS))
+        word, owner = Word(key, entry.key.span), Owner("interface", "an interface", "field")
+        one = names[0] if names and key != "io_keys" else None
+        report.append(unknown_variable(word, owner, INTERFACE_FIELDS, meant=one))
     return meant | fields
+
+
+def _section(name: str, tree: Tree | None, report: Report) -> Section:
+    """The entries of a field that is a mapping of names. A list of names, `[picked, lost]`, is the
+    mapping `{picked: {}, lost: {}}`: nothing is stated about them."""
+    if tree is None:
+        return ()
+    if name not in _LISTED or not isinstance(tree, Seq):
+        return as_map(tree, report, "{}")
+    names = [item for item in tree.items if isinstance(item, Scalar)]
+    if len(names) < len(tree.items):
+        return as_map(tree, report, "{}")
+    words = {word.span.start for word in as_names(tree, report)}
+    return tuple(Entry(item, Map((), item.span)) for item in names if item.start in words)
 
 
 def _check_own_name(tree: Tree, name: str, report: Report) -> None:

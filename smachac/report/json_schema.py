@@ -264,6 +264,7 @@ def interface_schema() -> Schema:
         facts(schema.KEY_FACTS, common | {"role": {"enum": list(get_args(KeyRole))}, "frame": text})
     )
     names: Schema = {"type": "array", "items": {"type": "string"}}
+    outcomes = section(facts(schema.OUTCOME_FACTS, common))
     class_: Schema = {
         "type": "object",
         "required": list(CLASS_FIELDS[:2]),
@@ -275,9 +276,8 @@ def interface_schema() -> Schema:
         "doc": text,
         "kind": {"enum": list(get_args(StateKind)), "default": "state"},
         "variables": section(facts(schema.VARIABLE_FACTS, of_variables)),
-        "input_keys": keys,
-        "output_keys": keys,
-        "outcomes": section(facts(schema.OUTCOME_FACTS, common)),
+        **{key: {"anyOf": [keys, names]} for key in ("input_keys", "output_keys")},
+        "outcomes": {"anyOf": [outcomes, names]},
         "writes": {"type": "object", "additionalProperties": names},
         "claims": names,
         **dict.fromkeys(("blocking", "stand_in", "simulation"), flag | {"default": False}),

@@ -372,9 +372,72 @@ def test_a_loop_in_words() -> None:
     ]
 
 
-def test_an_interface_with_a_list_of_outcomes() -> None:
-    grab = "name: Grab\noutcomes: [held, slipped]\n"
-    main = PATROL.replace("ScriptedState\n      outcomes: [held, slipped]", "Grab")
-    assert reported({"main.yml": main, "templates/Grab.yml": grab}) == [
-        ("SM004", "[held, slipped]", "write one mapping: `{held: {}, slipped: {}}`")
-    ]
+GRAB = """\
+name: Grab
+variables: {limb: {one_of: [left, right]}, force: {type: float, min: 0, max: 1}}
+input_keys: [blocks]
+output_keys: [width]
+outcomes: [held, slipped]
+writes: {held: [width]}
+code: {python: "grab:Grab"}
+"""
+
+GRAB_CODE = """\
+import smach
+
+
+class Grab(smach.State):
+    def __init__(self, limb, force):
+        smach.State.__init__(
+            self, ["held", "slipped"], input_keys=["blocks"], output_keys=["width"]
+        )
+        self.limb = limb
+        self.force = force
+
+    def execute(self, userdata):
+        if not userdata.blocks:
+            return "slipped"
+        userdata.width = self.force
+        return "held"
+"""
+
+WITH_GRAB = PATROL.replace(
+    "ScriptedState\n      outcomes: [held, slipped]",
+    "Grab\n      limb: left\n      force: 0.5\n      input_keys: [blocks]",
+)
+
+
+def test_an_interface_with_lists_of_keys_and_outcomes() -> None:
+    files = {"main.yml": WITH_GRAB, "templates/Grab.yml": GRAB, "grab.py": GRAB_CODE}
+    assert reported(files) == []
+    typo = GRAB_CODE.replace('return "slipped"', 'return "sliped"')
+    assert [code for code, _, _ in reported(files | {"grab.py": typo})] == ["SM309"]
+
+
+def test_an_interface_whose_list_has_a_name_twice() -> None:
+    grab = GRAB.replace("[held, slipped]", "[held, slipped, held]")
+    files = {"main.yml": WITH_GRAB, "templates/Grab.yml": grab, "grab.py": GRAB_CODE}
+    assert [(code, text) for code, text, _ in reported(files)] == [("SM002", "held")]
+
+
+@pytest.mark.parametrize("word", ["params", "parameters", "arguments", "variabels"])
+def test_an_interface_with_another_word_for_variables(word: str) -> None:
+    grab = GRAB.replace("variables:", f"{word}:")
+    files = {"main.yml": WITH_GRAB, "templates/Grab.yml": grab, "grab.py": GRAB_CODE}
+    assert reported(files) == [("SM003", word, "did you mean `variables`?")]
+
+
+def test_a_state_with_its_variables_in_params() -> None:
+    main = WITH_GRAB.replace("limb: left\n      force: 0.5", "params: {limb: left, force: 0.5}")
+    files = {"main.yml": main, "templates/Grab.yml": GRAB, "grab.py": GRAB_CODE}
+    help = "write `{}:` beside `params:`; `params` has only constants for look-ups"
+    assert set(reported(files)) == {
+        ("SM005", "limb", help.format("limb")),
+        ("SM005", "force", help.format("force")),
+    }
+
+
+def test_a_missing_variable_has_an_example_that_its_interface_allows() -> None:
+    main = WITH_GRAB.replace("limb: left\n      force: 0.5\n      ", "")
+    files = {"main.yml": main, "templates/Grab.yml": GRAB, "grab.py": GRAB_CODE}
+    assert {help for _, _, help in reported(files)} == {"add `limb: left`", "add `force: 0.5`"}

@@ -148,7 +148,6 @@ def test_files_of_the_repository_fit(path: Path) -> None:
         {"kind": "machine"},
         {"variables": {"a": {"type": "float", "role": "goal_pose"}}},
         {"input_keys": {"a": {"role": "callbacks"}}},
-        {"input_keys": ["a"]},
         {"variables": {"a": {"defalt": 1}}},
         {"code": {"cpp": {"header": "a.hpp"}}},
         {"blocking": "yes"},
@@ -156,6 +155,7 @@ def test_files_of_the_repository_fit(path: Path) -> None:
 )
 def test_wrong_interfaces_do_not_fit(data: Any) -> None:
     assert faults({"outcomes": {"done": {}}}, GENERATED["interface"]) == []
+    assert faults({"outcomes": ["done"], "input_keys": ["n"]}, GENERATED["interface"]) == []
     assert faults({"outcomes": {"done": {}}, **data}, GENERATED["interface"]) != []
 
 

@@ -154,7 +154,7 @@ ELSEWHERE = {
     "SM003",
     "unknown-variable",
     Severity.ERROR,
-    effect="nothing reads a variable of this name, so its value has no effect",
+    effect="nothing reads this name, so its value has no effect",
 )
 def unknown_variable(
     word: Word,
@@ -340,6 +340,7 @@ def missing_variable(
     example: str = "",
     *,
     instead: Word | None = None,
+    in_params: Span | None = None,
 ) -> Finding:
     """A variable is missing that the language or the state type requires.
 
@@ -362,11 +363,16 @@ def missing_variable(
     help = f"add `{name}: {example or MISSING.get(name, '...')}`"
     if name == "template":
         help += "; `smachac states` lists the types"
+    if instead is not None:
+        span, help = instead.span, f"write `{name}:` in place of `{instead.text}:`"
+    if in_params is not None:
+        span = in_params
+        help = f"write `{name}:` beside `params:`; `params` has only constants for look-ups"
     return Finding(
-        span=span if instead is None else instead.span,
+        span=span,
         message=f"the variable `{name}` is missing: {owner.text} requires it",
         arguments=(name, owner.name),
-        help=f"write `{name}:` in place of `{instead.text}:`" if instead else help,
+        help=help,
         related=related,
     )
 
