@@ -8,7 +8,7 @@ import glob
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
@@ -391,6 +391,7 @@ def disk_library(
         code_names=lambda name: _names_in(name, code_folders),
         definitions=lambda path: definitions(path, message_folders(), disk),
         definition_names=lambda folder: definition_names(folder, message_folders()),
+        folders_with=lambda files: _folders_with(files, main.parent),
         script_folders=lambda caller: searched(script_folders(caller)),
         template_folders=lambda: searched(template_folders[: -len(BUILT_IN)]),
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
@@ -519,6 +520,23 @@ def _names_in(name: str, folders: Sequence[Path]) -> list[str]:
             if lies_inside(folder / name, folder):
                 names.update(path.name for path in (folder / name).iterdir())
     return sorted(names)
+
+
+def _folders_with(files: Collection[str], top: Path) -> list[str]:
+    """The folders up to two levels below a folder that have one of the files."""
+    found = []
+    for folder, inner, names in os.walk(top):
+        depth = len(Path(folder).relative_to(top).parts)
+        inner[:] = sorted(name for name in inner if not name.startswith("."))[:_MOST_FOLDERS]
+        if depth == _DEEPEST:
+            inner.clear()
+        if depth and not set(files).isdisjoint(names):
+            found.append(str(Path(folder)))
+    return found
+
+
+_DEEPEST, _MOST_FOLDERS = 2, 30
+"""The levels of folders, and the folders of one level, that are searched for a help."""
 
 
 def _stems(folders: Sequence[Path], suffixes: Sequence[str]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -33,7 +33,8 @@ class Library:
     by path (`my_robot/grasp.hpp`); `code_names(folder)` the names of files and folders in a folder
     of such code; `definitions(path)` all message definitions of ROS with a path, such as
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders; `definition_names(folder)` the
-    names of the files in all folders with a path, such as `std_srvs/srv`. The lists of folders and
+    names of the files in all folders with a path, such as `std_srvs/srv`; `folders_with(files)` the
+    folders below that of the main script that have one of these files. The lists of folders and
     names are for messages. `ros` and `policy` are the version of ROS and the severities of the
     project. `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
     description or URDF file of a built-in robot, or a file of PyBullet's data. `settings_read` is
@@ -47,6 +48,7 @@ class Library:
     code_names: Callable[[str], Sequence[str]] = lambda folder: ()
     definitions: Callable[[str], Sequence[Source]] = lambda path: ()
     definition_names: Callable[[str], Sequence[str]] = lambda folder: ()
+    folders_with: Callable[[Collection[str]], Sequence[str]] = lambda files: ()
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
@@ -56,6 +58,12 @@ class Library:
     policy: Policy = field(default_factory=Policy)
     robot: Callable[[str], Source | None] = lambda file: None
     settings_read: bool = True
+
+    def folder_with(self, name: str, suffixes: Iterable[str], searched: Collection[str]) -> str:
+        """A folder that has a file of a name and is not among those that were searched; empty
+        without one."""
+        folders = self.folders_with([f"{name}{suffix}" for suffix in suffixes])
+        return next((folder for folder in folders if folder not in searched), "")
 
 
 def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
@@ -84,6 +92,13 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
             *_inside(folder, sources),
             *built_in.definition_names(folder),
         ],
+        folders_with=lambda files: sorted(
+            {
+                folder
+                for folder, _, file in (path.rpartition("/") for path in sources)
+                if file in files
+            }
+        ),
         script_folders=lambda caller: [caller.rpartition("/")[0] or "."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: _stems(_inside(caller.rpartition("/")[0], sources)),

@@ -31,7 +31,7 @@ from smachac.frontend.errors.script import (
 )
 from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
 from smachac.frontend.kept import Kept, KeptCall, same_objects
-from smachac.frontend.loader import Library
+from smachac.frontend.loader import SUFFIXES, Library
 from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
 from smachac.frontend.params import (
     MAX_FILLED,
@@ -555,7 +555,8 @@ class _Resolver:
         if source is None:
             searched = self.library.script_folders(caller)
             known = self.library.script_names(caller)
-            self.not_found(script_not_found(word, searched, known))
+            other = self.library.folder_with(word.text, SUFFIXES[1:], searched)
+            self.not_found(script_not_found(word, searched, known, other))
             return None
         self.texts[word.text, caller] = source
         if (word.text, caller) not in self.parsed:
@@ -645,7 +646,8 @@ class _Resolver:
         if found is None:
             searched, names = self.known_templates()
             known = [*names, *([] if role else schema.CONTAINERS)]
-            self.not_found(template_not_found(word, searched, known))
+            other = self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
+            self.not_found(template_not_found(word, searched, known, other))
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself

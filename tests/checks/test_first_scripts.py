@@ -441,3 +441,25 @@ def test_a_missing_variable_has_an_example_that_its_interface_allows() -> None:
     main = WITH_GRAB.replace("limb: left\n      force: 0.5\n      ", "")
     files = {"main.yml": main, "templates/Grab.yml": GRAB, "grab.py": GRAB_CODE}
     assert {help for _, _, help in reported(files)} == {"add `limb: left`", "add `force: 0.5`"}
+
+
+@pytest.mark.parametrize("folder", ["cell", "cell/arm"])
+def test_a_state_type_in_a_folder_that_is_not_searched(folder: str) -> None:
+    files = {"main.yml": WITH_GRAB, f"{folder}/Grab.yml": GRAB, "grab.py": GRAB_CODE}
+    assert reported(files) == [
+        (
+            "SM013",
+            "Grab",
+            f"`{folder}` has `Grab`, but is not searched: write `--templates {folder}`, or add the"
+            f" folder to `templates = [...]` in `smachac.toml`",
+        )
+    ]
+
+
+def test_a_sub_script_in_a_folder_that_is_not_searched() -> None:
+    (fault,) = reported({"main.yml": CALL, "parts/grip.yml": GRIP})
+    assert fault[:2] == ("SM011", "grip")
+    assert fault[2] == (
+        "`parts` has `grip`, but is not searched: write `--scripts parts`, or add the folder to"
+        " `scripts = [...]` in `smachac.toml`"
+    )

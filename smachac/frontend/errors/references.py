@@ -34,8 +34,16 @@ def package_help(path: str) -> str | None:
     return f"`{found[0]}` is not replaced here: write the path from this file, such as `{last}`"
 
 
-def _where(word: Word, file: str, searched: Sequence[str], known: Sequence[str]) -> str:
-    """The help for a file that was not found: the folders that were searched, and a near name."""
+def _where(
+    word: Word, file: str, searched: Sequence[str], known: Sequence[str], setting: str, other: str
+) -> str:
+    """The help for a file that was not found: `other`, a folder that has it but was not searched,
+    with the setting that would add it; or the folders that were searched, and a near name."""
+    if other:
+        return (
+            f"`{other}` has `{word.text}`, but is not searched: write `--{setting} {other}`, or add"
+            f" the folder to `{setting} = [...]` in `smachac.toml`"
+        )
     folders = ", ".join(f"`{folder}`" for folder in dict.fromkeys(searched))
     what = "it" if "/" in file else f"`{file}`"
     where = f"put {what} in one of the folders that were searched: {folders}"
@@ -50,7 +58,9 @@ def _where(word: Word, file: str, searched: Sequence[str], known: Sequence[str])
     Severity.ERROR,
     effect="a part of the task is missing without the sub-script, so no program is generated",
 )
-def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) -> Finding:
+def script_not_found(
+    word: Word, searched: Sequence[str], known: Iterable[str], other: str = ""
+) -> Finding:
     """A state calls a sub-script that is in none of the searched folders.
 
     A part of the task is missing, and nothing else may run in its place.
@@ -78,7 +88,8 @@ def script_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) 
         span=word.span,
         message=f"the sub-script `{word.text}` was not found",
         arguments=(word.text,),
-        help=_package_of(word) or _where(word, f"{word.text}.yml", searched, names),
+        help=_package_of(word)
+        or _where(word, f"{word.text}.yml", searched, names, "scripts", other),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
@@ -152,7 +163,9 @@ def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
     Severity.ERROR,
     effect="there is no code for this state, so no program is generated",
 )
-def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]) -> Finding:
+def template_not_found(
+    word: Word, searched: Sequence[str], known: Iterable[str], other: str = ""
+) -> Finding:
     """The type of a state has neither an interface nor a template in any folder.
 
     There is no code for this skill, so the robot could not execute it.
@@ -176,7 +189,7 @@ def template_not_found(word: Word, searched: Sequence[str], known: Iterable[str]
         span=word.span,
         message=f"the template `{word.text}` was not found",
         arguments=(word.text,),
-        help=_where(word, f"{word.text}.yml", searched, names),
+        help=_where(word, f"{word.text}.yml", searched, names, "templates", other),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
