@@ -6,7 +6,7 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -53,12 +53,16 @@ from smachac.frontend.robots import robot_of
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
 from smachac.frontend.state_fields import (
+    FIELDS_OF_STATES,
     TEMPLATE_WORDS,
     Entries,
     accepts,
     has_unknown_outcomes,
     has_wrong_transitions,
+    is_field,
     read_fields,
+    second_key,
+    with_further_states,
     with_meant_fields,
 )
 from smachac.frontend.state_types import find_state_type
@@ -88,7 +92,6 @@ memory in the checks."""
 CALLED_HERE = "in the sub-script called here"
 
 SCRIPT_HELP = "write a mapping with `name:`, `outcomes:` and `states:`"
-_FIELDS_OF_STATES = tuple(schema.names_for("state"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -361,7 +364,7 @@ class _Resolver:
         if isinstance(tree, Map):
             items = tuple(Map((each,), each.key.span) for each in tree.entries)
         found: list[State] = []
-        for item in items if owner == "Iterator" else _with_further_states(items):
+        for item in items if owner == "Iterator" else with_further_states(items):
             if self.count >= MAX_STATES:
                 message = f"the script has more than {MAX_STATES:,} states"
                 help = "split the task into several scripts"
@@ -402,20 +405,9 @@ class _Resolver:
             self.report.append(wrong_shape(name.span, message, help, arguments=arguments))
             return _unknown(name, (), around)
         if rest:
-            other = rest[0].key
-            help = f"begin another item with `- {other.value}:`, or indent it below `{name.text}:`"
-            if str(other.value) in _FIELDS_OF_STATES:
-                help = f"indent it by 2 spaces more: it is a field of `{name.text}`"
-            self.report.append(
-                wrong_shape(
-                    other.span,
-                    f"this item has two keys, `{name.text}` and `{other.value}`; a state has one",
-                    help,
-                    (Related(span=name.span, message="the first key"),),
-                    arguments=("item", name.text, str(other.value)),
-                )
-            )
-        return self.call(name, self.expand(first.value.entries), around)
+            self.report.append(second_key(name, first.value, rest[0]))
+        own = [entry for entry in rest if is_field(entry)]
+        return self.call(name, self.expand((*first.value.entries, *own)), around)
 
     def call(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
         """As `called`; for the call of a sub-script, the state of the last reading if it is still
@@ -603,7 +595,7 @@ class _Resolver:
     def meant_template(self, entries: Entries) -> Entry | None:
         """The field with another name that is meant for `template`, if it names a type that does
         not have the field: then the name is reported as unknown."""
-        sure = guesser_of(_FIELDS_OF_STATES).sure
+        sure = guesser_of(FIELDS_OF_STATES).sure
         for key, entry in entries.items():
             if key in schema.VARIABLES or not (key in TEMPLATE_WORDS or sure(key) == "template"):
                 continue
@@ -652,19 +644,6 @@ class _Resolver:
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
         return found, role or ("StateMachine" if is_container else nested)
-
-
-def _with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
-    """The items of a list of states. A further state in one item, which is reported there, is also
-    an item of its own, so that it counts as a state."""
-    for item in items:
-        yield item
-        if not isinstance(item, Map) or len(item.entries) < 2:
-            continue
-        if isinstance(item.entries[0].value, Map):
-            for each in item.entries[1:]:
-                if isinstance(each.value, Map) and str(each.key.value) not in _FIELDS_OF_STATES:
-                    yield Map((each,), each.key.span)
 
 
 def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:

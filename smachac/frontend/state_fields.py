@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.diagnostics.wording import listed
@@ -31,6 +31,8 @@ Entries = Mapping[str, Entry]
 
 _FIELDS = frozenset(State._fields) & frozenset(schema.VARIABLES)
 """The fields of the schema that a state keeps; tests compare their types with the readers'."""
+
+FIELDS_OF_STATES = tuple(schema.names_for("state"))
 
 TEMPLATE_WORDS = frozenset(
     ["action", "behavior", "behaviour", "class", "kind", "skill", "state", "state_type", "type"]
@@ -361,3 +363,46 @@ def _owner_of(owner: FieldOwner, type_: StateType, *, of_type: bool) -> Owner:
     if owner == "base":
         return Owner(owner, "the script")
     return Owner(owner, "a state" if owner == "state" else f"a container of type `{owner}`")
+
+
+def is_field(entry: Entry) -> bool:
+    """Whether a further key of an item in a list of states is a field of its state, which is
+    indented too little, and not another state."""
+    name = str(entry.key.value)
+    if schema.LONG.get(name, name) in FIELDS_OF_STATES:
+        return True
+    empty = isinstance(entry.value, Scalar) and entry.value.value is None
+    return not isinstance(entry.value, Map) and not empty
+
+
+def with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
+    """The items of a list of states. A further state in one item, which is reported there, is also
+    an item of its own, so that it counts as a state."""
+    for item in items:
+        yield item
+        if not isinstance(item, Map) or len(item.entries) < 2:
+            continue
+        if isinstance(item.entries[0].value, Map):
+            for each in item.entries[1:]:
+                if isinstance(each.value, Map) and not is_field(each):
+                    yield Map((each,), each.key.span)
+
+
+def second_key(name: Word, fields: Map, other: Entry) -> Diagnostic:
+    """SM004 for a further key in an item of a list of states, beside a state with its fields."""
+    key = other.key
+    help = f"begin another item with `- {key.value}:`, or indent it below `{name.text}:`"
+    if is_field(other):
+        column = fields.entries[0].key.span.column if fields.entries else 0
+        more = max(column - key.span.column, 1)
+        spaces = f"{more} space{'s' if more > 1 else ''}"
+        help = f"indent it by {spaces} more: it is a field of `{name.text}`"
+        if fields.span.text.startswith("{"):
+            help = f"write it inside the braces of `{name.text}`: it is a field of the state"
+    return wrong_shape(
+        key.span,
+        f"this item has two keys, `{name.text}` and `{key.value}`; a state has one",
+        help,
+        (Related(span=name.span, message="the first key"),),
+        arguments=("item", name.text, str(key.value)),
+    )

@@ -36,9 +36,17 @@ UNKNOWN_TRIES = 2
 
 NO_OUTCOMES = "add `outcomes: [...]` to this state"
 
-MEANT_PARTS: Mapping[str, str] = dict.fromkeys(
-    ("attempts", "count", "limit", "times", "tries"), "max"
-)
+MEANT_PARTS: Mapping[str, str] = {
+    word: part
+    for part, words in {
+        "max": "attempts count limit max_attempts max_retries max_tries retries times tries",
+        "on": "outcome outcomes when",
+        "delay": "interval pause sleep wait",
+        "item": "as label name var variable",
+        "in": "it items list over",
+    }.items()
+    for word in words.split()
+}
 """Other words for a part of sugar, which are not its misspelt names."""
 
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
@@ -176,7 +184,7 @@ def _parts(
     if not isinstance(entry.value, Map):
         wrong(entry.value, "map", report, _mapping_for(entry))
         return None
-    owner = Owner(str(entry.key.value), f"`{entry.key.value}`")
+    owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
     parts: dict[str, Tree] = {}
     written = {str(each.key.value) for each in entry.value.entries}
     for each in entry.value.entries:
@@ -184,9 +192,12 @@ def _parts(
         if word.text in known:
             parts[word.text] = each.value
             continue
-        meant = MEANT_PARTS.get(word.text) or guesser(known).sure(word.text)
-        if meant not in known or meant in written:
-            report.append(unknown_variable(word, owner, known))
+        others = tuple(name for name in known if name not in written)
+        meant = MEANT_PARTS.get(word.text)
+        if meant not in others:
+            meant = guesser(others)(word.text)
+        if meant is None:
+            report.append(unknown_variable(word, owner, others))
             continue
         report.append(unknown_variable(word, owner, known, meant=meant))
         parts.setdefault(meant, each.value)

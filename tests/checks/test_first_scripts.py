@@ -463,3 +463,49 @@ def test_a_sub_script_in_a_folder_that_is_not_searched() -> None:
         "`parts` has `grip`, but is not searched: write `--scripts parts`, or add the folder to"
         " `scripts = [...]` in `smachac.toml`"
     )
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "place", "help"),
+    [
+        (
+            "      transitions: {found: GRAB, nothing: aborted}",
+            "    transitions: {found: GRAB, nothing: aborted}",
+            "transitions",
+            "indent it by 2 spaces more: it is a field of `LOOK`",
+        ),
+        (
+            "  - LET_GO:\n      template: ScriptedState\n      outcomes: [open]\n      trans",
+            "  - LET_GO: {template: ScriptedState, outcomes: [open]}\n    trans",
+            "transitions",
+            "write it inside the braces of `LET_GO`: it is a field of the state",
+        ),
+    ],
+)
+def test_a_field_that_is_indented_too_little(
+    before: str, after: str, place: str, help: str
+) -> None:
+    assert before in PATROL
+    assert reported({"main.yml": PATROL.replace(before, after)}) == [("SM004", place, help)]
+
+
+@pytest.mark.parametrize(
+    ("retry", "place", "help"),
+    [
+        ("{on: [slipped], maximum: 3}", "maximum", "did you mean `max`?"),
+        ("{when: [slipped], max: 3}", "when", "did you mean `on`?"),
+        ("{on: [slipped], max: 3, pause: 1s}", "pause", "did you mean `delay`?"),
+        ("{on: [slipped], max: 3, backof: 1}", "backof", "use one of its parts: `delay`"),
+        (
+            "{on: [slipped], max: 3, delay: 1s, backoff: 1}",
+            "backoff",
+            "remove it: `retry` has no other parts",
+        ),
+    ],
+)
+def test_parts_of_retry(retry: str, place: str, help: str) -> None:
+    main = PATROL.replace(
+        "{held: BOTH, slipped: LET_GO}",
+        f"{{held: BOTH, exhausted: LET_GO, preempted: aborted}}\n      retry: {retry}",
+    )
+    assert reported({"main.yml": main}) == [("SM003", place, help)]

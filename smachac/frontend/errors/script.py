@@ -189,7 +189,7 @@ def unknown_variable(
     own = sorted(own)
     names = sorted([*known, *own])
     owned = f"use one of its {owner.part}s: {listed(names)}"
-    variables = owned if names else f"remove it: {owner.text} has no {owner.part}s"
+    variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
     sure = meant or Guesser(names).sure(word.text)
     number = _number_before(word)
     if number:
@@ -370,7 +370,7 @@ def missing_variable(
         help = f"write `{name}:` beside `params:`; `params` has only constants for look-ups"
     return Finding(
         span=span,
-        message=f"the variable `{name}` is missing: {owner.text} requires it",
+        message=f"the {owner.part} `{name}` is missing: {owner.text} requires it",
         arguments=(name, owner.name),
         help=help,
         related=related,
