@@ -373,3 +373,16 @@ def test_a_managed_node(tmp_path: Path) -> None:
     path.write_text(HEAD.format(base="ROSBase", params="{}") + SLEEP, encoding="utf-8")
     text = smachac.compile(path, "python", options={"lifecycle": "true"})["sm.py"]
     assert 'program.start_node("sm", arguments, kind, build=build)' in text
+
+
+def test_a_base_of_the_user_that_extends_the_one_of_a_node(tmp_path: Path) -> None:
+    base = tmp_path / "templates" / "MyBase.tpl.py"
+    base.parent.mkdir()
+    base.write_text(
+        '{% extends "ROSBase.tpl.py" %}\n'
+        "{% block imports %}\n{{ super() }}\nimport math\n{% endblock %}"
+    )
+    text = program(tmp_path, SLEEP, base="MyBase")
+    assert "program.start_node(" in text
+    assert text.count("from smachac.runtime.smach_ros2 import program\n") == 1
+    assert text.count("import math\n") == 1

@@ -287,13 +287,15 @@ def _rendered(
     can_be = module.ros == 1 and "node" in module.blocks.names(template)
     can_be = can_be and "init_node" not in text
     node = can_be and _needs_node(text)
-    more = NODE_IMPORTS[module.ros] if node else []
+    # The template of a user's base may extend that of a node of ROS 2.
+    started = module.ros == 2 and "program.start_node(" in text and template != "ROSBase.tpl.py"
+    more = NODE_IMPORTS[module.ros] if node or started else []
     names = ProgramNames()
     for tree in (modern(text).tree, *map(parsed, more)):
         if isinstance(tree, ast.Module):
             names.add(tree)
     lacking = unbound_names(names, module.ros, ["smach", "smach_ros"])
-    if not lacking and not node:
+    if not lacking and not more:
         return text
     again = {
         **variables,
