@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import TypeGuard
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import kinds
@@ -405,11 +406,22 @@ def _in_wanted_unit(clash: Clash) -> str:
     correct = _other_change(clash)
     if factor is None:
         return f"use a number in `{wanted}`{correct}"
-    value = clash.flow.origin.value
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        type_ = clash.misfit.wanted
-        return f"write it in `{wanted}`: `{value * factor:.6g}` of the type `{type_}`{correct}"
+    origin, type_ = clash.flow.origin, clash.misfit.wanted
+    if _is_number(origin.value):
+        number = f"{origin.value * factor:.6g}"
+        return f"write it in `{wanted}`: `{number}` of the type `{type_}`{correct}"
+    node, key = origin.cell.node, origin.cell.key
+    presets = () if node is None or isinstance(node, Leaf) else node.userdata
+    for each in presets:
+        if each.key == key and each.type == clash.misfit.given and _is_number(each.value.data):
+            number = f"{each.value.data * factor:.6g}"
+            new = f'`{key}: {{type: "{type_}", value: {number}}}`'
+            return f"write {new} in the `userdata` of {_owner(origin.cell)}{correct}"
     return f"multiply it by {factor:.6g}, which makes `{wanted}` of `{given}`{correct}"
+
+
+def _is_number(data: object) -> TypeGuard[int | float]:
+    return isinstance(data, int | float) and not isinstance(data, bool)
 
 
 def _rewrite(clash: Clash) -> str:

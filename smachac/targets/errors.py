@@ -345,18 +345,22 @@ def defined_twice(
         {% do defined_headers.append('class_Say') %}
         {% endif %}
         {% endblock %}
-        {% block body %}
-        smach.{{ parent_type }}.add('{{ name }}', Say('{{ word }}'), transitions={{ transitions }})
-        {% endblock %}
+        {% block body %}{{ add("Say", word) }}{% endblock %}
     """
     (first, place), (second, other) = states
+    help = "write one definition for all states, with a parameter for each value that differs"
+    if what == "class":
+        help = (
+            "write one definition for all states: give `__init__` a parameter for each value that"
+            " differs, and pass the variables of the state in the template:"
+            f' `{{% block body %}}{{{{ add("{name}", VARIABLE) }}}}{{% endblock %}}`'
+        )
     return Finding(
         span=span,
         message=f"the {what} `{name}` is defined twice, with other code for `{second}` than for"
         f" `{first}`",
         arguments=(name, first, second),
-        help="write one definition for all states: give `__init__` a parameter for each value that"
-        f" differs, and pass it where the template makes the state: `{name}('{{{{ VALUE }}}}')`",
+        help=help,
         related=(
             Related(span=place, message=f"`{first}` runs the code for `{second}`"),
             Related(span=other, message=f"`{second}` defines it last"),
@@ -591,11 +595,11 @@ def fixed_param(span: Span, field: str, param: str, value: Span) -> Finding:
     """
     return Finding(
         span=span,
-        message=f"the param `{param}` has its value of the build in `{field}`: a parameter of the"
-        " node that a launch file sets does not change it",
+        message=f"the ROS parameter `{param}` does not change `{field}`: the program contains the"
+        " value that `params` has when it is generated",
         arguments=(field, param),
-        related=(Related(span=value, message="the value of the build"),),
-        help="use another param, or a constant, here",
+        related=(Related(span=value, message="the value in the program"),),
+        help=f"write the value itself at `{field}`, as a constant that no launch file changes",
     )
 
 

@@ -56,13 +56,17 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
     used = context.at_states(_names_used, types)
     classes = context.at_states(_classes_used, types)
     known = _known(machine, library) if used or classes else None
+    own_base = machine.base in types and not types[machine.base].built_in
     for use in used:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
             if use.name.id not in imported:
                 fix = _fix(use, imported)
                 by_look = _by_look(use.node, use.code)
-                yield undefined_name(use.span, use.name.id, use.code.text, by_look, fix)
+                code, base = use.code.text, machine.base
+                yield undefined_name(
+                    use.span, use.name.id, code, by_look, fix, base=base, own=own_base
+                )
     for word in classes:
         if known is not None and word.text not in known:
             package = _PACKAGES.get(word.text, "my_messages")

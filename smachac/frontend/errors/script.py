@@ -589,7 +589,14 @@ class NameFix(NamedTuple):
     effect="Python would stop at this name with a NameError",
 )
 def undefined_name(
-    span: Span, name: str, code: str, by_look: bool, fix: NameFix | None = None
+    span: Span,
+    name: str,
+    code: str,
+    by_look: bool,
+    fix: NameFix | None = None,
+    *,
+    base: str = "Base",
+    own: bool = False,
 ) -> Finding:
     """An expression of the script uses a name that the generated program does not define.
 
@@ -622,7 +629,15 @@ def undefined_name(
         what = fix.why or f"`{name}` is used here but is not defined"
         return Finding(span=span, message=what, arguments=(name,), help=fix.help, edits=fix.edits)
     if not by_look:
-        help = "import or define it in a template of the script, such as that of the base"
+        line = f"`from MODULE import {name}`"
+        help = f"write {line} in the block `imports` of the template `{base}.tpl.py`"
+        if not own:
+            help = (
+                "write `template: MyBase` at the top of the script, and in"
+                " `templates/MyBase.tpl.py`"
+                f' the lines `{{% extends "{base}.tpl.py" %}}`, `{{% block imports %}}`,'
+                f" `{{{{ super() }}}}`, {line} and `{{% endblock %}}`"
+            )
         message = f"`{name}` is used here but is not defined"
         return Finding(span=span, message=message, arguments=(name,), help=help)
     why = "a call" if code.endswith(")") else "a dot"

@@ -365,7 +365,10 @@ def _message_and_help(error: Exception) -> tuple[str, str | None]:
         return f"there can be no tag `{unknown}` here", help
     if isinstance(error, UndefinedError) and text.endswith(" is undefined"):
         name = text.removesuffix(" is undefined").strip("'")
-        help = f"correct the name, or add `{name}` to the `variables` of the state type"
+        help = (
+            f"correct the name, or set `{name}: VALUE` at each state of this type; where the type"
+            f" has an interface, add `{name}` to its `variables` first"
+        )
         return f"the template uses `{name}`, which is not defined", help
     if isinstance(error, RecursionError):
         return "the template extends, includes or calls itself endlessly", None
