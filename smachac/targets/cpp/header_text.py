@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from smachac.diagnostics.source import Source, Span, Word
 
 _NO_CODE = re.compile(
-    r"""(?P<kept>\b\d[\w.']*)|//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""",
+    r"""(?P<kept>\b\d[\w.']*)|//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"?|'(?:\\.|[^'\\\n])*'?""",
     re.DOTALL,
 )
+"""Comments and literals. A literal that is not closed ends with its line: a search for the quote
+from each start would take quadratic time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
