@@ -63,6 +63,7 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
             return None
         filled = tuple(tags(text))
         text = replaced(text, iter(filled), {"{{": "_"})  # a name in place of an expression
+        text = _with_statements(text, source.text, filled)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
@@ -72,6 +73,23 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
             return PythonText(source=source, tree=tree, filled=filled)
     except (SyntaxError, ValueError):
         return None
+
+
+def _with_statements(text: str, template: str, filled: tuple[tuple[int, int], ...]) -> str:
+    """The Python of a template in which each tag that begins a line with code is a statement, so
+    that the code behind it is not indented: `{% block body %}{{ add("Say") }}`."""
+    parts, done, before = [], 0, 0
+    for start, end in filled:
+        begins = not before or "\n" in text[before:start]
+        before = end
+        if not begins or not template.startswith("{%", start):
+            continue
+        first, last = text.rfind("\n", 0, start) + 1, text.find("\n", end)
+        rest = text[end : last if last >= 0 else None]
+        if rest.strip() and not text[first:start].strip():
+            parts += [text[done:start], "_;"]
+            done = start + 2
+    return "".join([*parts, text[done:]])
 
 
 def syntax_error(source: Source) -> Word | None:

@@ -119,6 +119,8 @@ def _read_interface(
         _check_own_name(fields["name"], name, report)
     sections = {key: _section(key, fields.get(key), report) for key in _SECTIONS}
     code = _code(sections["code"], report)
+    if "python" not in code and library.template(f"{name}.tpl.py") is not None:
+        code["python"] = f"{name}.tpl.py"
     parts = ("variables", "input_keys", "output_keys", "outcomes")
     given = frozenset(part for part in parts if _is_starred(sections[part]))
     optional = _optional_outcomes(sections["outcomes"])
@@ -153,7 +155,10 @@ def _read_interface(
         class_facts=None
         if built_in or unclear
         else _class_facts(
-            name, sections["code"], given | ({"optional"} if optional else set()), library
+            name,
+            _python_code(sections["code"], code, source),
+            given | ({"optional"} if optional else set()),
+            library,
         ),
         prints_itself=_prints_itself(code.get("python", ""), library),
         optional=optional,
@@ -266,12 +271,18 @@ def _role(tree: Tree, roles: tuple[_Role, ...], report: Report) -> _Role:
     return roles[0]
 
 
+def _python_code(section: Section, code: Mapping[str, str], source: Source) -> Word | None:
+    """The Python code of an interface with its place; that of the template beside it has none."""
+    for language, value in _declared(section):
+        if language == "python" and isinstance(value, Scalar):
+            return Word(str(value.value), value.span)
+    return Word(code["python"], Span(source, 0, 0)) if "python" in code else None
+
+
 def _class_facts(
-    name: str, section: Section, given: frozenset[str], library: Library
+    name: str, word: Word | None, given: frozenset[str], library: Library
 ) -> ClassFacts | None:
     """The facts about the Python class, without parts that depend on what a script declares."""
-    word = next((Word(str(value.value), value.span) for language, value in _declared(section)
-                 if language == "python" and isinstance(value, Scalar)), None)  # fmt: skip
     if word is None:
         return None
     if ":" in word.text:

@@ -17,6 +17,7 @@ from smachac.frontend.class_reader import read_template
 from smachac.frontend.files import disk_library
 from smachac.frontend.state_types import find_state_type
 from smachac.ir.class_facts import ClassFacts
+from tests.trust.project_text import analysed
 
 TEMPLATE = """{{% block class_defs %}}
 class Pick(smach.State):
@@ -291,3 +292,26 @@ def test_the_classes_of_most_built_in_types_can_be_read() -> None:
     own = replace(LIBRARY, own_template=lambda file: LIBRARY.template(file))
     types = [find_state_type(name, own, []) for name in _built_in_types()]
     assert sum(each is not None and each.class_facts is not None for each in types) >= 10
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        '{% block body %}{{ add("Say") }}{% endblock %}',
+        '{% block body %}\n{{ add("Say") }}\n{% endblock %}',
+        "{% if a %}{% set b = 1 %}x = 1{% endif %}",
+        "",
+    ],
+)
+def test_a_class_is_read_beside_a_block_in_one_line(body: str) -> None:
+    text = (
+        '{% extends "State.tpl.py" %}\n{% block class_defs %}\nclass Say(smach.State):\n'
+        '    def execute(self, userdata):\n        return "sad"\n{% endblock %}\n'
+    )
+    files = {
+        "main.yml": "name: sm\noutcomes: [said]\nstates:\n  - SAY: {template: Say}\n",
+        "templates/Say.tpl.py": text + body,
+        "templates/Say.yml": "name: Say\noutcomes: {said: {}}\n",
+    }
+    found = [each for each in analysed(files).report if each.code == "SM309"]
+    assert [each.span.text for each in found] == ['"sad"']

@@ -142,3 +142,23 @@ def test_a_program_does_not_hide_a_module_of_the_user(tmp_path: Path) -> None:
     assert "ImportError" not in ended.stderr
     (tmp_path / "main.yml").write_text(script.replace("NAME", "count"))
     assert list(smachac.compile(tmp_path / "main.yml", "python")) == ["count.py"]
+
+
+def test_a_template_beside_an_interface_without_code_gets_the_variables(tmp_path: Path) -> None:
+    files = {
+        "main.yml": "name: sm\noutcomes: [said]\nstates:\n  - SAY: {template: Say, word: hello}\n",
+        "templates/Say.yml": "name: Say\nvariables: {word: {type: str}}\noutcomes: [said]\n",
+        "templates/Say.tpl.py": (
+            '{% extends "State.tpl.py" %}\n{% block class_defs %}\nclass Say(smach.State):\n'
+            '    def __init__(self, word):\n        super().__init__(outcomes=["said"])\n'
+            "        self.word = word\n\n    def execute(self, userdata):\n"
+            '        print(self.word)\n        return "said"\n{% endblock %}\n'
+            '{% block body %}{{ add("Say", word) }}{% endblock %}\n'
+        ),
+    }
+    for name, text in files.items():
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text, "utf-8")
+    (program,) = smachac.compile(tmp_path / "main.yml", "python").values()
+    assert 'Say("hello")' in program
