@@ -120,10 +120,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
     above = elsewhere.rpartition("/")[0] if elsewhere else ""
     help = did_you_mean(meant)
     if above:
-        help = (
-            f"use a state or an outcome of `{container.name}`; the state `{step.target}` in"
-            f" `{above}` cannot be a target here"
-        )
+        help = _through_outcome(container, step, above)
         sure = None
     if sure is not None and not _same_case(step.target, sure):
         sure = None
@@ -140,6 +137,22 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
         related=calls(child, step.target_span),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
+    )
+
+
+def _through_outcome(container: Linear, step: Transition, above: str) -> str:
+    """The help for a transition to a state in another container: it leads there through an outcome
+    of its own container."""
+    target, name = step.target, container.name
+    for outer in container.transitions:
+        if outer.target == target:
+            return (
+                f"write `{step.outcome}: {outer.outcome}`: the outcome `{outer.outcome}` of"
+                f" `{name}` leads to `{target}`"
+            )
+    return (
+        f"use a state or an outcome of `{name}`: {_targets(container)}; the state `{target}` in"
+        f" `{above}` cannot be a target here"
     )
 
 

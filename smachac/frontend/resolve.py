@@ -640,6 +640,9 @@ class _Resolver:
             known = [*names, *([] if role else schema.CONTAINERS)]
             other = self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
             self.not_found(template_not_found(word, searched, known, other))
+            meant = schema.CONTAINERS.get(guesser_of(tuple(known)).sure(word.text) or "")
+            if meant is not None:
+                return StateType(name=meant, kind="container"), meant
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself

@@ -123,6 +123,9 @@ _FOUND = re.compile(
 _VALUES_BESIDE = re.compile(r": [^\s,:{}\[\]]+ ([^\W\d]\w*)$")
 """A value and a key in one line of a mapping in braces, without a comma between them."""
 
+_LAMBDA = re.compile(r"lambda\b[^:{}]*$")
+"""The beginning of a function without quotes, up to its colon."""
+
 _OPENING = {"]": "[", "}": "{"}
 _TOKENS = {"<stream end>": "the end of the text", "<scalar>": "text"}
 
@@ -141,6 +144,9 @@ def _open_or_stray(stop: _Stop) -> _Fault | None:
         beside = _VALUES_BESIDE.search(stop.before)
         if beside is not None and token in (":", "<value>"):
             help = f"write a `,` before `{beside[1]}`, or put text that contains `:` in quotes"
+        code = _LAMBDA.search(stop.before)
+        if code is not None and token in (":", "<value>"):
+            help = f"put the code in quotes: `'{code[0]}: ...'`"
         if token == "<scalar>":
             help = f"write a `,` between two values, or close the {kind} with `{end}`"
         message = f"expected `,` or `{end}`, found {found}"

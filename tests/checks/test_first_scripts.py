@@ -509,3 +509,55 @@ def test_parts_of_retry(retry: str, place: str, help: str) -> None:
         f"{{held: BOTH, exhausted: LET_GO, preempted: aborted}}\n      retry: {retry}",
     )
     assert reported({"main.yml": main}) == [("SM003", place, help)]
+
+
+def test_a_misspelt_container_type_has_no_consequences() -> None:
+    main = PATROL.replace("template: Concurrence", "template: Concurence")
+    ((code, place, help),) = reported({"main.yml": main})
+    assert (code, place) == ("SM013", "Concurence")
+    assert help is not None
+    assert help.startswith("did you mean `Concurrence`?")
+
+
+NESTED = """\
+name: sm
+outcomes: [done, aborted]
+states:
+  - PICK:
+      template: StateMachine
+      outcomes: [held, aborted]
+      transitions: {held: CARRY, aborted: aborted}
+      states:
+        - GRIP:
+            template: ScriptedState
+            outcomes: [closed, slipped]
+            transitions: {closed: held, slipped: aborted}
+  - CARRY:
+      template: ScriptedState
+      outcomes: [done]
+      transitions: {done: done}
+"""
+
+
+def test_a_transition_out_of_a_container() -> None:
+    assert reported({"main.yml": NESTED}) == []
+    main = NESTED.replace("closed: held", "closed: CARRY")
+    assert (
+        "SM101",
+        "CARRY",
+        "write `closed: held`: the outcome `held` of `PICK` leads to `CARRY`",
+    ) in (reported({"main.yml": main}))
+    main = NESTED.replace("slipped: aborted", "slipped: PICK")
+    assert reported({"main.yml": main})[0] == (
+        "SM101",
+        "PICK",
+        "use a state or an outcome of `PICK`: `GRIP`, `aborted`, `held`; the state `PICK` in `sm`"
+        " cannot be a target here",
+    )
+
+
+def test_a_function_without_quotes_in_braces() -> None:
+    main = PATROL.replace("userdata: {blocks: [red, green]}", "userdata: {blocks: lambda ud: []}")
+    assert [each[0::2] for each in reported({"main.yml": main})] == [
+        ("SM001", "put the code in quotes: `'lambda ud: ...'`")
+    ]
