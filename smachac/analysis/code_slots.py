@@ -78,7 +78,7 @@ def _slots(value: Value, fact: nodes.VariableType) -> Iterator[CodeSlot]:
     entries = data.entries if mapping and isinstance(data, Struct) else ((fact.name, data),)
     for name, each in entries if mapping == isinstance(data, Struct) else ():
         quoted = isinstance(each, str) and fact.unquoted != "function"
-        code = _code(each, value)
+        code = code_of(each, value)
         if code is not None and not (quoted and not isinstance(python_tree(code.text), ast.Lambda)):
             yield CodeSlot(
                 name=name,
@@ -91,7 +91,7 @@ def _slots(value: Value, fact: nodes.VariableType) -> Iterator[CodeSlot]:
             )
 
 
-def _code(data: nodes.Data, value: Value) -> Expression | None:
+def code_of(data: nodes.Data, value: Value) -> Expression | None:
     """The code in a value; a text can be code, too."""
     if isinstance(data, str):
         text = data.strip()

@@ -180,7 +180,7 @@ class Context:
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
         """The type errors in the code of the script."""
-        sites = expression_sites(self.states, self.types)
+        sites = expression_sites(self.states, self.types, self.machine.state_types)
         return [(site, fault) for site in sites for fault in site.faults()]
 
     @cached_property

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from smachac.analysis.code_slots import code_of
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
 from smachac.analysis.expression_types import body_of, keys_read, parsed
 from smachac.analysis.fixed_lists import has_fixed_length, key_of
@@ -13,7 +14,7 @@ from smachac.analysis.type_lattice import join, mapping
 from smachac.ir import nodes
 from smachac.ir.expressions import Expr, Index
 from smachac.ir.leaf import functions
-from smachac.ir.nodes import Expression, Leaf, Node, Struct
+from smachac.ir.nodes import Expression, Leaf, Node, StateType, Struct, VariableType
 from smachac.ir.traversal import expressions, expressions_in, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 
@@ -61,10 +62,12 @@ def _is_declared(cell: Cell) -> bool:
     return cell.declared != ANY or all(flow.origin.how == "declared" for flow in flows)
 
 
-def expression_sites(states: Iterable[tuple[str, Node]], types: Types) -> Iterator[ExpressionSite]:
+def expression_sites(
+    states: Iterable[tuple[str, Node]], types: Types, state_types: Mapping[str, StateType]
+) -> Iterator[ExpressionSite]:
     """The portable code of every state."""
     for path, node in states:
-        for expression, written in _expressions(path, node, types):
+        for expression, written in _expressions(path, node, types, state_types):
             if written is not None:
                 yield _over(path, node, expression, written, types)
             else:
@@ -76,7 +79,7 @@ Written = dict[str, Type]
 
 
 def _expressions(
-    path: str, node: Node, types: Types
+    path: str, node: Node, types: Types, state_types: Mapping[str, StateType]
 ) -> Iterator[tuple[Expression, Written | None]]:
     """The expressions of a state, in the order of the script; those that are called with its
     userdata come with what was written before, the others with None."""
@@ -86,16 +89,26 @@ def _expressions(
             yield expression, {} if expression is items else None
         return
     called = _called(path, node, types) if node.variables else {}
+    known = state_types.get(node.type)
     for held in node.variables:
         data = held.value.data
         if held.role in ("callbacks", "conditions") and isinstance(data, Struct):
             for key, value in data.entries:
                 for expression in expressions_in(value):
                     yield expression, called.get(key) if expression is value else None
+        elif known is not None and _is_function_of_userdata(known.variables.get(held.name)):
+            code = code_of(data, held.value)
+            if code is not None:
+                yield code, {}
         else:
             called_alone = held.role in ("function", "duration")
             for expression in expressions_in(data):
                 yield expression, {} if called_alone and expression is data else None
+
+
+def _is_function_of_userdata(fact: VariableType | None) -> bool:
+    """Whether a variable holds one function, which the state calls with its userdata alone."""
+    return fact is not None and fact.unquoted == "function" and fact.arguments == ("userdata",)
 
 
 def _called(path: str, leaf: Leaf, types: Types) -> dict[str, Written]:

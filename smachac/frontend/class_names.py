@@ -128,7 +128,8 @@ def _evaluated(node: ast.AST) -> Iterator[ast.AST]:
 
 def undefined_methods(own: OwnClass) -> list[ClassFault]:
     """The methods that a class calls on `self` and that neither it nor its bases define, each
-    once; also other attributes, if a near name is defined."""
+    once; also other attributes, if a near name is defined, or if `__init__` has an argument of that
+    name and does not keep it."""
     every = [each for module, _ in own.classes for each in ast.walk(module.text.tree)]
     names = {each.id for each in every if isinstance(each, ast.Name)}
     defined = {name for names_ in own.names for name in names_}
@@ -141,6 +142,9 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     quoted = {each.value for each in every if isinstance(each, ast.Constant)}
     called = [each.func for each in every if isinstance(each, ast.Call)]
     guess, found = guesser(sorted(name for name in defined if not name.startswith("__"))), []
+    constructor = own.method("__init__")
+    arguments = ast.walk(constructor[1].args) if constructor is not None else ()
+    given = {each.arg for each in arguments if isinstance(each, ast.arg)}
     for module, node in own.classes:
         for each in _evaluated(node):
             if not isinstance(each, ast.Attribute) or not _of_self(each):
@@ -148,10 +152,14 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
             span = module.text.span(each)
             if each.attr in defined or each.attr in quoted or module.text.is_filled(span):
                 continue
+            word = Word(each.attr, _end_of(span, each.attr))
+            if each.attr in given:
+                defined.add(each.attr)
+                found.append(ClassFault(kind="unset attribute", name=word))
+                continue
             near = guess(each.attr)
             if near is not None or any(each is function for function in called):
                 defined.add(each.attr)
-                word = Word(each.attr, _end_of(span, each.attr))
                 found.append(ClassFault(kind="undefined method", name=word, near=near))
     return found
 

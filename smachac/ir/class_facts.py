@@ -36,6 +36,7 @@ FaultKind = Literal[
     "undefined name",
     "no import",
     "undefined method",
+    "unset attribute",
     "no list",
 ]
 

@@ -67,6 +67,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "neither `{name}` nor `smach.State` defines `{word}`: Python stops here",
         "define `{word}` in the class, or correct the name",
     ),
+    "unset attribute": (
+        "`self.{word}` of `{name}` is never set: Python stops here",
+        "write `self.{word} = {word}` in `__init__`",
+    ),
     "no list": (
         "`{word}` of `{name}` must be a list: SMACH cannot use another collection",
         "write `{word}=[...]`",
@@ -125,6 +129,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
     "undefined name": "",
     "undefined method": "",
+    "unset attribute": "",
     "no import": "",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",

@@ -161,3 +161,25 @@ def test_super_without_a_call_is_no_constructor_call() -> None:
 )
 def test_a_function_with_the_name_of_a_method_can_be_called(definition: str) -> None:
     assert report("search()", "class Camera", definition) == []
+
+
+UNSET = ("def __init__(self)", "def __init__(self, grip=1.0)")
+
+
+def test_an_argument_that_the_constructor_does_not_keep() -> None:
+    (item,) = report("print(self.grip)", *UNSET)
+    assert (item.code, item.span.text) == ("SM609", "grip")
+    assert item.finding.help == "write `self.grip = grip` in `__init__`"
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "self.grip = 2; print(self.grip)",
+        "print(self.looks)",
+        "setattr(self, 'grip', 1); print(self.grip)",
+        "print(self.force)",
+    ],
+)
+def test_an_argument_that_is_set_elsewhere_or_not_read(body: str) -> None:
+    assert report(body, *UNSET) == []

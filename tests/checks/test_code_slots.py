@@ -395,3 +395,22 @@ def test_a_param_in_code() -> None:
     assert help == f"a param is looked up outside of code: write `{meant}`"
     right = text.replace("CODE", meant).replace(", other: 4", "")
     assert analyse(Source("main.yml", right), memory_library({}, BUILT_IN), []).report == []
+
+
+@pytest.mark.parametrize(
+    ("code", "part"),
+    [
+        ("lambda ud: ud.n > '1'", "ud.n > '1'"),
+        ("lambda ud: ud.n + ud.word == 3", "ud.n + ud.word"),
+        ("lambda ud: len(ud.n) > 0", "len(ud.n)"),
+    ],
+)
+def test_operations_in_the_function_of_a_condition_state(code: str, part: str) -> None:
+    state = f"""
+      template: ConditionState
+      cond_cb: "{code}"
+      transitions: {{'true': done, 'false': other}}
+"""
+    script = HEAD.format(base="Base", inputs="n, word") + state
+    found = analyse(Source("main.yml", script), memory_library({}, BUILT_IN), []).report
+    assert [each.span.text for each in found if each.code == "SM311"] == [part]

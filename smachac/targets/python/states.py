@@ -431,6 +431,9 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         has_code = type_.code or type_.classes
         way = f"add `{named}` to the `code`" if has_code else f"write `code: {{{named}}}`"
         help = f"add the template `{code}`, or {way} in `{leaf.type}.yml`"
+        package, _, class_ = code.rpartition(".")
+        if package and not code.endswith((".py", ".tpl")):
+            help = f'write `code: {{python: "{package}:{class_}"}}` in `{leaf.type}.yml`'
         first = module.without_code.setdefault(leaf.type, leaf.span)
         raise BlockError(template_error(first, message, help, (leaf.type,)))
     else:
