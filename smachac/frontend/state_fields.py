@@ -5,6 +5,7 @@ Reported are unknown fields (SM003), values of the wrong shape (SM004) and missi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -258,8 +259,9 @@ def _example(variable: VariableType) -> str:
         return text
     if limits.least < float(text) < limits.most:
         return text
-    least = max(limits.least, limits.most - 2)
-    middle = (least + min(limits.most, least + 2)) / 2
+    low = limits.least if math.isfinite(limits.least) else limits.most - 2
+    high = limits.most if math.isfinite(limits.most) else low + 2
+    middle = low / 2 + high / 2
     return str(round(middle) if variable.type.name == "int" else middle)
 
 

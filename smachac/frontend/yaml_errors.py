@@ -123,7 +123,7 @@ _FOUND = re.compile(
 _VALUES_BESIDE = re.compile(r": [^\s,:{}\[\]]+ ([^\W\d]\w*)$")
 """A value and a key in one line of a mapping in braces, without a comma between them."""
 
-_LAMBDA = re.compile(r"lambda\b[^:{}]*$")
+_LAMBDA = re.compile(r"lambda\b[^:{}]{0,100}$")
 """The beginning of a function without quotes, up to its colon."""
 
 _OPENING = {"]": "[", "}": "{"}

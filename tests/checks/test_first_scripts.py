@@ -511,6 +511,29 @@ def test_parts_of_retry(retry: str, place: str, help: str) -> None:
     assert reported({"main.yml": main}) == [("SM003", place, help)]
 
 
+@pytest.mark.parametrize(
+    ("fact", "value"),
+    [
+        ("{type: int, min: 5}", "6"),
+        ("{type: int, max: -5}", "-6"),
+        ("{type: float, min: 2}", "3.0"),
+        ("{type: float, max: 1}", "0.0"),
+        ("{type: float, min: 3, max: 4, exclusive: true}", "3.5"),
+        ("{type: int, one_of: [4, 8]}", "4"),
+        ("{type: int, min: 1}", "3"),
+        ("{type: float, min: 1.0e+308}", None),
+        ("{type: int, min: 10, max: 10}", "10"),
+    ],
+)
+def test_an_example_within_the_limits_of_a_variable(fact: str, value: str | None) -> None:
+    main = WITH_GRAB.replace("force: 0.5\n      ", "")
+    grab = GRAB.replace("{type: float, min: 0, max: 1}", fact)
+    files = {"main.yml": main, "templates/Grab.yml": grab, "grab.py": GRAB_CODE}
+    ((code, _, help),) = [each for each in reported(files) if each[0] != "SM304"]
+    assert code == "SM005"
+    assert value is None or help == f"add `force: {value}`"
+
+
 def test_a_misspelt_container_type_has_no_consequences() -> None:
     main = PATROL.replace("template: Concurrence", "template: Concurence")
     ((code, place, help),) = reported({"main.yml": main})
