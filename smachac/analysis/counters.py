@@ -6,13 +6,13 @@ import ast
 import operator
 from collections.abc import Callable, Container, Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from typing import Literal, NamedTuple, TypeAlias, TypeGuard
+from typing import Literal, NamedTuple, TypeAlias
 
 from smachac.analysis.accesses import function_body
 from smachac.analysis.def_use import around
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.ir.leaf import functions, variable
-from smachac.ir.nodes import Leaf, Node
+from smachac.ir.nodes import Leaf, Node, is_number
 from smachac.ir.traversal import outcome_names, remapping
 
 DEFAULT = "default"
@@ -28,10 +28,6 @@ class Test(NamedTuple):
     leaf: Leaf
     decide: Callable[[Number], str]
     limits: tuple[Number, ...]
-
-
-def is_number(value: object) -> TypeGuard[int | float]:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 class Users(NamedTuple):

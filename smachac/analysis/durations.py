@@ -9,7 +9,7 @@ from smachac.analysis.control_flow import Linear, children_names
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Concurrence, Container, Data, Leaf, Node
+from smachac.ir.nodes import Concurrence, Container, Data, Leaf, Node, is_number
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import leads_to_child, outcome_names
 
@@ -47,7 +47,7 @@ def duration(leaf: Leaf) -> float:
 
 def number(data: Data) -> float:
     """A number of the script; 0 for all else."""
-    return float(data) if isinstance(data, int | float) and not isinstance(data, bool) else 0.0
+    return float(data) if is_number(data) else 0.0
 
 
 def _container_ends(container: Container, ends: Mapping[str, Ends]) -> Ends:

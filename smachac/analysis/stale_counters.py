@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
-from smachac.analysis.counters import Counters, Number, Test, Users, is_number, users_of
+from smachac.analysis.counters import Counters, Number, Test, Users, users_of
 from smachac.analysis.def_use import is_exit
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.fixpoint import KeyStep
 from smachac.analysis.successors import Routes
 from smachac.ir import nodes
 from smachac.ir.graph import START, Event, Vertex
-from smachac.ir.nodes import Leaf, Preset, Sequence, StateMachine
+from smachac.ir.nodes import Leaf, Preset, Sequence, StateMachine, is_number
 from smachac.ir.outcome_names import PREEMPTED, fails
 
 if TYPE_CHECKING:

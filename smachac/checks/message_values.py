@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from smachac.analysis.message_code import nested_messages
 from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
-from smachac.ir.nodes import Data, Expression, Struct
+from smachac.ir.nodes import Data, Expression, Struct, is_number
 
 BYTES = frozenset(["uint8", "byte", "char"])
 """The types of numbers whose lists can be written as text."""
@@ -83,7 +83,7 @@ def _fits_item(data: Data, name: str) -> bool:
         least, most = _bounds(name)
         return isinstance(data, int) and not isinstance(data, bool) and least <= data <= most
     if name in FLOATS:
-        return isinstance(data, int | float) and not isinstance(data, bool)
+        return is_number(data)
     if name in TEXTS:
         return isinstance(data, str)
     if "/" not in name or name.endswith(("/Time", "/Duration")):

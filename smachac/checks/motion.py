@@ -9,12 +9,12 @@ from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of
 from smachac.analysis.reaching_values import Read, last_writers
 from smachac.checks.messages import calls, other_place
-from smachac.checks.robot import as_float, at, frame_of, is_number, role_of
+from smachac.checks.robot import as_float, at, frame_of, role_of
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.ir.graph import START
-from smachac.ir.nodes import Key, Leaf, Node
+from smachac.ir.nodes import Key, Leaf, Node, is_number
 from smachac.ir.traversal import remapping
 
 

@@ -19,7 +19,7 @@ from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed
-from smachac.ir.nodes import Data, Leaf, Struct
+from smachac.ir.nodes import Data, Leaf, Struct, is_number
 from smachac.ir.robot import Joint, Robot
 from smachac.ir.types import Type
 
@@ -337,10 +337,6 @@ def unit_mismatch(context: Context) -> Iterator[Finding]:
     """
     yield from clash_findings(context.clashes["unit"])
     yield from mixed_units(context)
-
-
-def is_number(data: Data) -> bool:
-    return isinstance(data, int | float) and not isinstance(data, bool)
 
 
 def as_float(data: Data) -> float:

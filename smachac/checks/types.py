@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TypeGuard
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import kinds
@@ -34,7 +33,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Expression, Leaf, StateType, Struct
+from smachac.ir.nodes import Expression, Leaf, StateType, Struct, is_number
 from smachac.ir.traversal import outcome_names
 
 
@@ -407,21 +406,17 @@ def _in_wanted_unit(clash: Clash) -> str:
     if factor is None:
         return f"use a number in `{wanted}`{correct}"
     origin, type_ = clash.flow.origin, clash.misfit.wanted
-    if _is_number(origin.value):
+    if is_number(origin.value):
         number = f"{origin.value * factor:.6g}"
         return f"write it in `{wanted}`: `{number}` of the type `{type_}`{correct}"
     node, key = origin.cell.node, origin.cell.key
     presets = () if node is None or isinstance(node, Leaf) else node.userdata
     for each in presets:
-        if each.key == key and each.type == clash.misfit.given and _is_number(each.value.data):
+        if each.key == key and each.type == clash.misfit.given and is_number(each.value.data):
             number = f"{each.value.data * factor:.6g}"
             new = f'`{key}: {{type: "{type_}", value: {number}}}`'
             return f"write {new} in the `userdata` of {_owner(origin.cell)}{correct}"
     return f"multiply it by {factor:.6g}, which makes `{wanted}` of `{given}`{correct}"
-
-
-def _is_number(data: object) -> TypeGuard[int | float]:
-    return isinstance(data, int | float) and not isinstance(data, bool)
 
 
 def _rewrite(clash: Clash) -> str:

@@ -27,7 +27,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct
+from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct, is_number
 from smachac.ir.robot import MODELS, Robot
 from smachac.ir.types import Type
 
@@ -100,7 +100,7 @@ def _type_name(context: Context, cell: Cell) -> str:
 
 def numbers(data: Data) -> Iterator[int | float]:
     """The numbers in a literal, at any depth."""
-    if isinstance(data, int | float) and not isinstance(data, bool):
+    if is_number(data):
         yield data
     elif isinstance(data, tuple):
         for item in data:

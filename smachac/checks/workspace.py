@@ -12,7 +12,7 @@ from smachac.analysis.type_inference import Cell, TypeFlow, Types
 from smachac.checks.robot import at, reader
 from smachac.diagnostics.diagnostic import Finding, Problem, Report, Severity, problem
 from smachac.ir.leaf import key_names, variable_of
-from smachac.ir.nodes import Data, Leaf, Machine, Node
+from smachac.ir.nodes import Data, Leaf, Machine, Node, is_number
 from smachac.ir.traversal import remapping
 
 Numbers: TypeAlias = "list[Numbers] | float"
@@ -135,8 +135,7 @@ def _numbers(data: Data) -> Numbers | None:
         inner = [_numbers(item) for item in data]
         kept = [item for item in inner if item is not None]
         return kept if len(kept) == len(inner) else None
-    number = isinstance(data, int | float) and not isinstance(data, bool)
-    return float(data) if number and abs(data) < 1e300 else None  # type: ignore[arg-type]
+    return float(data) if is_number(data) and abs(data) < 1e300 else None
 
 
 class NoSimulationError(Exception):

@@ -524,13 +524,13 @@ def _names_in(name: str, folders: Sequence[Path]) -> list[str]:
 
 def _folders_with(files: Collection[str], top: Path) -> list[str]:
     """The folders up to two levels below a folder that have one of the files."""
-    found = []
+    found, wanted = [], frozenset(files)
     for folder, inner, names in os.walk(top):
         depth = len(Path(folder).relative_to(top).parts)
         inner[:] = sorted(name for name in inner if not name.startswith("."))[:_MOST_FOLDERS]
         if depth == _DEEPEST:
             inner.clear()
-        if depth and not set(files).isdisjoint(names):
+        if depth and not wanted.isdisjoint(names):
             found.append(str(Path(folder)))
     return found
 

@@ -13,7 +13,7 @@ from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, kind_of
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
-from smachac.ir.nodes import Limits
+from smachac.ir.nodes import Limits, is_number
 from smachac.ir.types import ANY, Type, parse_type, unknown_words
 
 NAMES = ("joint", "frame", "limb", "model", "body")
@@ -144,7 +144,7 @@ def _bound(tree: Map, name: str, type_: Type, report: Report) -> float | None:
     if _number(type_) is None and type_ != ANY:
         message = f"`{name}` is for numbers, but the type is `{type_}`"
         help = f"remove `{name}`, or write a number type such as `float`"
-    elif isinstance(value, int | float) and not isinstance(value, bool):
+    elif is_number(value):
         return float(value)
     else:
         message = f"expected a number, found {kind_of(entry.value)}"

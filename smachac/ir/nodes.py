@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias
+from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias, TypeGuard
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.ir.class_facts import ClassFacts
@@ -37,6 +37,11 @@ class Struct:
 
 Data: TypeAlias = "bool | int | float | str | Expression | Struct | tuple[Data, ...] | None"
 """The data of a value; a YAML list is a tuple."""
+
+
+def is_number(data: object) -> TypeGuard[int | float]:
+    """Whether data is a number. A boolean, which is an `int` for Python, is none."""
+    return isinstance(data, int | float) and not isinstance(data, bool)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -63,9 +63,14 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
             if use.name.id not in imported:
                 fix = _fix(use, imported)
                 by_look = _by_look(use.node, use.code)
-                code, base = use.code.text, machine.base
                 yield undefined_name(
-                    use.span, use.name.id, code, by_look, fix, base=base, own=own_base
+                    use.span,
+                    use.name.id,
+                    use.code.text,
+                    by_look,
+                    fix,
+                    base=machine.base,
+                    own=own_base,
                 )
     for word in classes:
         if known is not None and word.text not in known:

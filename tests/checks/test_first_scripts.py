@@ -569,7 +569,7 @@ def test_a_transition_out_of_a_container() -> None:
         "SM101",
         "CARRY",
         "write `closed: held`: the outcome `held` of `PICK` leads to `CARRY`",
-    ) in (reported({"main.yml": main}))
+    ) in reported({"main.yml": main})
     main = NESTED.replace("slipped: aborted", "slipped: PICK")
     assert reported({"main.yml": main})[0] == (
         "SM101",
