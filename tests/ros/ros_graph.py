@@ -6,9 +6,7 @@ import contextlib
 import ctypes
 import functools
 import os
-import shutil
 import signal
-import socket
 import subprocess
 import threading
 import xmlrpc.client
@@ -33,18 +31,12 @@ FAILED_CONNECTIONS = (
 """Warnings of rospy: a subscriber connects after the end of the publisher that the master named, or
 ends while it connects. They come at any time, and are not about the program."""
 
-PORTS = 20
-"""Tries to find a port for the master that nobody else takes meanwhile."""
-
-
-MODULES = "rospy, rosgraph, actionlib, std_srvs.srv, tf2_ros, tf2_geometry_msgs, rosbag"
+MODULES = "rospy, rosmaster, rosgraph, actionlib, std_srvs.srv, tf2_ros, tf2_geometry_msgs, rosbag"
 
 
 @functools.cache
 def missing() -> str:
     """What keeps live tests from running; '' if nothing does."""
-    if shutil.which("rosmaster") is None:
-        return "no rosmaster"
     asked = subprocess.run(
         [PYTHON, "-c", f"import {MODULES}"], capture_output=True, text=True, check=False
     )
@@ -55,6 +47,7 @@ class Program:
     """A process in a group of its own, and the lines that it has printed."""
 
     def __init__(self, command: list[str], environment: Mapping[str, str]) -> None:
+        self.command = " ".join(command)
         self._process = subprocess.Popen(
             command,
             env=environment,
@@ -178,25 +171,11 @@ class Graph:
         self._start_master()
 
     def _start_master(self) -> None:
-        for _ in range(PORTS):
-            with socket.socket() as probe:
-                probe.bind(("127.0.0.1", 0))
-                port = probe.getsockname()[1]
-            self.environment["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
-            master = self._launch(["rosmaster", "--core", "-p", str(port)])
-            if wait_for(lambda master=master: self._is_up(master)) == "up":  # type: ignore[misc]
-                self.master = master
-                return
-            master.kill()
-        raise AssertionError("no port for a master")
-
-    def _is_up(self, master: Program) -> str:
-        """`up` when this very master answers, `no` when it never will, '' before that."""
-        try:
-            pid = self.ask("getPid")
-        except OSError:
-            return "no" if master._process.poll() is not None else ""
-        return "up" if pid == master.pid else "no"
+        """Start the master and wait for its address. `rosmaster -p` takes a port that is free now;
+        a node of another test can take it first, and then waits for the rest of a message that a
+        client of the master began."""
+        self.master = self._launch([PYTHON, str(NODES / "master.py")])
+        self.environment["ROS_MASTER_URI"] = self.master.expect("ready").split()[1]
 
     def ask(self, question: str, *arguments: Any) -> Any:
         """What the master answers."""
@@ -233,9 +212,12 @@ class Graph:
         return program.output
 
     def stop(self) -> None:
-        """Kill everything; the master, which came first, last."""
+        """Kill everything; the master, which came first, last. Print what each has printed: pytest
+        shows it if the test fails."""
         while self._programs:
-            self._programs.pop().kill()
+            program = self._programs.pop()
+            program.kill()
+            print(f"--- output of {program.command}:\n{program.output}")
 
 
 def wait_for(condition: Callable[[], str]) -> str:
