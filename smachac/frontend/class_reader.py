@@ -405,11 +405,11 @@ def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
         for each, default in zip(given.kwonlyargs, given.kw_defaults, strict=True)
         if default is None
     }
-    return tuple(
-        Parameter(word=Word(each.arg, _place(module.text, each)), required=each in required)
-        for each in [*given.args, *given.kwonlyargs]
-        if each is not positional[0]
-    )
+    named = [each for each in [*given.args, *given.kwonlyargs] if each is not positional[0]]
+    words = {each: Word(each.arg, _place(module.text, each)) for each in named}
+    if any(module.text.is_filled(word.span) for word in words.values()):
+        return None
+    return tuple(Parameter(word=word, required=each in required) for each, word in words.items())
 
 
 def _place(text: PythonText, node: ast.arg) -> Span:

@@ -106,7 +106,7 @@ class _Reader:
         if word.text.lower().endswith(SUFFIXES):
             return self.urdf(word)
         own = "robot" in base.variables and not base.simulation
-        if not own and not base.open and "variables" not in base.given:
+        if not own and not base.any_variable:
             known = ", ".join(f"`{name}`" for name in BUILT_IN)
             help = did_you_mean(word.text, BUILT_IN)
             help = help or (

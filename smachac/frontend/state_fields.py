@@ -87,7 +87,7 @@ def read_fields(
 
 def accepts(type_: StateType, name: str) -> bool:
     """Whether a state type has a variable, or accepts any."""
-    return name in type_.variables or type_.open or "variables" in type_.given
+    return name in type_.variables or type_.any_variable
 
 
 def with_meant_fields(
@@ -143,7 +143,7 @@ def _known_fields(
                     read[key] = value
         elif key in type_.variables:
             continue  # a rule checks it against its type
-        elif type_.open or "variables" in type_.given:
+        elif type_.any_variable:
             if not type_.prints_itself and ("template" in entries or key not in TEMPLATE_WORDS):
                 check_name(key, entry.key.span, report)
             if type_.used is not None and key not in type_.used:

@@ -6,15 +6,16 @@ template without either is an open type: any field is accepted, and nothing is k
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeAlias, TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
-from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.source import NOWHERE, Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import smacha_meta
-from smachac.frontend.class_reader import read_module, read_template
+from smachac.frontend.class_reader import PARAMETERS, read_module, read_template
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.loader import Library
@@ -304,6 +305,25 @@ def _class_facts(
     )
 
 
+def _facts_without_interface(name: str, file: str, library: Library) -> ClassFacts | None:
+    """The facts about the class of a template without an interface: nothing declares its keys."""
+    facts = _class_facts(name, Word(file, NOWHERE), frozenset(), library)
+    if facts is None or facts.name is None or facts.name.text != re.sub(r"\W+", "_", name):
+        return None
+    known = facts.outcomes is not None
+    return replace(
+        facts,
+        outcomes=None,
+        inputs=None,
+        outputs=None,
+        endings=tuple(replace(each, written=None) for each in facts.endings) if known else (),
+        complete=facts.complete and known,
+        reads=(),
+        writes=(),
+        values=(),
+    )
+
+
 def _code(section: Section, report: Report) -> dict[str, str]:
     """The code by language; a reference to a class of Python must be importable."""
     found = {}
@@ -578,9 +598,11 @@ def _read_template(
     outcomes = outcomes or smacha_meta.outcomes_in_code(template)
     if found is None:
         known = _without_facts(known) if known else StateType(name=name, open=True)
+        facts = None if extended else _facts_without_interface(name, file, library)
         return replace(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
-            class_facts=None, given=known.given if known.open else _ALL_GIVEN,
+            variables=_parameters(facts) or known.variables, class_facts=facts,
+            given=known.given if known.open else _ALL_GIVEN,
             used=smacha_meta.words_used(file, library.template),
             default_keys=smacha_meta.default_keys(template) or known.default_keys,
         )  # fmt: skip
@@ -603,6 +625,16 @@ def _read_template(
         open=found.kind == "state" and not outcomes,
         simulation=found.simulation or (known is not None and known.simulation),
     )
+
+
+def _parameters(facts: ClassFacts | None) -> dict[str, VariableType]:
+    """The variables of a template without an interface: the parameters of its constructor."""
+    known = facts.parameters if facts is not None else None
+    return {
+        each.word.text: VariableType(name=each.word.text, required=each.required)
+        for each in known or ()
+        if each.word.text not in PARAMETERS
+    }
 
 
 def _without_facts(type_: StateType) -> StateType:

@@ -56,7 +56,7 @@ _DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
 
 def is_own(name: str, type_: StateType) -> bool:
     """Whether a field of this name is a variable of the state type."""
-    return name in type_.variables or (type_.open and type_.name != "")
+    return name in type_.variables or (type_.open and type_.any_variable and type_.name != "")
 
 
 def read_sugar(

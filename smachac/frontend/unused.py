@@ -55,7 +55,7 @@ class Uses:
 
     def type(self, type_: StateType) -> None:
         """Count a state whose type may use any param."""
-        self.unknown += type_.open or "variables" in type_.given
+        self.unknown += type_.any_variable
 
     def mark(self, report: Report) -> Mark:
         """The current position: a state begins."""

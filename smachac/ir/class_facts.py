@@ -26,6 +26,8 @@ FaultKind = Literal[
     "defined twice",
     "no parameter",
     "required parameter",
+    "no such parameter",
+    "missing argument",
     "no outcome",
     "wrong result",
     "wrong parameters",

@@ -464,6 +464,13 @@ class StateType:
     default_keys: Mapping[str, tuple[Key, ...]] = field(default_factory=dict)
     secret_keys: frozenset[str] = frozenset()
 
+    @property
+    def any_variable(self) -> bool:
+        """Whether a script can set variables that neither the interface nor the constructor of
+        the class names."""
+        known = self.class_facts is not None and self.class_facts.parameters is not None
+        return "variables" in self.given or (self.open and not known)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Param:

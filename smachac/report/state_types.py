@@ -78,7 +78,7 @@ def type_text(known: Known) -> str:
     if type_.doc:
         lines += ["", *textwrap.wrap(type_.doc, WIDTH)]
     if type_.open:
-        lines += ["", "It has no interface: anything goes, nothing is known of it."]
+        lines += ["", "It has no interface: only what its template shows is known."]
     for title, rows in _sections(type_):
         lines += ["", f"{title}:"]
         width = max(len(name) for name, _ in rows)

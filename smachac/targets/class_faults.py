@@ -119,6 +119,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "give `{word}` a default value, or add it to the `variables` of `{type}.yml` and set it at"
         " the state",
     ),
+    "no such parameter": (
+        "`__init__` of `{name}` does not accept `{word}`, which is set here",
+        "add the parameter `{word}` to `__init__`, or remove it here",
+    ),
+    "missing argument": (
+        "`__init__` of `{name}` requires `{word}`, which this state does not set",
+        "add `{word}: ...` to the state, or give `{word}` a default value in `__init__`",
+    ),
 }
 """The message and the help for each kind of fault."""
 

@@ -15,7 +15,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, Parameter
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
 from smachac.targets.class_faults import CHECKED_ONLY
@@ -77,6 +77,8 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
             found = type_faults(leaf, type_, target, library, checked=True) if target else ()
             for item in found:
                 yield replace(item, severity=Severity.WARNING)
+    for item in argument_faults(machine):
+        yield replace(item, severity=Severity.WARNING)
 
 
 def target_faults(machine: Machine, library: Library, target: Language) -> Iterator[Diagnostic]:
@@ -84,6 +86,40 @@ def target_faults(machine: Machine, library: Library, target: Language) -> Itera
     for leaf, type_ in own_types(machine, library):
         if target.name in languages(type_):
             yield from type_faults(leaf, type_, target, library)
+    if target.name == "python":
+        yield from argument_faults(machine)
+
+
+def argument_faults(machine: Machine) -> Iterator[Diagnostic]:
+    """The states whose variables do not fit the constructor of their Python class, where the
+    interface accepts any variable (`"*": {}`)."""
+    for _, leaf in walk(machine.root):
+        facts = leaf.class_facts if isinstance(leaf, Leaf) else None
+        if not isinstance(leaf, Leaf) or facts is None or facts.parameters is None:
+            continue
+        type_ = machine.state_types.get(leaf.type)
+        if type_ is None or facts.name is None or "variables" not in type_.given:
+            continue
+        for fault, related in _argument_faults(leaf, type_, facts.parameters):
+            yield bad_class(fault, "python", type_.name, facts.name.text, related)
+
+
+def _argument_faults(
+    leaf: Leaf, type_: StateType, parameters: Sequence[Parameter]
+) -> Iterator[tuple[ClassFault, tuple[Related, ...]]]:
+    known = {each.word.text: each for each in parameters}
+    set_ = {one.name: one for one in leaf.variables}
+    passed = {*set_, *type_.variables, *type_.given, *(["outcomes"] if type_.optional else ())}
+    guess = guesser([name for name in known if name not in passed])
+    meant = set()
+    for name in sorted(set_.keys() - known.keys() - type_.variables.keys()):
+        near = guess(name)
+        meant.add(near)
+        yield ClassFault(kind="no such parameter", name=Word(name, set_[name].span), near=near), ()
+    for name in sorted(known.keys() - passed - meant):
+        if known[name].required:
+            place = Related(span=known[name].word.span, message="the constructor requires it")
+            yield ClassFault(kind="missing argument", name=Word(name, leaf.span)), (place,)
 
 
 def languages(type_: StateType) -> tuple[str, ...]:
@@ -92,15 +128,17 @@ def languages(type_: StateType) -> tuple[str, ...]:
 
 
 def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateType]]:
-    """The state types with an interface of the user, each with its first state."""
+    """The state types of the user whose interface or class is known, each with its first state."""
     seen: set[str] = set()
     for _, node in walk(machine.root):
         if isinstance(node, Leaf) and node.type not in seen:
             seen.add(node.type)
-            if library.own_template(f"{node.type}.yml") is not None:
-                type_ = machine.state_types.get(node.type)
-                if type_ is not None and not type_.open:
-                    yield node, type_
+            type_ = machine.state_types.get(node.type)
+            if type_ is None:
+                continue
+            declared = not type_.open and library.own_template(f"{node.type}.yml") is not None
+            if declared or (type_.open and type_.class_facts is not None):
+                yield node, type_
 
 
 def type_faults(

@@ -38,6 +38,10 @@ CLASS = """\
 class T(smach.State):
     def __init__(self):
         smach.State.__init__(self, outcomes=['done'])
+
+    def execute(self, userdata):
+        return 'done'
+
 {% do defined_headers.append('class_T') %}
 {% endif %}
 {% endblock %}
@@ -515,7 +519,7 @@ def test_a_template_gets_the_defaults_of_its_meta_block(built: Built, variables:
 
 META = "{% block meta %}\nname: T\ntype: State\noutcomes: [done, aborted]\n{% endblock %}\n"
 FAILING = CLASS.replace("outcomes=['done']", "outcomes=['done', 'aborted']").replace(
-    "['done', 'aborted'])\n",
+    "['done', 'aborted'])\n\n    def execute(self, userdata):\n        return 'done'\n",
     "['done', 'aborted'])\n        self.visits = 0\n\n"
     "    def execute(self, userdata):\n        self.visits += 1\n"
     "        raise_or_say(self.visits)\n"
