@@ -34,6 +34,7 @@ FaultKind = Literal[
     "wrong constructor",
     "unused outcome",
     "no answer to stops",
+    "unanswered stop",
     "unset output",
     "undefined name",
     "no import",
