@@ -12,11 +12,13 @@ from smachac.diagnostics.source import Word, assert_never
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import reachable
+from smachac.ir.nodes import Leaf
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.properties import (
     After,
     AlwaysEnds,
     AtMost,
+    Atom,
     Atoms,
     Before,
     Form,
@@ -25,6 +27,7 @@ from smachac.ir.properties import (
     either,
     in_words,
 )
+from smachac.ir.traversal import walk
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement
@@ -289,10 +292,10 @@ def unknown_event(context: Context) -> Iterator[Finding]:
     """
     for judgement in _with(context, "unclear"):
         for fault in judgement.faults:
-            yield _name_fault(fault)
+            yield _name_fault(fault, context)
 
 
-def _name_fault(fault: NameFault) -> Finding:
+def _name_fault(fault: NameFault, context: Context) -> Finding:
     atom = fault.atom
     if fault.kind == "ambiguous":
         return Finding(
@@ -319,10 +322,28 @@ def _name_fault(fault: NameFault) -> Finding:
         span=atom.span,
         message=f"there is no {subject} `{atom.name}`",
         arguments=("unknown", atom.subject, atom.name),
-        help=did_you_mean(atom.name, fault.known)
+        help=_other_subject(atom, context)
+        or did_you_mean(atom.name, fault.known)
         or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
         edits=edits,
     )
+
+
+def _other_subject(atom: Atom, context: Context) -> str | None:
+    """The help for a tag, type or claim that is written without its word."""
+    if atom.subject != "path":
+        return None
+    states = [node for _, node in walk(context.machine.root)]
+    subjects = {
+        "tag": (name for node in states for name in node.tags),
+        "type": (node.type for node in states if isinstance(node, Leaf)),
+        "claim": (name for names in context.claims.values() for name in names),
+    }
+    for subject, names in subjects.items():
+        if atom.name in names:
+            outcome = f":{atom.outcome}" if atom.outcome else ""
+            return f"`{atom.name}` is a {subject}: write `{subject} {atom.name}{outcome}`"
+    return None
 
 
 @rule("SM704", "property-undecided", Severity.WARNING)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Source
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import wrong_shape
 from smachac.frontend.fields import kind_of
@@ -86,7 +87,11 @@ def _file(word: Scalar, source: Source, library: Library, report: Report) -> Tre
     if len(report) == before:
         folders = ", ".join(f"`{folder}`" for folder in library.script_folders(source.name))
         message = f"the file `{name}` with the properties was not found"
+        stem, dot, ending = name.rpartition(".")
+        near = guesser(library.script_names(source.name))(stem if dot else name)
         help = f"give its path relative to a folder that is searched: {folders}"
+        if near is not None and near != stem:
+            help = f"did you mean `{near}{dot}{ending if dot else ''}`?"
         report.append(_fault(word, message, help, "file", name))
     return None
 
@@ -110,6 +115,12 @@ class _Reader:
         if isinstance(tree, Scalar) and tree.value == "always_ends":
             tree = Map((Entry(tree, replace(tree, value=True)),), tree.span)
         if not isinstance(tree, Map):
+            if isinstance(tree, Scalar):
+                near = did_you_mean(str(tree.value), ("always_ends", *FORMS))
+                if near is not None:
+                    message = f"`{tree.value}` is not a form of property"
+                    self.fault(tree, message, near, "form", str(tree.value))
+                    return
             help = f"write it like {EXAMPLES['before']}"
             self.fault(tree, f"a property must be a mapping, not {kind_of(tree)}", help, "item")
             return
@@ -224,7 +235,8 @@ class _Reader:
     def at_most(self, tree: Tree) -> Iterator[Form]:
         for entry in self.entries(tree, "at_most"):
             event = self.atoms(entry.key)
-            times = self.number(entry.value, "at_most", "`3`")
+            never = f"write `never: {{enter: {entry.key.value}}}`"
+            times = self.number(entry.value, "at_most", "`3`", never)
             if event and times:
                 yield AtMost(event=event, times=times)
 
@@ -234,14 +246,17 @@ class _Reader:
         else:
             self.fault(tree, "`always_ends` has no parts", "write `- always_ends`", "always_ends")
 
-    def number(self, tree: Tree, form: str, example: str) -> int:
-        """A number of at least 1; 0 for anything else, which is reported."""
+    def number(self, tree: Tree, form: str, example: str, zero: str = "") -> int:
+        """A number of at least 1; 0 for anything else, which is reported. `zero`: the help for
+        0."""
         text = str(tree.value) if isinstance(tree, Scalar) else ""
         found = _WITHIN.fullmatch(text)
         times = int(found[1]) if found else 0
         if not 1 <= times <= MOST_TIMES:
-            message = f"this is no number from 1 to {MOST_TIMES}"
-            self.fault(tree, message, f"write it like {example}", form, "number")
+            message = f"`{form}` needs a whole number from 1 to {MOST_TIMES}"
+            message += f", not `{text}`" if text else f", not {kind_of(tree)}"
+            help = zero if zero and text == "0" else f"write it like {example}"
+            self.fault(tree, message, help, form, "number")
             return 0
         return times
 

@@ -94,8 +94,11 @@ def test_properties_in_a_file() -> None:
     machine = analysed(" safety.yml\n", safety="- before: {B: A}\n").machine
     assert machine is not None
     assert [each.name for each in machine.properties] == ["`A` before `B`"]
-    (finding,) = [each for each in analysed(" safty.yml\n").report if each.code == "SM004"]
+    (finding,) = [
+        each for each in analysed(" safty.yml\n", safety="[]").report if each.code == "SM004"
+    ]
     assert finding.span.text == "safty.yml"
+    assert finding.help == "did you mean `safety.yml`?"
 
 
 @pytest.mark.parametrize(
@@ -103,12 +106,13 @@ def test_properties_in_a_file() -> None:
     [
         ("- nevr: {enter: A}", "SM004 nevr | did you mean `never`?"),
         ("- never: {after: A, enters: B}", "SM004 enters | did you mean `enter`?"),
+        ("- alway_ends", "SM004 alway_ends | did you mean `always_ends`?"),
         ("- {name: x}", "SM004 {name: x} | use one of `after`"),
         ("- {before: {B: A}, after: {A: B}}", "SM004 after | begin another item"),
         ("- before: [A, B]", "SM004 [A, B] | write it like `before: {CLOSE: OPEN}`"),
         ("- after: {A: {B: C}}", "SM004 {B: C} | write a name"),
         ("- at_most: {B: many}", "SM004 many | write it like `3`"),
-        ("- at_most: {B: 0}", "SM004 0 | write it like `3`"),
+        ("- at_most: {B: 0}", "SM004 0 | write `never: {enter: B}`"),
         ("- whenever: {B: C, within: soon}", "SM004 soon | write it like `3 states`"),
         ("- whenever: {within: 3 states}", "SM004 {within: 3 states} | write it like"),
         ("- {before: {B: A}, exceptions: al}", "SM004 al | did you mean `all`?"),
@@ -119,6 +123,9 @@ def test_properties_in_a_file() -> None:
         ("- before: {C: IN}", "SM703 IN | write more of its path"),
         ("- before: {C: tag save}", "SM703 tag save | did you mean `safe`?"),
         ("- before: {C: type ScriptedStat}", "SM703 type ScriptedStat | did you mean"),
+        ("- before: {C: safe}", "SM703 safe | `safe` is a tag: write `tag safe`"),
+        ("- before: {C: ScriptedState}", "SM703 ScriptedState | `ScriptedState` is a type: write"),
+        ("- before: {C: 'arm.left:done'}", "SM703 'arm.left:done' | `arm.left` is a claim: write"),
         ("- before: {C: claim leg}", "SM703 claim leg | use one of `arm`, `arm.left`"),
         ("- before: {C: 'A:don'}", "SM703 'A:don' | did you mean `done`?"),
     ],
