@@ -258,8 +258,8 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
 def _head_help(node: Node, tree: ast.Lambda, due: tuple[str, ...]) -> str:
     """The help for a lambda with wrong arguments: its correct beginning, and the way to read a key
     that was written as an argument."""
-    mixed = swapped(tree, due)
-    names = [next((own for own in mixed if means(own, name)), _short(name)) for name in due]
+    given = [each.arg for each in parameters(tree)]
+    names = [next((own for own in given if means(own, name)), _short(name)) for name in due]
     help = f"begin it with `lambda {', '.join(names)}:`"
     read = {each.id for each in ast.walk(tree.body) if isinstance(each, ast.Name)}
     own = [each.arg for each in parameters(tree) if not any(means(each.arg, arg) for arg in due)]

@@ -247,9 +247,22 @@ def _check_required(
             )
 
 
+TYPE_EXAMPLES = {
+    "message_type": "std_msgs/String",
+    "service_type": "std_srvs/Trigger",
+    "action_type": "actionlib/TestAction",
+}
+"""A type of each kind, as a script names it."""
+
+
 def _example(variable: VariableType) -> str:
     """A value that the variable can have; empty if there is no short one."""
     limits = variable.limits
+    if variable.unquoted == "type":
+        return TYPE_EXAMPLES.get(variable.role, "")
+    if variable.unquoted == "function" and variable.arguments:
+        names = ("ud" if each == "userdata" else each for each in variable.arguments)
+        return f"'lambda {', '.join(names)}: True'"
     if variable.type.name == "one_of":
         return str(variable.type.args[0])
     if limits is not None and limits.choices:
@@ -332,7 +345,7 @@ def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, repor
 
 def _check_qos(tree: Tree, report: Report) -> None:
     """The quality of service of a topic of ROS 2: a preset, a depth, or policies."""
-    from smachac.runtime.ros2_qos import PRESETS, faults
+    from smachac.runtime.ros2_qos import POLICIES, faults
 
     value: object = ()  # a list is none
     if isinstance(tree, Scalar):
@@ -342,9 +355,17 @@ def _check_qos(tree: Tree, report: Report) -> None:
     for fault in faults(value):
         help = "write a preset such as `sensor_data`, a depth, or policies such as"
         help += " `{reliability: best_effort, durability: volatile, depth: 5}`"
-        if isinstance(value, str):
-            help = did_you_mean(value, tuple(PRESETS)) or help
-        report.append(wrong_shape(tree.span, fault, help, arguments=("qos", fault)))
+        entry = tree.get(fault.key) if isinstance(tree, Map) else None
+        place = tree if entry is None else entry.value
+        if entry is not None and fault.key == "depth":
+            help = "write a whole number, such as `depth: 1`"
+        elif entry is not None and fault.key not in (*POLICIES, "preset"):
+            place = entry.key
+        if fault.known:
+            listed = ", ".join(f"`{each}`" for each in fault.known)
+            choice = f"write one of {listed}" if entry is not None else help
+            help = did_you_mean(place.span.text.strip("\"'"), fault.known) or choice
+        report.append(wrong_shape(place.span, fault.text, help, arguments=("qos", fault.text)))
 
 
 def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 DEPTH = 10
 """The depth of the history where none is stated."""
@@ -42,29 +42,40 @@ def policies(value: int | str | Mapping[str, Any] | None) -> dict[str, Any]:
     return merged
 
 
-def faults(value: object) -> list[str]:
+class Fault(NamedTuple):
+    """What is wrong with the policy `key` of a mapping; without a key, with the whole value.
+    `known`: the values that are allowed."""
+
+    text: str
+    key: str = ""
+    known: tuple[str, ...] = ()
+
+
+def faults(value: object) -> list[Fault]:
     """What is wrong with a value; empty if it is a quality of service."""
     if value is None:
         return []
     if isinstance(value, str):
         known = ", ".join(PRESETS)
         fault = f"`qos` has no preset `{value}`; its presets are {known}"
-        return [] if value in PRESETS else [fault]
+        return [] if value in PRESETS else [Fault(fault, known=tuple(PRESETS))]
     if isinstance(value, Mapping):
         return [fault for key, each in value.items() for fault in _policy_faults(key, each)]
-    return _policy_faults("depth", value)
+    return [fault._replace(key="") for fault in _policy_faults("depth", value)]
 
 
-def _policy_faults(key: object, value: object) -> list[str]:
+def _policy_faults(key: object, value: object) -> list[Fault]:
     """What is wrong with one policy."""
     if key == "depth":
         is_depth = isinstance(value, int) and not isinstance(value, bool) and value > 0
-        return [] if is_depth else [f"the depth of `qos` must be a positive number, not `{value}`"]
+        text = f"the depth of `qos` must be a positive whole number, not `{value}`"
+        return [] if is_depth else [Fault(text, "depth")]
     if key == "preset":
-        return faults(str(value))
+        return [fault._replace(key="preset") for fault in faults(str(value))]
     if key not in POLICIES:
-        known = ", ".join([*POLICIES, "depth", "preset"])
-        return [f"`qos` has no policy `{key}`; its policies are {known}"]
+        known = (*POLICIES, "depth", "preset")
+        text = f"`qos` has no policy `{key}`; its policies are {', '.join(known)}"
+        return [Fault(text, str(key), known)]
     values = POLICIES[str(key)]
-    fault = f"`{key}` of `qos` must be {' or '.join(values)}, not `{value}`"
-    return [] if value in values else [fault]
+    text = f"`{key}` of `qos` must be {' or '.join(values)}, not `{value}`"
+    return [] if value in values else [Fault(text, str(key), values)]

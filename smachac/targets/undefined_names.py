@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.accesses import USERDATA
-from smachac.analysis.code_slots import code_slots, free_in, parameters
+from smachac.analysis.code_slots import accepts, code_slots, free_in, parameters
 from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Diagnostic, Edit
 from smachac.diagnostics.source import Span, Word
@@ -60,7 +60,7 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
     for use in used:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
-            if use.name.id not in imported:
+            if use.name.id not in imported and not _lacks_parameter(use, types):
                 fix = _fix(use, imported)
                 by_look = _by_look(use.node, use.code)
                 yield undefined_name(
@@ -77,6 +77,10 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
             package = _PACKAGES.get(word.text, "my_messages")
             why = f"`{word.text}` is used here but nothing imports it"
             help = f"write its package as well, as in `{package}/{word.text}`"
+            if word.text.endswith(_ENDINGS):
+                why = f"`{word.text}` is a package, not a type"
+                example = _EXAMPLES.get(word.text, "TYPE")
+                help = f"write the type as well, as in `{word.text}/{example}`"
             yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
 
 
@@ -98,6 +102,17 @@ _PACKAGES: Mapping[str, str] = {
     **dict.fromkeys(("TestAction", "TwoIntsAction", "TestRequestAction"), "actionlib"),
 }
 """The packages of common types of services and actions."""
+
+_ENDINGS = ("_msgs", "_srvs", "_interfaces")
+"""The ends of the names of packages with types."""
+
+_EXAMPLES: Mapping[str, str] = {
+    "std_msgs": "String",
+    "std_srvs": "Trigger",
+    "geometry_msgs": "PoseStamped",
+    "sensor_msgs": "JointState",
+}
+"""A type of common packages."""
 
 
 def _message_types(node: Node, types: Mapping[str, StateType]) -> Iterator[Word]:
@@ -154,6 +169,16 @@ def _uses(node: Node, code: Expression) -> Iterator[_Use]:
             continue  # SM317
         found.add(word)
         yield _Use(node, code, name, function)
+
+
+def _lacks_parameter(use: _Use, types: Mapping[str, StateType]) -> bool:
+    """Whether the lambda around a name lacks the parameter of this name (SM317)."""
+    if use.lambda_ is None or not isinstance(use.node, Leaf):
+        return False
+    for slot in code_slots(use.node, types):
+        if slot.code.span == use.code.span and use.name.id in (slot.arguments or ()):
+            return not accepts(use.lambda_, len(slot.arguments or ()))
+    return False
 
 
 def _packages(tree: ast.expr | None) -> set[str]:

@@ -37,9 +37,9 @@ def test_policies_of_a_value(value: Any, stated: dict[str, Any]) -> None:
     ("value", "fault"),
     [
         ("fast", "no preset `fast`; its presets are default, sensor_data"),
-        (0, "the depth of `qos` must be a positive number, not `0`"),
-        (True, "the depth of `qos` must be a positive number, not `True`"),
-        ({"depth": "5"}, "the depth of `qos` must be a positive number, not `5`"),
+        (0, "the depth of `qos` must be a positive whole number, not `0`"),
+        (True, "the depth of `qos` must be a positive whole number, not `True`"),
+        ({"depth": "5"}, "the depth of `qos` must be a positive whole number, not `5`"),
         (
             {"reliability": "good"},
             "`reliability` of `qos` must be reliable or best_effort, not `good`",
@@ -52,5 +52,5 @@ def test_policies_of_a_value(value: Any, stated: dict[str, Any]) -> None:
     ],
 )
 def test_faults_of_a_value(value: Any, fault: str) -> None:
-    (text,) = ros2_qos.faults(value)
+    ((text, *_),) = ros2_qos.faults(value)
     assert fault in text

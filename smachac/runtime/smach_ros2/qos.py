@@ -18,7 +18,7 @@ def profile(value: Any = None) -> Any:
     if isinstance(value, module.QoSProfile):
         return value
     if faults := ros2_qos.faults(value):
-        raise ValueError("; ".join(faults))
+        raise ValueError("; ".join(each.text for each in faults))
     policies = ros2_qos.policies(value)
     enums = {
         "reliability": module.ReliabilityPolicy,

@@ -1,0 +1,82 @@
+"""The places and helps of findings about states of ROS."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.trust.project_text import analysed
+
+WATCH = """\
+name: sm
+template: ROSBase
+outcomes: [low, stopped]
+states:
+  - WATCH:
+      template: MonitorState
+      topic: battery
+      msg_type: std_msgs/Float32
+      cond_cb: 'lambda ud, msg: msg.data > 10.0'
+      transitions: {invalid: low, valid: stopped, preempted: stopped}
+"""
+GRIP = """\
+name: sm
+template: ROSBase
+outcomes: [done, failed, stopped]
+states:
+  - GRIP:
+      template: ServiceState
+      service_namespace: grip
+      service: std_srvs/SetBool
+      request: {data: true}
+      response_cb: 'lambda ud, response: "succeeded" if response.success else "aborted"'
+      transitions: {succeeded: done, aborted: failed, preempted: stopped}
+"""
+
+
+@pytest.mark.parametrize(
+    ("script", "old", "new", "code", "marked", "help"),
+    [
+        (WATCH, "", "", "", "", ""),
+        (GRIP, "", "", "", "", ""),
+        (WATCH, "lambda ud, msg", "lambda msg", "SM317", "msg", "begin it with `lambda ud, msg:`"),
+        (
+            GRIP, "lambda ud, response", "lambda ud", "SM317", "ud",
+            "begin it with `lambda ud, response:`",
+        ),
+        (
+            WATCH, "      msg_type: std_msgs/Float32\n", "", "SM005", "WATCH",
+            "add `msg_type: std_msgs/String`",
+        ),
+        (
+            GRIP, "std_srvs/SetBool", "std_srvs", "SM019", "std_srvs",
+            "write the type as well, as in `std_srvs/Trigger`",
+        ),
+    ],
+)  # fmt: skip
+def test_one_slip_is_one_finding(
+    script: str, old: str, new: str, code: str, marked: str, help: str
+) -> None:
+    assert old in script
+    report = analysed({"main.yml": script.replace(old, new, 1)}).report
+    found = [(each.code, each.span.text, each.help) for each in report]
+    found = [each for each in found if each[0] != "SM207"]  # a server without a limit
+    assert found == ([(code, marked, help)] if code else [])
+
+
+QOS = WATCH.replace("topic: battery", "topic: battery\n      qos: QOS")
+
+
+@pytest.mark.parametrize(
+    ("qos", "marked", "help"),
+    [
+        ("{reliability: relyable, depth: 1}", "relyable", "did you mean `reliable`?"),
+        ("{depth: one}", "one", "write a whole number, such as `depth: 1`"),
+        ("{durabilty: volatile}", "durabilty", "did you mean `durability`?"),
+        ("{preset: sensor_dat}", "sensor_dat", "did you mean `sensor_data`?"),
+        ("sensor_dat", "sensor_dat", "did you mean `sensor_data`?"),
+    ],
+)
+def test_a_fault_of_a_policy_is_at_its_value(qos: str, marked: str, help: str) -> None:
+    report = analysed({"main.yml": QOS.replace("QOS", qos)}).report
+    found = [(each.span.text, each.help) for each in report if each.code == "SM004"]
+    assert found == [(marked, help)]
