@@ -11,7 +11,7 @@ from smachac.analysis.accesses import scripted_steps, userdata_fields
 from smachac.analysis.control_flow import is_open
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
-from smachac.ir.leaf import functions
+from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, StateMachine
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
@@ -105,18 +105,44 @@ def with_meant_keys(container: Container) -> Container:
     return replace(container, children=children)
 
 
+def _with_meant_writes(leaf: Leaf) -> Leaf:
+    """A leaf with the misspelt keys of its callbacks corrected, where it has such an output that no
+    callback sets."""
+    wrong = undeclared_writes(leaf)
+    held = variable_of(leaf, "callbacks") if wrong else None
+    if held is None or not isinstance(held.value.data, nodes.Struct):
+        return leaf
+    entries = held.value.data.entries
+    set_ = {key for key, _ in entries}
+    guess = guesser([key.name for key in leaf.outputs if key.name not in set_])
+    meant = {key: near for key in wrong if (near := guess(key)) is not None}
+    if not meant:
+        return leaf
+    data = nodes.Struct(entries=tuple((meant.get(key, key), code) for key, code in entries))
+    renamed = replace(held, value=replace(held.value, data=data))
+    variables = tuple(renamed if each is held else each for each in leaf.variables)
+    return replace(leaf, variables=variables)
+
+
 def _meant(node: Node, *, raw: bool) -> Node:
     """A state with its remaps corrected and its keys declared. `raw`: it sees the keys of its
     container without remapping, as the child of an iterator does."""
     remaps = unknown_remaps(node)
     if remaps:
-        wrong = {each.remap: each.meant for each in remaps}
-        kept = (replace(each, key=wrong.get(each) or each.key) for each in node.remaps)
+        own = {key.name for key in (*node.inputs, *node.outputs)}
+        wrong = {
+            each.remap: replace(each.remap, key=each.remap.to, to=each.remap.key)
+            if each.remap.to in own
+            else replace(each.remap, key=each.meant or each.remap.key)
+            for each in remaps
+        }
+        kept = (wrong.get(each, each) for each in node.remaps)
         node = replace(node, remaps=tuple(kept))
     if isinstance(node, Leaf) and not raw and not node.open:
         reads = tuple(
             Key(name=key, span=code.span, type=PERHAPS) for key, code in undeclared_reads(node)
         )
+        node = _with_meant_writes(node)
         writes = tuple(Key(name=key, span=node.span) for key in undeclared_writes(node))
         if reads or writes:
             node = replace(node, inputs=(*node.inputs, *reads), outputs=(*node.outputs, *writes))

@@ -12,7 +12,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
-from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
+from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes, unknown_remaps
 from smachac.analysis.unset_reads import container_name
 from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.edits import with_output
@@ -76,7 +76,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
     reported = {(each.keeper.path, each.own) for each in context.lost_outputs}
     reported |= {(each.other, each.key) for each in context.missing_keys("outside")}
     unset: dict[str, set[str]] = {}
-    for each in context.missing_keys("nowhere"):
+    for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
     for scope in flow.scopes.values():
         container = scope.container
@@ -87,7 +87,9 @@ def dead_key(context: Context) -> Iterator[Finding]:
             if key in read or (scope.path, key) in reported:
                 continue
             if any(guesser([key])(name) for name in unset.get(scope.path, ())):
-                continue  # SM301 is about the same slip
+                continue  # SM301 or SM302 is about the same slip
+            if any(_remaps_unknown(child, key) for child in container.children):
+                continue  # SM302
             # The userdata of the machine can be read after the run.
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
@@ -101,6 +103,11 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
             )
+
+
+def _remaps_unknown(node: Node, key: str) -> bool:
+    """Whether a remapping of a state has a key of the container in place of its own."""
+    return any(key in (each.remap.key, each.meant) for each in unknown_remaps(node))
 
 
 def _sees_everything(scope: UserdataScope) -> bool:

@@ -92,7 +92,7 @@ def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> 
         names = {child.name for child, _ in writing}
         # A branch that only reads its own values does not race with itself.
         reading = [one for one in readers.get(key, ()) if one[0].name not in names]
-        if len(writing) > 1 or reading:
+        if len(names) > 1 or reading:
             yield _race(path, container, key, writing, reading)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
@@ -301,6 +303,8 @@ def written(flow: TypeFlow) -> str:
             case "scope":
                 return f"{_owner(cell)} holds `{cell.key}` as `{flow.type}`"
     what = in_words(flow.type)
+    if flow.how == "value" and isinstance(flow.value, bool | float):
+        return f"`{cell.key}` is `{json.dumps(flow.value)}`"
     if flow.how == "computed":
         return f"{_owner(cell)} computes `{cell.key}` as {what}"
     return f"`{cell.key}` is {what}"
@@ -375,6 +379,9 @@ def _help(clash: Clash) -> str:
     if given.name == "optional" and fits(inside(given), wanted):
         return f"declare it as `{given}` where it is read, because it can be absent"
     if given.name == "float" and wanted.name == "int":
+        value = clash.flow.origin.value
+        if isinstance(value, float) and math.isfinite(value):
+            return f"write a whole number, such as `{round(value)}`"
         return "declare it as `float` where it is read, or convert it with `round(...)`"
     if clash.flow.origin.how == "declared" and is_promised(clash.flow.origin.cell):
         owner = _owner(clash.flow.origin.cell)

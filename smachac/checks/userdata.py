@@ -283,7 +283,7 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
                 continue
             guess = guesses.of(scope)(key)
             yield Finding(
-                span=remap.span,
+                span=remap.to_span,
                 message=f"`{remap.key}` of `{child.name}` is remapped to `{key}`, which nothing in"
                 f" {container_name(scope, remap.span)} sets",
                 arguments=(remap.key, key),

@@ -208,7 +208,7 @@ def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFaul
         certain = not own.binds("get_registered_outcomes")
         return [*found, _at_class("no state", module, node)] if certain else found
     return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own),
-            *_call_faults(own), *_list_faults(own), *_stop_faults(own)]  # fmt: skip
+            *_call_faults(own), *_list_faults(own)]  # fmt: skip
 
 
 def _at_class(
@@ -364,24 +364,6 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
             listed = ", ".join(f'"{each}"' for each in items)
             near = f"{key}=[{listed}]" if items else None
             yield ClassFault(kind="no list", name=Word(key, span), near=near)
-
-
-def _stop_faults(own: OwnClass) -> Iterator[ClassFault]:
-    """The first place where a class checks for a preempt request that it never answers. Another
-    function to which it passes itself can do that."""
-    if own.root != "state":
-        return
-    nodes = [(module, each) for module, node in own.classes for each in ast.walk(node)]
-    owners = {id(each.value) for _, each in nodes if isinstance(each, ast.Attribute)}
-    for _, each in nodes:
-        alone = isinstance(each, ast.Name) and each.id == "self" and id(each) not in owners
-        if alone or getattr(each, "attr", "") in ("service_preempt", "recall_preempt"):
-            return
-    for module, each in nodes:
-        if isinstance(each, ast.Attribute) and each.attr == "preempt_requested":
-            name = Word(each.attr, module.text.span(each))
-            yield ClassFault(kind="unanswered stop", name=name)
-            return
 
 
 def _registers(node: ast.ClassDef) -> bool:

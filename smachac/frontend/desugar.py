@@ -242,5 +242,5 @@ def _with_input(fields: dict[str, Any], outer: str, span: Span) -> str:
     name = _fresh(outer, (*names, *remaps))
     fields["inputs"] += (Key(name=name, span=span),)
     if name != outer:
-        fields["remaps"] += (Remap(key=name, to=outer, span=span),)
+        fields["remaps"] += (Remap(key=name, to=outer, span=span, to_span=span),)
     return name

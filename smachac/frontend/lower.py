@@ -141,7 +141,10 @@ def _interface(state: State) -> dict[str, Any]:
             ]
         ),
         "remaps": tuple(
-            [Remap(key=key.text, to=to.text, span=key.span) for key, to in state.remapping]
+            [
+                Remap(key=key.text, to=to.text, span=key.span, to_span=to.span)
+                for key, to in state.remapping
+            ]
         ),
         "claims": _claims(state) if type_.claims or state.claims else (),
         "tags": tuple([word.text for word in state.tags]),

@@ -34,7 +34,6 @@ FaultKind = Literal[
     "wrong constructor",
     "unused outcome",
     "no answer to stops",
-    "unanswered stop",
     "unset output",
     "undefined name",
     "no import",

@@ -199,11 +199,12 @@ class Transition:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Remap:
-    """A key of a state refers to another key of its container."""
+    """A key of a state refers to another key of its container; `to_span` is the place of that."""
 
     key: str
     to: str
     span: Span = field(compare=False, repr=False)
+    to_span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -199,7 +199,7 @@ class _MachineBuilder:
 
     def remap(self, tree: Any) -> Iterator[Remap]:
         key, to = tree.children
-        yield Remap(key=_text(key), to=_text(to), span=self.span(key))
+        yield Remap(key=_text(key), to=_text(to), span=self.span(key), to_span=self.span(to))
 
     def variable(self, tree: Any) -> Iterator[Variable]:
         name, type_, data = tree.children

@@ -105,10 +105,6 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " it",
         "add where it waits: `if (stop.requested()) {{ stop.service(); return Outcome::{word}; }}`",
     ),
-    "unanswered stop": (
-        "`{name}` reads `{word}` and never calls `service_preempt`: the request stays",
-        "write `self.service_preempt()` in the line before `return 'preempted'`",
-    ),
     "unset output": (
         "`execute` of `{name}` never sets its output key `{word}`",
         "write `out.{word} = ...`, or remove the key from the interface and from `Out`",
@@ -134,10 +130,8 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
 }
 """The message and the help for each kind of fault."""
 
-CHECKED_ONLY = frozenset[FaultKind](
-    ["unused outcome", "no answer to stops", "unset output", "unanswered stop"]
-)
-"""Faults of a class with which a program runs: a build does not fail."""
+CHECKED_ONLY = frozenset[FaultKind](["unused outcome", "no answer to stops", "unset output"])
+"""Faults of a class that a compiler accepts: a build does not fail."""
 
 EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
@@ -147,7 +141,6 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no import": "",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
-    "unanswered stop": "the next state is preempted too, or this state when it runs again",
     "unset output": "a state that reads the key afterwards gets an old value, or fails",
 }
 """What happens, where it differs from most faults; empty if the message contains it."""

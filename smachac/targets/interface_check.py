@@ -82,9 +82,10 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
 
 
 def target_faults(machine: Machine, library: Library, target: Language) -> Iterator[Diagnostic]:
-    """The same differences for the language of one target, as errors."""
+    """The same differences for the language of one target, as errors; not those of a type without
+    an interface, whose template may belong to another project."""
     for leaf, type_ in own_types(machine, library):
-        if target.name in languages(type_):
+        if target.name in languages(type_) and not type_.open:
             yield from type_faults(leaf, type_, target, library)
     if target.name == "python":
         yield from argument_faults(machine)

@@ -430,3 +430,49 @@ def test_missing_outcomes_and_wrong_shapes_are_one_finding(
     report = [item for item in analysed(files).report if item.severity is Severity.ERROR]
     assert [f"{item.code} {item.span.text}" for item in report] == [expected]
     assert help in (report[0].help or "")
+
+
+KEYS = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {grip: soft, heat: 1.0}
+states:
+  - GRASP:
+      template: Find
+      remapping: {kind: grip}
+      transitions: {found: WARM, nothing: done, preempted: done}
+  - WARM:
+      template: CallbacksState
+      input_keys: [heat]
+      output_keys: [warmth]
+      callbacks: {warmth: 'lambda ud: ud.heat + 1.0'}
+      transitions: {succeeded: SHOW}
+  - SHOW:
+      template: PrintUserdataState
+      input_keys: [warmth]
+      transitions: {succeeded: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("", "", []),
+        ("{kind: grip}", "{kind: gripp}", ["SM302 gripp"]),
+        ("{kind: grip}", "{grip: kind}", ["SM302 grip"]),
+        ("{warmth: 'l", "{warmht: 'l", ["SM308 warmht"]),
+    ],
+)
+def test_a_slip_in_a_key_is_one_finding(old: str, new: str, expected: list[str]) -> None:
+    interface = FIND + "input_keys: {kind: str}\n"
+    assert found(KEYS.replace(old, new, 1), Find=interface) == expected
+
+
+def test_branches_of_one_name_are_no_race() -> None:
+    text = FIELDS.replace("- B: {template: S", "- A: {output_keys: [k], template: S")
+    text = text.replace("- A: {template: S", "- A: {output_keys: [k], template: S")
+    text = text.replace("default_outcome: bad", "default_outcome: bad\n      output_keys: [k]")
+    codes = [each.split()[0] for each in found(text, Find=FIND + "input_keys: {where: str}\n")]
+    assert "SM106" in codes
+    assert "SM405" not in codes

@@ -183,27 +183,3 @@ def test_an_argument_that_the_constructor_does_not_keep() -> None:
 )
 def test_an_argument_that_is_set_elsewhere_or_not_read(body: str) -> None:
     assert report(body, *UNSET) == []
-
-
-WAITS = "\n        if self.preempt_requested():\n            {}return 'nothing'"
-
-
-@pytest.mark.parametrize(
-    ("answer", "found"),
-    [
-        ("", ["self.preempt_requested"]),
-        ("self.service_preempt()\n            ", []),
-        ("self.recall_preempt()\n            ", []),
-        ("arm.stop(self)\n            ", []),  # it may answer
-    ],
-)
-def test_a_preempt_request_that_is_never_answered(answer: str, found: list[str]) -> None:
-    report = analysed(
-        {
-            "main.yml": MAIN,
-            "templates/Find.yml": FIND,
-            "find_part.py": CLASS.replace("BODY", PART + WAITS.format(answer)),
-        }
-    ).report
-    marked = [each.span.text for each in report if "service_preempt" in each.message]
-    assert marked == found
