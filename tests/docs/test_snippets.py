@@ -58,7 +58,7 @@ ELSEWHERE = {
     "sweep": "tests/docs/test_tutorial.py",
     "targets": "tests/docs/test_targets.py",
     "tutorial": "tests/docs/test_tutorial.py",
-    "verify": "tests/cpp, tests/verify",
+    "verify": "tests/docs/test_verify.py, tests/cpp, tests/verify",
 }
 """Pages with marked code that other tests run."""
 
