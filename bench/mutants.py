@@ -23,7 +23,7 @@ def main(each: int = EACH, projects: int = PROJECTS) -> int:
     begun = time.process_time()
     subjects = subjects_of(projects)
     tallies = tallied(mutants(subjects, each))
-    print("| damage | caught | missed | no fault | reason why it is none |")
+    print("| what was changed | caught | missed | no fault | reason why it is no fault |")
     print("| --- | --- | --- | --- | --- |")
     for name, tally in tallies.items():
         counts = [tally.counts[word] for word in ("caught", "missed", "equivalent")]
