@@ -38,7 +38,7 @@ EXAMPLES = """\
 examples:
   smachac check                                  all scripts below the current folder
   smachac check main.yml --format sarif          a report for code scanning
-  smachac check . --select SM3,SM4 --strict      only userdata and concurrence; warnings fail
+  smachac check . --select SM3,SM4 --strict      only SM3xx and SM4xx; warnings fail too
   smachac check . --changed-since origin/main    scripts whose files a pull request changes
   smachac check . --baseline known.json --write-baseline   record the findings of old code
   smachac check . --baseline known.json          report new findings only
@@ -64,7 +64,7 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     for name, what in (("select", "report only these codes"), ("ignore", "ignore these codes")):
         parser.add_argument(f"--{name}", action="append", default=[], metavar="CODE[,CODE]",
-                            help=f"{what}; SM2 stands for all that begin so")  # fmt: skip
+                            help=f"{what}; SM2 stands for every SM2xx")  # fmt: skip
     parser.add_argument("--baseline", type=as_path, metavar="FILE",
                         help="ignore the findings that are listed in FILE")  # fmt: skip
     parser.add_argument("--write-baseline", action="store_true",

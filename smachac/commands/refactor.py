@@ -27,7 +27,7 @@ exit codes: 0 success, 1 refused, or a file would change (--check, --diff), 2 wr
 CONTAIN_EXAMPLES = f"""\
 examples:
   smachac contain main.yml LOAD StateMachine LOAD_TABLE LOAD_BLOCK   two states in sequence
-  smachac contain main.yml LOOK Concurrence FIND WARM_UP             at the same time from now on
+  smachac contain main.yml LOOK Concurrence FIND WARM_UP             let both run at the same time
   smachac contain main.yml LOAD StateMachine LOAD_TABLE LOAD_BLOCK --diff   show a patch
 
 {EXIT_CODES}"""
@@ -64,7 +64,7 @@ examples:
   smachac edit main.yml transition PICK aborted           remove the transition from the script
   smachac edit main.yml add sm RECOVER GripperState       a new state of a type, behind the others
   smachac edit main.yml add sm RECOVER GripperState --after PICK --on aborted
-  smachac edit main.yml remove WAIT                       what led to it leads to its successor
+  smachac edit main.yml remove WAIT                       transitions to it lead to its successor
   smachac edit main.yml remove WAIT --to PARK --diff      show a patch
 
 {EXIT_CODES}"""

@@ -49,7 +49,7 @@ examples:
   smachac run main.yml --seed 7 --set userdata.speed=0.2   with another value
   smachac run main.yml --view                    watch and control it in a browser
   smachac run main.yml --expect succeeded        fail if the outcome is another one (CI)
-  smachac run main.yml --ros                     run it as a ROS node, here and now
+  smachac run main.yml --ros                     run it as a ROS node, without writing a program
   smachac run main.yml --ros --ros-args -p speed:=0.2 -r __ns:=/robot_1
 
 exit codes: 0 the machine ended with an outcome (the one of --expect), 1 the run failed or the

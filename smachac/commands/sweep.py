@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 examples:
   smachac sweep main.yml --runs 1000                          seeds 0 to 999, on all cores
-  smachac sweep main.yml --runs 1000 --database sweep.db      may be stopped; the same line goes on
+  smachac sweep main.yml --runs 1000 --database sweep.db      run it again after Ctrl-C to continue
   smachac sweep main.yml --faults slips.yml --format html -o sweep.html
   smachac sweep main.yml --mock scenario.yml --runs 10000     outcomes with probabilities
   smachac sweep main.yml --vary userdata.speed=0.1..0.5 --vary params.arm=left,right
@@ -73,8 +73,8 @@ def sweep_arguments(parser: argparse.ArgumentParser) -> None:
                         help="longest wall time of one run in seconds; 0: no limit"
                         f" (default: {RUN_LIMIT})")  # fmt: skip
     parser.add_argument("--database", type=as_path, metavar="FILE",
-                        help="keep each run in FILE (SQLite): a sweep that was stopped goes on"
-                        )  # fmt: skip
+                        help="keep each run in FILE (SQLite), so that the same command can"
+                        " continue a stopped sweep")  # fmt: skip
     parser.add_argument("--expect", metavar="OUTCOME",
                         help="the outcome that is a success (default: those with names of success)"
                         )  # fmt: skip

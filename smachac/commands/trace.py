@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 TRACE_EXAMPLES = """\
 examples:
   smachac run main.yml --trace run.jsonl           record a run
-  smachac trace check main.yml run.jsonl           is it a run that the script allows?
-  smachac trace check main.yml runs/*.jsonl        many runs, and the transitions that none takes
-  smachac trace check main.yml bags/run_7          a bag of ROS 2 with the live status of a node
+  smachac trace check main.yml run.jsonl           compare a run with the script
+  smachac trace check main.yml runs/*.jsonl        check many runs, list transitions that none takes
+  smachac trace check main.yml bags/run_7          check a bag of ROS 2 with the live status
   smachac trace stats main.yml runs/*.jsonl        visits, durations and outcomes of each state
 
 exit codes: 0 every trace is a run that the script allows, 1 one is not, or the script has errors,
@@ -43,10 +43,7 @@ exit codes: 0 success, 1 a trace is not a run that the script allows, or the scr
 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
-TRACES = (
-    "file that `run --trace` or a robot has written; for `check` also a bag of rosbag2, for"
-    " statistics a sweep's database"
-)
+TRACES = "a file that `run --trace` or a C++ program has written"
 
 
 class UnreadableTraceError(Exception):
@@ -58,8 +55,10 @@ class UnreadableTraceError(Exception):
 
 def trace_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = TRACE_EXAMPLES
-    parser.add_argument("action", choices=("check", "stats"), help="what to do with the traces")
-    _files(parser, "text", "json")
+    parser.add_argument("action", choices=("check", "stats"), help="check: compare the traces with"
+                        " the script; stats: count visits, durations and outcomes")  # fmt: skip
+    others = "; for `check` also a bag of rosbag2, for `stats` also the database of a sweep"
+    _files(parser, TRACES + others, "text", "json")
 
 
 def stats_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,12 +66,13 @@ def stats_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--success", type=names, metavar="A,B,...",
                         help="outcomes of the machine that count as success (default: those with"
                         " names of success)")  # fmt: skip
-    _files(parser, "text", "json", "dot", "html")
+    others = ", or the database of a sweep"
+    _files(parser, TRACES + others, "text", "json", "dot", "html")
 
 
-def _files(parser: argparse.ArgumentParser, *formats: str) -> None:
+def _files(parser: argparse.ArgumentParser, traces: str, *formats: str) -> None:
     parser.add_argument("script", type=as_path, help=SCRIPT)
-    parser.add_argument("traces", type=as_path, nargs="+", metavar="TRACE", help=TRACES)
+    parser.add_argument("traces", type=as_path, nargs="+", metavar="TRACE", help=traces)
     parser.add_argument("--format", choices=formats, default="text", help=FORMAT)
     search_folders(parser)
     colour(parser)

@@ -86,7 +86,7 @@ def view_arguments(parser: argparse.ArgumentParser) -> None:
 def browser(parser: argparse.ArgumentParser) -> None:
     """`--no-browser`."""
     parser.add_argument("--no-browser", action="store_true",
-                        help="print the address of the page, do not open it")  # fmt: skip
+                        help="only print the address of the page")  # fmt: skip
 
 
 def port(text: str) -> int:
