@@ -187,7 +187,7 @@ def property_vacuous(context: Context) -> Iterator[Finding]:
 
     Exactly: no path reaches the event that the property is about: `after` of `never`, the first
     event of `before`, `after` and `whenever`, the event of `at_most`. A state that cannot be
-    reached in its own container is SM201.
+    reached in its own container is reported by SM201.
 
     Wrong:
         name: sm

@@ -43,7 +43,7 @@ def ignored_stop(context: Context) -> Iterator[Finding]:
     request; or only after failures and preempt requests, if it is `blocking` and claims nothing, as
     one in which an operator decides. For a container, the transitions for the outcomes with which
     it ends after a preempt request count. In a concurrence with `join: any`, or under a time limit,
-    such a loop is SM407.
+    SM407 reports such a loop.
 
     Wrong:
         name: sm

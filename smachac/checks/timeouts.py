@@ -180,7 +180,7 @@ def never_ends(context: Context) -> Iterator[Finding]:
     `forever: true`, and does not end after a preempt request either; or a state in it starts again
     after a preempt request, as in SM209, so that the branch ends only by itself. The same holds for
     what a time limit cannot stop. A branch that never ends without `forever: true` is an error of
-    SM202; a single state that waits is SM207.
+    SM202; SM207 reports a single state that waits.
 
     Wrong:
         name: sm

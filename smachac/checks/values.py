@@ -202,7 +202,7 @@ def unknown_name(context: Context) -> Iterator[Finding]:
     LoadModelState adds; there an unknown name is an error. So is a body that no path loads before a
     state of the simulation uses it, unless the state leads to the loading one when it fails. Where
     code of the user may add bodies, they are not checked. A state whose type has `role: grip` needs
-    a limb whose description has a gripper. Names of frames and joints are SM505.
+    a limb whose description has a gripper. SM505 checks names of frames and joints.
 
     Wrong:
         name: sm
