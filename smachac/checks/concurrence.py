@@ -396,8 +396,8 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             if rule and not node.rules:
                 rule = f"outcome_map: {{{outcome_names(node)[0]}: {{{rule}}}}}"
                 help = f"write rules for its outcomes, as in `{rule}`, and `default_outcome: {bad}`"
-            elif rule:
-                help += f", or add a rule, as in `{bad}: {{{rule}}}`"
+            elif rule and (free := _without_rule(node)):
+                help += f", or add a rule, as in `{free}: {{{rule}}}`"
         yield Finding(
             span=span,
             message=message,
@@ -408,6 +408,13 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             severity=severity,
             node=each.path,
         )
+
+
+def _without_rule(node: Concurrence) -> str:
+    """The last outcome without a rule, as an outcome has one entry in the map; empty if all have
+    rules."""
+    taken = {rule.outcome for rule in node.rules}
+    return next((name for name in reversed(outcome_names(node)) if name not in taken), "")
 
 
 def _names(combination: Mapping[str, str]) -> tuple[str, ...]:

@@ -131,7 +131,33 @@ SET_TRIES = """\
 {template: CallbacksState, output_keys: [tries], callbacks: {tries: 'lambda ud: 0'}, \
 transitions: {succeeded: GRASP}}"""
 
+BOTH = """name: m
+template: Base
+outcomes: [ready, failed]
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [ready, half, failed]
+      outcome_map:
+        ready: {LEFT: done, RIGHT: done}
+        failed: {LEFT: slipped}
+      states:
+        - LEFT: {template: ScriptedState, outcomes: [done, slipped]}
+        - RIGHT: {template: ScriptedState, outcomes: [done, slipped]}
+      transitions: {ready: ready, half: failed, failed: failed}
+"""
+
+FULL = BOTH.replace("[ready, half, failed]", "[ready, failed]").replace("half: failed, ", "")
+
 CASES = [
+    (
+        "SM401",
+        BOTH,
+        "write `default_outcome: failed` for all combinations without a rule, or add a rule, as in"
+        " `half: {LEFT: done, RIGHT: slipped}`",
+        "        failed: {LEFT",
+        "        half: {LEFT: done, RIGHT: slipped}\n        failed: {LEFT",
+    ),
     (
         "SM205",
         EMPTY,
@@ -191,6 +217,11 @@ def test_a_help_followed_literally_removes_the_finding(
     assert [item.help for item in found if (item.help or "").startswith(help)] != []
     left = _report(tmp_path, script.replace(old, new))
     assert [item for item in left if item.severity is not Severity.INFO] == []
+
+
+def test_a_rule_is_never_added_for_an_outcome_that_has_one(tmp_path: Path) -> None:
+    [found] = [item for item in _report(tmp_path, FULL) if item.code == "SM401"]
+    assert found.help == "write `default_outcome: failed` for all combinations without a rule"
 
 
 def _report(folder: Path, script: str) -> Report:
