@@ -10,6 +10,7 @@ from smachac.checks.messages import calls
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.wording import MOST_LISTED, both
 from smachac.ir.nodes import Given, Preset
 
 
@@ -72,21 +73,55 @@ def _overruled(path: str, preset: Preset) -> Iterator[Finding]:
     unused = [each for each in others if not _alike(each, last)]
     if not unused:
         return
-    owner = path.rpartition("/")[2] if unused[0].own else unused[0].state.text
+    own = path.rpartition("/")[2]
+    owners = [own if each.own else each.state.text for each in unused]
+    several = len(unused) > 1
+    key = preset.key
     yield Finding(
         span=_place(unused[0], last),
-        message=f"the initial value of `{preset.key}` in `{owner}` is never used:"
-        f" `{last.state.text}` overwrites it",
-        arguments=(preset.key,),
-        help=f"rename the key in one of the two: `userdata: {{{preset.key}_2: ...}}` with"
-        f" `remapping: {{{preset.key}: {preset.key}_2}}`"
-        + (f", or set `{preset.key}` only once" if unused[0].own else ""),
+        message=f"the initial value{'s' if several else ''} of `{key}` in {both(owners)}"
+        f" {'are' if several else 'is'} never used: `{last.state.text}` overwrites"
+        f" {'them' if several else 'it'}",
+        arguments=(key,),
+        help=_renamed(preset, unused) + (f", or set `{key}` only once" if unused[0].own else ""),
+        effect="all initial values are set before the first state: all these states have the last"
+        " one"
+        if several
+        else None,
         related=(
             *(Related(span=each.span, message="overwritten too") for each in unused[1:]),
             Related(span=_place(last, unused[0]), message="this value is used"),
         ),
         node=path,
     )
+
+
+def _renamed(preset: Preset, unused: list[Given]) -> str:
+    """How each owner keeps its value: the states whose values are lost get keys of their own; if
+    the value of the container is lost, all states do."""
+    renamed = preset.given if unused[0].own else unused
+    states = [each for each in renamed if not each.own]
+    names: dict[str, str] = {}
+    shown = []
+    for each in states:
+        value = repr(each.value.data)
+        name = names.setdefault(value, f"{preset.key}_{len(names) + 2}")
+        text = each.value.span.text
+        text = text if 0 < len(text) <= _LONGEST_VALUE and "\n" not in text else "..."
+        shown.append(
+            f"`userdata: {{{name}: {text}}}` and `remapping: {{{preset.key}: {name}}}` at"
+            f" `{each.state.text}`"
+        )
+    more = len(shown) - MOST_LISTED
+    return (
+        "rename the key: write "
+        + "; ".join(shown[:MOST_LISTED])
+        + (f"; and so on at {more} more" if more > 0 else "")
+    )
+
+
+_LONGEST_VALUE = 40
+"""The longest value that the help repeats, in characters."""
 
 
 def _place(given: Given, other: Given) -> Span:

@@ -114,3 +114,24 @@ def test_calls_of_one_sub_script(one: str, two: str, lines: list[int]) -> None:
     for item in report:
         assert [item.span.line, *(each.span.line for each in item.finding.related)] == lines
         assert "value of `x` in `A` is never used: `B` overwrites it" in item.finding.message
+
+
+def test_each_value_that_is_lost_is_named() -> None:
+    (item,) = found(one="x: 1", two="x: 2", three="x: 3")
+    assert item.finding.message == (
+        "the initial values of `x` in `A` and `B` are never used: `C` overwrites them"
+    )
+    assert item.help == (
+        "rename the key: write `userdata: {x_2: 1}` and `remapping: {x: x_2}` at `A`;"
+        " `userdata: {x_3: 2}` and `remapping: {x: x_3}` at `B`"
+    )
+    assert found(one="x_2: 1", two="x_3: 2", three="x: 3") == []
+
+
+def test_a_container_keeps_its_value_if_the_states_get_other_keys() -> None:
+    (item,) = found(own="x: 0", one="x: 1", three="x: 3")
+    assert item.help == (
+        "rename the key: write `userdata: {x_2: 1}` and `remapping: {x: x_2}` at `A`;"
+        " `userdata: {x_3: 3}` and `remapping: {x: x_3}` at `C`, or set `x` only once"
+    )
+    assert found(own="x: 0", one="x_2: 1", three="x_3: 3") == []
