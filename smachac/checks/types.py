@@ -351,8 +351,14 @@ FLAGS = {
 """Words and numbers that are meant as booleans, which are `true` and `false` in YAML 1.2."""
 
 
+KEY_FIELDS = frozenset(["type", "value", "doc", "secret", "default", "min", "max", "unit"])
+"""The fields of a key in userdata and in interfaces."""
+
+
 def _help(clash: Clash) -> str:
     given, wanted = clash.misfit.given, clash.misfit.wanted
+    if wanted.name == "record" and (long_form := _long_form(clash)) is not None:
+        return long_form
     if clash.misfit.kind == "unit":
         return _in_wanted_unit(clash)
     if clash.misfit.kind == "length" and given == clash.flow.type:
@@ -452,6 +458,20 @@ def _other_change(clash: Clash) -> str:
     if isinstance(node, Leaf) and not listed_here:
         return "" if node.built_in else f"{change} in the interface `{node.type}`"
     return f"{change} at {_owner(cell)}" if node is not None else change
+
+
+def _long_form(clash: Clash) -> str | None:
+    """The help for a reader whose record has the fields of an interface, such as `{type: float}`,
+    while the value is no mapping: the type was meant."""
+    wanted = fields(clash.misfit.wanted)
+    if "type" not in wanted or not KEY_FIELDS.issuperset(wanted) or clash.cell.role != "input":
+        return None
+    if clash.misfit.given.name in ("mapping", "record", "dict"):
+        return None
+    return (
+        f"write `{clash.cell.key}: {wanted['type']}` in the `input_keys` of {_owner(clash.cell)}:"
+        " only userdata and interfaces have the fields `type` and `value`"
+    )
 
 
 def _meant(clash: Clash) -> str | None:

@@ -45,6 +45,7 @@ SHAPES = {
     "names": ("a list of names", "write it as `[a, b]`"),
     "outcomes": ("a list of outcomes", "write it as `[a, b]` or `{a: {}, b: {failure: true}}`"),
     "keys": ("a list of keys", "write it as `[a, b]` or `{a: float}`"),
+    "type": ("a type", "write it as `float`, `list[Pose]` or `{x: float, y: float}`"),
     "items": ("a list or the name of a key", "write it as `[a, b]`, or name a key with a list"),
     "map": ("a mapping", "write it as `{name: value}`"),
     "conditions": ("a mapping", "write it as `{STATE: OUTCOME}`"),
@@ -299,9 +300,29 @@ def as_keys(tree: Tree, report: Report) -> Keys:
     if isinstance(tree, Seq):
         return tuple((word, None) for word in as_names(tree, report))
     if isinstance(tree, Map):
+        if any(isinstance(entry.value, Map) for entry in tree.entries):
+            tree = Map(tuple([_of_type(entry, report) for entry in tree.entries]), tree.span)
         return tuple((key, parse_type(type_.text)) for key, type_ in as_pairs(tree, report))
     wrong(tree, "keys", report)
     return tuple((word, None) for word in _words_of(tree))
+
+
+def _of_type(entry: Entry, report: Report) -> Entry:
+    """A key with its type. Fields of userdata and interfaces in place of a type are reported."""
+    value = entry.value
+    if not isinstance(value, Map):
+        return entry
+    key, parts = entry.key.span.text, {part.key.value: part.value for part in value.entries}
+    type_, preset = parts.get("type"), parts.get("value")
+    help = None
+    if isinstance(type_, Scalar):
+        help = f"write `{key}: {type_.span.text}`"
+    if help and preset is not None and "\n" not in preset.span.text:
+        help += f", and `userdata: {{{key}: {preset.span.text}}}` beside the keys"
+    elif help:
+        help += ": only userdata and interfaces have fields beside the type"
+    wrong(value, "type", report, help)
+    return Entry(entry.key, type_ if isinstance(type_, Scalar) else known_wrong(value.span))
 
 
 def listed_keys(tree: Tree) -> Keys:

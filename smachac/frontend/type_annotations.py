@@ -77,7 +77,7 @@ def typed(key: str, entry: Entry, aliases: Aliases, report: Report) -> Entry:
             item.key,
             _long_form(item.value, aliases, report)
             if key == "userdata"
-            else _type(item.value, aliases, report),
+            else _key_type(item.value, aliases, report),
         )
         for item in value.entries
     )
@@ -169,6 +169,16 @@ def _is_type(tree: Tree, aliases: Aliases) -> bool:
         return False
     type_ = parse_type(_filled(tree.value, aliases))
     return type_ is not None and not unknown_words(type_)
+
+
+def _key_type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
+    """The type of a key. A mapping with the fields of an interface stays: the reader of the keys
+    reports it."""
+    if isinstance(tree, Map) and tree.get("type") is not None:
+        text = as_record(tree)
+        if isinstance(text, Scalar) and parse_type(_filled(str(text.value), aliases)) is None:
+            return tree
+    return _type(tree, aliases, report)
 
 
 def _type(tree: Tree, aliases: Aliases, report: Report) -> Tree:

@@ -131,6 +131,18 @@ SET_TRIES = """\
 {template: CallbacksState, output_keys: [tries], callbacks: {tries: 'lambda ud: 0'}, \
 transitions: {succeeded: GRASP}}"""
 
+ANGLE = """name: m
+template: Base
+outcomes: [done]
+userdata: {angle: 0.5}
+states:
+  - TURN:
+      template: ScriptedState
+      input_keys: {angle: float}
+      outcomes: [ok]
+      transitions: {ok: done}
+"""
+
 BOTH = """name: m
 template: Base
 outcomes: [ready, failed]
@@ -150,6 +162,34 @@ states:
 FULL = BOTH.replace("[ready, half, failed]", "[ready, failed]").replace("half: failed, ", "")
 
 CASES = [
+    (
+        "SM304",
+        ANGLE.replace("angle: float", "angle: {type: float}"),
+        "write `angle: float` in the `input_keys` of `TURN`: only userdata and interfaces have",
+        "{type: float}",
+        "float",
+    ),
+    (
+        "SM004",
+        ANGLE.replace("angle: float", "angle: {type: float, min: 0.1}"),
+        "write `angle: float`: only userdata",
+        "{type: float, min: 0.1}",
+        "float",
+    ),
+    (
+        "SM004",
+        ANGLE.replace("angle: float", "angle: {type: float, doc: how far}"),
+        "write `angle: float`: only userdata",
+        "{type: float, doc: how far}",
+        "float",
+    ),
+    (
+        "SM004",
+        ANGLE.replace("angle: float", 'angle: {type: "float<rad>", value: 0.5}'),
+        'write `angle: "float<rad>"`, and `userdata: {angle: 0.5}` beside the keys',
+        'angle: {type: "float<rad>", value: 0.5}}',
+        'angle: "float<rad>"}\n      userdata: {angle: 0.5}',
+    ),
     (
         "SM401",
         BOTH,
