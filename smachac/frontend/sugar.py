@@ -193,9 +193,7 @@ def _parts(
             parts[word.text] = each.value
             continue
         others = tuple(name for name in known if name not in written)
-        meant = MEANT_PARTS.get(word.text)
-        if meant not in others:
-            meant = guesser(others)(word.text)
+        meant = _part_meant(word.text, others)
         if meant is None:
             report.append(unknown_variable(word, owner, others))
             continue
@@ -205,6 +203,19 @@ def _parts(
         if name not in parts:
             report.append(missing_variable(entry.key.span, name, owner, example=example))
     return parts
+
+
+def _part_meant(word: str, parts: tuple[str, ...]) -> str | None:
+    """The part of sugar that a word is meant for: another word for it, its misspelt name, or a
+    misspelt other word; None if it is none of these."""
+    meant = MEANT_PARTS.get(word)
+    if meant in parts:
+        return meant
+    near = guesser(parts)(word)
+    if near is None:
+        words = [other for other, part in MEANT_PARTS.items() if part in parts]
+        near = MEANT_PARTS.get(guesser(words)(word) or "")
+    return near
 
 
 def _mapping_for(entry: Entry) -> str:

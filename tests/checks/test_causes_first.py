@@ -131,6 +131,27 @@ def test_an_unknown_outcome_in_sugar_is_one_finding() -> None:
     assert found(gone, Find=FIND) == ["SM004 gone", *expected[1:]]
 
 
+@pytest.mark.parametrize(
+    ("field", "wrong", "misspelt", "meant"),
+    [
+        ("retry: {on: [nothing], max: 3}", "retry: {on: [nothing], tims: 3}", "tims", "max"),
+        ("retry: {on: [nothing], max: 3}", "retry: {outcoms: [nothing], max: 3}", "outcoms", "on"),
+        ("{item: x, in: [1, 2], on", "{item: x, lsit: [1, 2], on", "lsit", "in"),
+        ("{item: x, in: [1, 2], on", "{varable: x, in: [1, 2], on", "varable", "item"),
+    ],
+)
+def test_a_misspelt_word_for_a_part_of_sugar_is_one_finding(
+    field: str, wrong: str, misspelt: str, meant: str
+) -> None:
+    right = RETRIES.replace("nothin]", "nothing]").replace("exhuasted", "exhausted")
+    right = right.replace("fuond", "found")
+    text = right.replace(field, wrong)
+    report = analysed({"main.yml": text, "templates/Find.yml": FIND}).report
+    new = [(item.code, item.span.text, item.help) for item in report if item.code != "SM105"]
+    count = right.count(field)
+    assert new == [("SM003", misspelt, f"did you mean `{meant}`?")] * count
+
+
 def test_a_missing_template_is_one_finding() -> None:
     text = FIELDS.replace("template: Find", "template: Fnid")
     usual = found(FIELDS, Find=FIND + "input_keys: {where: str}\n")
