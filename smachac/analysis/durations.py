@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from heapq import heappop, heappush
 
 from smachac.analysis.control_flow import Linear, children_names
-from smachac.diagnostics.source import assert_never
+from smachac.diagnostics.source import Span, assert_never
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Concurrence, Container, Data, Leaf, Node, is_number
@@ -97,8 +97,21 @@ def _limited_ends(container: Concurrence, ends: Mapping[str, Ends]) -> Ends:
 
 def time_limit(container: Concurrence) -> float:
     """The seconds of a time limit."""
+    timer = _timer(container)
+    return duration(timer) if timer is not None else 0.0
+
+
+def time_limit_span(container: Concurrence) -> Span:
+    """The place of a time limit in the script."""
+    timer = _timer(container)
+    held = variable_of(timer, "duration") if timer is not None else None
+    return held.value.span if held is not None else container.default_span
+
+
+def _timer(container: Concurrence) -> Leaf | None:
+    """The state that waits in a concurrence made of a time limit."""
     timers = (child for child in container.children if child.name != container.name)
-    return next((duration(each) for each in timers if isinstance(each, Leaf)), 0.0)
+    return next((each for each in timers if isinstance(each, Leaf)), None)
 
 
 def _iterator_ends(container: nodes.Iterator, ends: Mapping[str, Ends]) -> Ends:

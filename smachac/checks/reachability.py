@@ -304,12 +304,15 @@ def no_initial(context: Context) -> Iterator[Finding]:
         if isinstance(container, Concurrence):
             continue
         if not container.children:
+            span = container.span
+            if isinstance(container, StateMachine | Sequence) and not container.initial:
+                span = container.initial_span  # that of the empty list
             yield Finding(
-                span=container.span,
+                span=span,
                 message=f"`{container.name}` has no states",
                 arguments=(container.name,),
                 help=f"write `states: [NAME: {{{_first_state(container)}}}]`",
-                related=calls(container, container.span),
+                related=calls(container, span),
                 node=path,
             )
         elif isinstance(container, StateMachine | Sequence):

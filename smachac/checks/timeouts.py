@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from collections.abc import Set as AbstractSet
+from math import ceil, isfinite
 
 from smachac.analysis.context import Context
-from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit
+from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit, time_limit_span
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
 from smachac.checks.messages import calls, own_name
@@ -419,12 +420,15 @@ def _short_limit(path: str, container: Concurrence, known: Mapping[str, Ends]) -
     late = {name: ends[name] for name in outcome_names(inner) if ends.get(name, -1.0) >= limit}
     if not late:
         return
+    span = time_limit_span(container)
+    longest = max(late.values())
     yield Finding(
-        span=container.default_span,
+        span=span,
         message=f"`{container.name}` takes {min(late.values()):g} s or more to end with"
         f" {listed(late)}, but its time limit is {limit:g} s",
-        arguments=(own_name(container, container.default_span), *late),
-        help=f"write a time limit of more than {max(late.values()):g} s",
-        related=calls(container, container.default_span),
+        arguments=(own_name(container, span), *late),
+        help=f"write a time limit of more than {longest:g} s"
+        + (f", such as `timeout: {ceil(longest * 1.5)}s`" if isfinite(longest) else ""),
+        related=calls(container, span),
         node=path,
     )

@@ -123,7 +123,7 @@ def _limited(node: Node, limit: Timeout) -> Concurrence:
         )
         for name in own
     )
-    seconds = Value(data=limit.seconds, span=limit.span)
+    seconds = Value(data=limit.seconds, span=limit.value_span)
     return Concurrence(
         **_around(node),
         type="Concurrence",

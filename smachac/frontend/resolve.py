@@ -285,6 +285,8 @@ class _Resolver:
         if "states" in entries and owner != "state":
             inside = _Environment(around.source, scope, around.calls, around.depth + 1)
             children = self.children(name, entries["states"].value, owner, inside)
+            if not children and fields.get("initial") is None:
+                fields["initial"] = Word("", entries["states"].value.span)
         elif owner != "state":
             children = (_no_states(name, around),)  # SM005 or SM003 was reported
         self.uses.params(params, begin, self.report, around.via)

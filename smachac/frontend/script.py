@@ -41,10 +41,12 @@ TIMER = "SleepState"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Timeout:
-    """A time limit in seconds. `span` is that of the field's name, in all sugar."""
+    """A time limit in seconds. `span` is that of the field's name, in all sugar; `value_span` that
+    of the limit."""
 
     seconds: float
     span: Span
+    value_span: Span
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

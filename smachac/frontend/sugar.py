@@ -173,7 +173,9 @@ def _timeout(entry: Entry, report: Report) -> Timeout:
         message = "the time limit must be longer than zero"
         help = "write it as `20s`, or remove it"
         report.append(wrong_shape(entry.value.span, message, help, arguments=("zero",)))
-    return Timeout(seconds=seconds or UNKNOWN_SECONDS, span=entry.key.span)
+    return Timeout(
+        seconds=seconds or UNKNOWN_SECONDS, span=entry.key.span, value_span=entry.value.span
+    )
 
 
 def _parts(

@@ -283,7 +283,7 @@ states:
         ("states:\n  - FIND", "initial: FIND\nstates:\n  FIND", ["SM004 FIND"]),
         ("states:", "initial: MOVE\nstates:\n  - MOVE", ["SM004 MOVE"]),
         ("states:", "initial: MOVE\nstates:", ["SM205 MOVE"]),
-        (FLAT.partition("states:")[2], " []\n", ["SM205 sm"]),
+        (FLAT.partition("states:")[2], " []\n", ["SM205 []"]),
         (FLAT.partition("states:")[2], "\n", ["SM004 "]),
         (FLAT.partition("states:")[2], " {}\n", ["SM004 {}"]),
         (FLAT.partition("states:")[2], " FIND\n", ["SM004 FIND"]),

@@ -161,7 +161,25 @@ states:
 
 FULL = BOTH.replace("[ready, half, failed]", "[ready, failed]").replace("half: failed, ", "")
 
+SHORT = """name: m
+template: Base
+outcomes: [done]
+states:
+  - WAIT:
+      template: SleepState
+      time: 10
+      timeout: 5s
+      transitions: {succeeded: done, preempted: done, timeout: done}
+"""
+
 CASES = [
+    (
+        "SM212",
+        SHORT,
+        "write a time limit of more than 10 s, such as `timeout: 15s`",
+        "timeout: 5s",
+        "timeout: 15s",
+    ),
     (
         "SM304",
         ANGLE.replace("angle: float", "angle: {type: float}"),
@@ -257,6 +275,21 @@ def test_a_help_followed_literally_removes_the_finding(
     assert [item.help for item in found if (item.help or "").startswith(help)] != []
     left = _report(tmp_path, script.replace(old, new))
     assert [item for item in left if item.severity is not Severity.INFO] == []
+
+
+@pytest.mark.parametrize(
+    ("code", "script", "marked"),
+    [
+        ("SM205", EMPTY, ["[]"]),
+        ("SM205", EMPTY.replace("states: []", "states: []\ninitial: GO"), ["m"]),
+        ("SM212", SHORT, ["5s"]),
+    ],
+)
+def test_the_smallest_wrong_text_is_marked(
+    tmp_path: Path, code: str, script: str, marked: list[str]
+) -> None:
+    found = [item.span.text for item in _report(tmp_path, script) if item.code == code]
+    assert found == marked
 
 
 def test_a_rule_is_never_added_for_an_outcome_that_has_one(tmp_path: Path) -> None:
