@@ -221,12 +221,12 @@ def stale_code(
         };
         }
     """
-    old = Related(span=number.span, message="the version of the class")
+    used = Related(span=span, message=f"this state is of the type `{state_type}`")
     return Finding(
-        span=span,
+        span=number.span,
         message=f"the class `{name}` was written for another version of `{state_type}.yml`",
         arguments=(state_type, name),
-        related=(old, *_places(differences)),
+        related=(*_places(differences), used),
         help=f"adapt the class to the interface, then set `smachac_interface` to {number.text}",
     )
 
