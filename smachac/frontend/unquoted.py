@@ -104,7 +104,16 @@ def check_unquoted(tree: Tree, shape: str, report: Report) -> None:
         return
     if isinstance(tree, Scalar) and isinstance(tree.value, str) and fits(tree.value):
         return
+    if shape == "function" and isinstance(tree, Scalar) and _reads_userdata(str(tree.value)):
+        return  # SM316
     report.append(wrong_shape(tree.span, f"this must be {what}", f"write it as in {example}"))
+
+
+def _reads_userdata(text: str) -> bool:
+    """Whether a text is an expression with a usual name of userdata, such as `ud.n > 0`."""
+    tree = python_tree(text.strip().strip("`"))
+    names = (each.id for each in ast.walk(tree) if isinstance(each, ast.Name)) if tree else ()
+    return any(name in ("ud", "userdata") for name in names)
 
 
 def check_name(name: str, span: Span, report: Report) -> None:

@@ -224,6 +224,33 @@ def test_another_word_for_template_with_an_unknown_type_is_one_finding() -> None
     assert all(item.code not in ("SM004", "SM013") for item in report)
 
 
+CONDITION = """\
+name: sm
+template: Base
+outcomes: [done, failed, preempted]
+userdata: {n: 1}
+states:
+  - WAIT:
+      template: ConditionState
+      cond_cb: CODE
+      input_keys: [n]
+      transitions: {'true': done, 'false': failed, preempted: preempted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [
+        ("ud.n > 0", ["SM316 ud"]),
+        ("'userdata.n > 0'", ["SM316 userdata"]),
+        ("'lambda ud: ud.n > 0'", []),
+        ("1 > 0; 2", ["SM004 1 > 0; 2"]),
+    ],
+)
+def test_a_condition_that_is_no_function_is_one_finding(code: str, expected: list[str]) -> None:
+    assert found(CONDITION.replace("CODE", code)) == expected
+
+
 SCRIPTS = """\
 name: sm
 template: Base
