@@ -462,6 +462,9 @@ def lost_output(context: Context) -> Iterator[Finding]:
                 *other_place(lost.reader.span, lost.reader.words),
                 *calls(keeper, keeper.span),
             ),
+            effect=f"`{lost.reader.node.name}` stops when it reads the key"
+            if lost.is_missing
+            else f"`{lost.reader.node.name}` works with a value that was set before",
             severity=Severity.ERROR if lost.is_missing else None,
             node=lost.keeper.path,
             edits=with_output(keeper, lost.own) if lost.is_missing else (),
