@@ -5,6 +5,7 @@ A reader reports each part that does not have the shape (SM004, SM002) and retur
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 from smachac.diagnostics.diagnostic import Edit, Report
@@ -82,7 +83,7 @@ def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> No
 def _mapping_help(tree: Seq, value: str) -> str | None:
     """The help for a list in place of a mapping: the mapping of its mappings, or of its names."""
     entries = _entries_meant(tree)
-    pairs = []
+    pairs: list[str] = []
     for entry in entries:
         text = value if is_known_wrong(entry.value) else entry.value.span.text
         if isinstance(entry.value, Map) and not text.startswith("{"):
@@ -112,6 +113,37 @@ def _entries_meant(tree: Seq) -> tuple[Entry, ...]:
             entries += () if is_pair else item.entries
         elif isinstance(item, Scalar) and item.plain and str(item.value).isidentifier():
             entries.append(Entry(item, known_wrong(item.span)))
+        else:
+            entries += _arrows(item)
+    return tuple(entries)
+
+
+_ARROW = re.compile(r"\s*(\w+)\s*(?:->|=>|\u2192)\s*(\w+)\s*")
+"""A transition written as in a drawing: `held -> LIFT`."""
+
+
+def _arrows(tree: Tree) -> tuple[Entry, ...]:
+    """The entries meant by a plain text such as `held -> LIFT, slipped -> aborted`; none if a part
+    of it has another form."""
+    if not isinstance(tree, Scalar) or not tree.plain or tree.span.text != tree.value:
+        return ()
+    entries, start = [], tree.start
+    for part in tree.span.text.split(","):
+        found = _ARROW.fullmatch(part)
+        if found is None:
+            return ()
+        key, value = (
+            Scalar(
+                found[group],
+                True,
+                tree.source,
+                start + found.start(group),
+                start + found.end(group),
+            )
+            for group in (1, 2)
+        )
+        entries.append(Entry(key, value))
+        start += len(part) + 1
     return tuple(entries)
 
 
@@ -232,8 +264,12 @@ def as_map(tree: Tree, report: Report, value: str = "...") -> tuple[Entry, ...]:
             help = _mapping_help(tree, value)
         if isinstance(tree, Scalar) and tree.plain and JOINED.fullmatch(str(tree.value)):
             help = spaced(str(tree.value))
+        arrows = _arrows(tree)
+        if arrows:
+            shown = ", ".join(f"{each.key.span.text}: {each.value.span.text}" for each in arrows)
+            help = f"write a mapping: `{{{shown}}}`"
         wrong(tree, "map", report, help)
-        return _entries_meant(tree) if isinstance(tree, Seq) else ()
+        return _entries_meant(tree) if isinstance(tree, Seq) else arrows
     return tuple([entry for entry in tree.entries if _names(entry.key, report)])
 
 

@@ -224,6 +224,38 @@ def test_another_word_for_template_with_an_unknown_type_is_one_finding() -> None
     assert all(item.code not in ("SM004", "SM013") for item in report)
 
 
+ARROWS = """\
+name: sm
+template: Base
+outcomes: [done, failed]
+states:
+  - LIFT:
+      template: ScriptedState
+      outcomes: [held, slipped]
+      transitions: TRANSITIONS
+  - PLACE:
+      template: ScriptedState
+      outcomes: [placed]
+      transitions: {placed: done}
+"""
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        "[held -> PLACE, slipped -> failed]",
+        "held -> PLACE, slipped -> failed",
+        "\n        - held -> PLACE\n        - slipped => failed",
+    ],
+)
+def test_transitions_written_as_arrows_are_one_finding(written: str) -> None:
+    text = ARROWS.replace("TRANSITIONS", written)
+    (item,) = analysed({"main.yml": text}).report
+    help = "`{held: PLACE, slipped: failed}`"
+    assert (item.code, (item.help or "")[-len(help) :]) == ("SM004", help)
+    assert found(ARROWS.replace("TRANSITIONS", help.strip("`"))) == []
+
+
 CONDITION = """\
 name: sm
 template: Base
