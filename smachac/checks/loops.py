@@ -138,8 +138,9 @@ def _trapped(
 ) -> Finding:
     what = f"no outcome of `{container.name}` can be reached from {listed(region)}"
     help = f"lead an outcome of `{child.name}` to an outcome of `{container.name}`"
-    if container.outcomes:
-        help += f", such as `{container.outcomes[0].name}`"
+    own = outcome_names(child)
+    if container.outcomes and own:
+        help += f", as in `{own[-1]}: {container.outcomes[0].name}`"
     once = [step.node for step in witness].count(f"{path}/{child.name}") == 1
     if once and isinstance(child, Leaf):
         what = f"`{child.name}` has no outcomes, so `{container.name}` never ends after entering it"

@@ -96,11 +96,21 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
                 span=span,
                 message=f"{source} `{name}`, which is not an outcome of `{container.name}`",
                 arguments=(own_name(container, span), name),
-                help=did_you_mean(meant if meant in declared else None)
-                or f"add `{name}` to the outcomes of `{container.name}`",
+                help=did_you_mean(meant if meant in declared else None) or _added(container, name),
                 related=calls(container, span),
                 node=path,
             )
+
+
+def _added(container: Container, name: str) -> str:
+    """The help that adds an outcome to a container, with a transition where it has others."""
+    help = f"add `{name}` to the outcomes of `{container.name}`"
+    target = next((step.target for step in reversed(container.transitions) if step.target), "")
+    return (
+        f"{help}, and `{name}: {target}` to its transitions"
+        if target and name != PREEMPTED
+        else help
+    )
 
 
 def inverted_rules(container: Concurrence) -> tuple[OutcomeRule, ...]:
@@ -159,12 +169,13 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
             continue
         when = f"when `{child}` ends with `{outcome}`" if child else "after the last item"
         others = f", write `loop_outcomes: [{outcome}]` to continue on it" if child else ""
+        mapped = next(reversed(outcome_names(container)), "")
         yield Finding(
             span=container.span,
             message=f"`{container.name}` ends with `{result}` {when}, but has no such outcome",
             arguments=(container.name, result, child, outcome),
-            help=f"add `{result}` to the outcomes of `{container.name}`{others}, or map it with"
-            f" `final_outcome_map: {{{outcome}: ...}}`",
+            help=f"{_added(container, result)}{others}"
+            + (f", or map it with `final_outcome_map: {{{outcome}: {mapped}}}`" if mapped else ""),
             related=calls(container, container.span),
             node=path,
         )

@@ -267,6 +267,50 @@ CASES = [
 replaces with another one."""
 
 
+PARTLY = FULL.replace("failed: {LEFT: slipped}", "partly: {LEFT: slipped}").replace(
+    "      outcome_map", "      default_outcome: failed\n      outcome_map"
+)
+
+ENDLESS = """name: m
+template: Base
+outcomes: [done]
+states:
+  - PICK: {template: ScriptedState, outcomes: [ok, far], transitions: {ok: done, far: LOOK}}
+  - LOOK: {template: ScriptedState, outcomes: [seen, lost], transitions: {seen: LOOK, lost: LOOK}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "script", "help", "changes"),
+    [
+        (
+            "SM103",
+            PARTLY,
+            "add `partly` to the outcomes of `BOTH`, and `partly: failed` to its transitions",
+            {"[ready, failed]\n      d": "[ready, failed, partly]\n      d",
+             "{ready: ready, failed": "{ready: ready, partly: failed, failed"},
+        ),
+        (
+            "SM202",
+            ENDLESS,
+            "lead an outcome of `LOOK` to an outcome of `m`, as in `lost: done`, or write",
+            {"lost: LOOK": "lost: done"},
+        ),
+    ],
+)  # fmt: skip
+def test_a_help_in_two_places_removes_the_finding(
+    tmp_path: Path, code: str, script: str, help: str, changes: dict[str, str]
+) -> None:
+    found = [item.help or "" for item in _report(tmp_path, script) if item.code == code]
+    assert [each for each in found if each.startswith(help)] != []
+    for old, new in changes.items():
+        assert old in script
+        script = script.replace(old, new)
+    left = _report(tmp_path, script)
+    assert [f"{item.code} {item.finding.message}" for item in left
+            if item.severity is not Severity.INFO or item.code == code] == []  # fmt: skip
+
+
 @pytest.mark.parametrize(("code", "script", "help", "old", "new"), CASES)
 def test_a_help_followed_literally_removes_the_finding(
     tmp_path: Path, code: str, script: str, help: str, old: str, new: str
