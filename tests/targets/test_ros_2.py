@@ -346,11 +346,11 @@ def test_a_machine_as_an_action(tmp_path: Path) -> None:
         ("{reliability: best_effort, durability: transient_local, depth: 1}", ""),
         ("null", ""),
         ("sensors", "no preset `sensors`"),
-        ("0", "a positive number"),
+        ("0", "a positive whole number"),
         ("{reliability: maybe}", "`reliability` of `qos` must be reliable or best_effort"),
         ("{dept: 5}", "no policy `dept`"),
-        ("{depth: [1]}", "a positive number"),
-        ("[sensor_data]", "a positive number"),
+        ("{depth: [1]}", "a positive whole number"),
+        ("[sensor_data]", "a positive whole number"),
     ],
 )
 def test_the_quality_of_service_is_checked(qos: str, fault: str, tmp_path: Path) -> None:
