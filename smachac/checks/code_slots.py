@@ -114,7 +114,7 @@ def not_a_function(context: Context) -> Iterator[Finding]:
         what = "is not a function"
         if read is not None:
             what = f"reads `{read.id}` outside a function; it has no value before the machine runs"
-        function = f"lambda {name}: {_with_keys(slot, tree, name, node)}"
+        function = f"lambda {_arguments(slot, name)}: {_with_keys(slot, tree, name, node)}"
         yield Finding(
             span=node_place(slot.code, read) if read is not None else slot.code.span,
             message=f"{_owner(slot, node)} {what}",
@@ -124,6 +124,12 @@ def not_a_function(context: Context) -> Iterator[Finding]:
             node=path,
             edits=_as_function(slot, name) if read is not None else (),
         )
+
+
+def _arguments(slot: CodeSlot, userdata: str) -> str:
+    """The arguments of the function of a slot, in which the userdata has the name of the code."""
+    names = slot.arguments or ("userdata",)
+    return ", ".join(userdata if each == "userdata" else each for each in names)
 
 
 def _with_keys(slot: CodeSlot, tree: ast.expr, name: str, node: Node) -> str:
@@ -173,7 +179,7 @@ def _backticks(slot: CodeSlot) -> tuple[Edit, ...]:
 def _as_function(slot: CodeSlot, name: str) -> tuple[Edit, ...]:
     """The edit that makes a lambda of code; a plain scalar gets quotes."""
     text, span = slot.code.text, slot.code.span
-    head = f"lambda {name}: "
+    head = f"lambda {_arguments(slot, name)}: "
     key = _as_key(slot)
     if key is not None and span.text == text:
         return (Edit(span=span, text=text.partition(".")[2]),)
