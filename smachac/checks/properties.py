@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -90,6 +91,7 @@ def property_fails(context: Context) -> Iterator[Finding]:
     from smachac.analysis.properties import witness
     from smachac.interpreter.counterexample import replay
 
+    script = shlex.quote(context.machine.root.span.source.name)
     for number, each in enumerate(context.judgements, 1):
         example = each.counterexample
         if example is None:
@@ -100,7 +102,7 @@ def property_fails(context: Context) -> Iterator[Finding]:
             span=each.property.span,
             message=f"{_named(each.property)} does not hold: {_violation(form, example)}",
             arguments=(each.property.name, in_words(form)),
-            help=f"{_cure(form, example)}\n{_replayed(shown, number)}",
+            help=f"{_cure(form, example)}\n{_replayed(shown, number, script)}",
             path=witness(example),
             node=example.node or context.machine.root.name,
         )
@@ -163,14 +165,15 @@ def _cure(form: Form, example: Counterexample) -> str:
     return assert_never(form)
 
 
-def _replayed(shown: Replay, number: int) -> str:
+def _replayed(shown: Replay, number: int, script: str) -> str:
     """How the counterexample of the property with a number is replayed."""
     turns = f" --schedule {','.join(shown.schedule)}" if shown.schedule else ""
     text = shown.flow
     if len(text) + len(turns) > LONGEST_SCENARIO:
         option = f"--properties --scenario {number}"
-        return f"to replay this path: `smachac explain SCRIPT {option}` prints it as a scenario"
-    return f"to replay this path: `smachac run SCRIPT --mock FILE{turns}`, with {text} in FILE"
+        return f"to replay this path: `smachac explain {script} {option}` prints it as a scenario"
+    run = f"smachac run {script} --mock path.yml{turns}"
+    return f"to replay this path: write `{text}` into `path.yml`, then `{run}`"
 
 
 @rule(

@@ -121,6 +121,15 @@ def _item_help(container: Container, reader: Node, key: str) -> str | None:
     return None
 
 
+def _item_name_help(loop: nodes.Iterator, key: str) -> str | None:
+    """The help for a state of `for_each` that does not read its item, and a key in place of it."""
+    names = {name.name for child in loop.children for name in child.inputs}
+    if loop.item_key in names or key not in names:
+        return None
+    item = loop.item_key
+    return f"write `item: {key}` in `for_each`, or read `{item}`, as the loop calls its item"
+
+
 class _Guesses:
     """The guessers for the keys of containers, by the path of the container."""
 
@@ -162,6 +171,8 @@ def _unset(
             # The item of an iterator is no list of items, although `item` resembles `items`.
             guess = guesser(sorted(_keys_of(scope) - {node.item_key}))(missing.key)
         help = did_you_mean(guess) or _item_help(scope.container, node, missing.key) or help
+        if isinstance(node, nodes.Iterator) and node.sugar == "for_each":
+            help = _item_name_help(node, missing.key) or help
         if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
             help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
     return Finding(

@@ -10,6 +10,7 @@ from smachac.checks.workspace import unreachable
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.driver import analyse
 from smachac.frontend.files import disk_library, read_source
+from tests.trust.project_text import analysed
 
 LOOP = """name: m
 template: Base
@@ -349,3 +350,22 @@ def _report(folder: Path, script: str) -> Report:
     source = read_source(path, report)
     assert source is not None
     return analyse(source, library, report, unreachable).report
+
+
+def test_the_item_of_a_loop_has_another_name_than_its_state_reads() -> None:
+    script = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {poses: [1, 2]}
+states:
+  - VISIT:
+      template: PrintUserdataState
+      input_keys: [pose]
+      for_each: {item: point, in: poses}
+      transitions: {succeeded: done, preempted: done}
+"""
+    found = [each for each in analysed({"main.yml": script}).report if each.code == "SM301"]
+    assert [each.help for each in found] == [
+        "write `item: pose` in `for_each`, or read `point`, as the loop calls its item"
+    ]

@@ -104,12 +104,12 @@ def test_the_help_of_a_finding_replays_it(
     assert len(findings(tmp_path, given, BRANCHES)) == 1
     script = tmp_path / "main.yml"
     (item,) = [each for each in smachac.check(script) if each.code == "SM701"]
-    command = re.search(r"--schedule (\S+)`, with (\{.*\}) in FILE", item.help or "")
+    command = re.search(r"write `(\{.*\})` into .* --schedule (\S+)`$", item.help or "")
     assert command is not None
     scenario = tmp_path / "fails.yml"
-    scenario.write_text(command[2], "utf-8")
+    scenario.write_text(command[1], "utf-8")
     trace = tmp_path / "trace.jsonl"
-    options = ["--mock", str(scenario), "--schedule", command[1], "--trace", str(trace)]
+    options = ["--mock", str(scenario), "--schedule", command[2], "--trace", str(trace)]
     assert main(["run", str(script), *options]) == 0
     events = [json.loads(line) for line in trace.read_text("utf-8").splitlines()]
     ends = [each["path"] for each in events if each["event"] == "exit"]
@@ -117,7 +117,7 @@ def test_the_help_of_a_finding_replays_it(
     capsys.readouterr()
     assert main(["explain", str(script), "--properties", "--scenario", "1"]) == 0
     printed = capsys.readouterr().out
-    assert f"--schedule {command[1]}" in printed.splitlines()[0]
+    assert f"--schedule {command[2]}" in printed.splitlines()[0]
     scenario.write_text(printed, "utf-8")
     assert main(["run", str(script), *options]) == 0
 
