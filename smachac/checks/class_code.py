@@ -178,6 +178,9 @@ def _or_declare(word: Word, leaf: Leaf) -> str:
 
 def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
     """The outcome that was probably meant: a failure for the name of a failure."""
+    near = guess.sure(word)
+    if near is not None:
+        return near
     near = guess(word)
     if not is_failure(word):
         return near if near is None or not fails(leaf, near) else None

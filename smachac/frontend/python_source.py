@@ -14,6 +14,9 @@ from dataclasses import dataclass
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.jinja_tags import replaced, tags
 
+ASSIGNED = "Maybe you meant '==' instead of '='?"
+"""The end of the message of Python for `=` in a comparison."""
+
 LONGEST = 200_000
 """The longest text that is read, in characters."""
 
@@ -108,6 +111,9 @@ def syntax_error(source: Source) -> Word | None:
         end = min(column + 1, length)
         if error.end_lineno == line and error.end_offset is not None:
             end = max(end, min(error.end_offset - 1, length))
+        sign = source.line(line).find("=", end)
+        if error.msg.endswith(ASSIGNED) and sign >= 0:
+            column, end = sign, sign + 1
         start = source.line_starts[line - 1]
         span = Span(source, start + column, min(start + end, len(text)))
         return Word(error.msg, span)

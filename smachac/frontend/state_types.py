@@ -153,6 +153,7 @@ def _read_interface(
         listed_outputs=_listed_roles(sections["output_keys"], report),
         code=code,
         classes=_classes(sections["code"], report),
+        class_spans=_class_spans(sections["code"]),
         class_facts=None
         if built_in or unclear
         else _class_facts(
@@ -367,6 +368,16 @@ def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:
         else:
             found[language] = given
     return found
+
+
+def _class_spans(section: Section) -> dict[tuple[str, str], Span]:
+    """The places of the texts of `_classes`, by language and field."""
+    return {
+        (language, str(entry.key.value)): entry.value.span
+        for language, value in _declared(section)
+        if isinstance(value, Map)
+        for entry in value.entries
+    }
 
 
 def _kind(tree: Tree | None, report: Report) -> StateKind:

@@ -423,7 +423,8 @@ class StateType:
     `given` names the parts that a script adds to the interface: any of "variables", "input_keys",
     "output_keys", "outcomes" (`"*": {}` in the interface). `code` maps a language to the file of a
     template or to a reference to code; `classes` maps a language to a class: `header`, `class`,
-    `with`. `class_facts` are those of its Python class. `open`: there is no interface.
+    `with`; `class_spans` are the places of these texts, by language and field. `class_facts` are
+    those of its Python class. `open`: there is no interface.
     `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
     A state has an outcome of `optional` only if its container or one of its transitions names it.
     `used` are the words in the template of a type that accepts any variable; None: not known.
@@ -451,6 +452,9 @@ class StateType:
     blocking: bool = False
     code: Mapping[str, str] = field(default_factory=dict)
     classes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    class_spans: Mapping[tuple[str, str], Span] = field(
+        default_factory=dict, compare=False, repr=False
+    )
     class_facts: ClassFacts | None = None
     open: bool = False
     prints_itself: bool = False

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
 from smachac.diagnostics.source import Span, Word
+from smachac.frontend.python_source import ASSIGNED
 from smachac.ir.class_facts import ClassFault
 from smachac.targets.class_faults import about_class, class_effect
 
@@ -431,7 +432,8 @@ def code_not_found(
     interface = f"in the `code` of `{state_type}.yml`"
     file = "header" if target == "cpp" else "module"
     if fault.kind == "syntax":
-        message = f"the code of `{state_type}` is not valid Python: {word.text}"
+        said = word.text.partition(". Maybe you meant")[0]
+        message = f"the code of `{state_type}` is not valid Python: {said}"
         help = _syntax_help(word.text)
     elif fault.kind == "no module":
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
@@ -453,6 +455,8 @@ def _syntax_help(message: str) -> str:
     """The help for a syntax error of Python, by the message of its parser."""
     if message == "expected ':'":
         return "write `:` at the mark"
+    if message.endswith(ASSIGNED):
+        return "write `==` to compare"
     if message.endswith("was never closed"):
         closing = {"'('": ")", "'['": "]", "'{'": "}"}.get(message.split(" ")[0])
         return f"close the bracket: write `{closing}`" if closing else "close the bracket"

@@ -7,7 +7,7 @@ class. Parts that cannot be read are not checked.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -69,14 +69,16 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
     only a build for the language of the class fails.
     """
     targets: dict[str, Language | None] = {}
+    found: list[Diagnostic] = []
     for leaf, type_ in own_types(machine, library):
         for language in languages(type_):
             if language not in targets:
                 targets[language] = load(language)
             target = targets[language]
-            found = type_faults(leaf, type_, target, library, checked=True) if target else ()
-            for item in found:
-                yield replace(item, severity=Severity.WARNING)
+            if target is not None:
+                found.extend(type_faults(leaf, type_, target, library, checked=True))
+    for item in _once(found):
+        yield replace(item, severity=Severity.WARNING)
     for item in argument_faults(machine):
         yield replace(item, severity=Severity.WARNING)
 
@@ -84,11 +86,24 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
 def target_faults(machine: Machine, library: Library, target: Language) -> Iterator[Diagnostic]:
     """The same differences for the language of one target, as errors; not those of a type without
     an interface, whose template may belong to another project."""
+    found: list[Diagnostic] = []
     for leaf, type_ in own_types(machine, library):
         if target.name in languages(type_) and not type_.open:
-            yield from type_faults(leaf, type_, target, library)
+            found.extend(type_faults(leaf, type_, target, library))
+    yield from _once(found)
     if target.name == "python":
         yield from argument_faults(machine)
+
+
+def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """The findings, with one for a syntax error in a module that has classes of several types."""
+    seen: set[Span] = set()
+    for item in found:
+        if item.finding.arguments[2:3] == ("syntax",):
+            if item.span in seen:
+                continue
+            seen.add(item.span)
+        yield item
 
 
 def argument_faults(machine: Machine) -> Iterator[Diagnostic]:

@@ -103,7 +103,7 @@ HARMFUL = {
     "a path upwards": ("{% include '../secret.txt' %}", "there is no template `../secret.txt`"),
     "a path from the root": ("{% include '/etc/hostname' %}", "there is no template `/etc/hostname`"),
     "an import from outside": ("{% from '../secret.txt' import x %}", "there is no template `../secret.txt`"),
-    "chance": ("{{ [1, 2] | random }}", "No filter named 'random'"),
+    "chance": ("{{ [1, 2] | random }}", "there is no filter `random`"),
     "a text of nothing": ("{{ lipsum(n=10**6) }}", "the template uses `lipsum`, which is not defined"),
     "a missing variable": ("{{ nowhere }}", "the template uses `nowhere`, which is not defined"),
     "a part of what is missing": ("{{ nowhere.x }}", "the template uses `nowhere`, which is not defined"),

@@ -59,13 +59,15 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     if code is None:
         return None
     if source is None:
-        return _absent(code, absent_header(code.header, library))
+        header = Word(code.header, type_.class_spans.get(("cpp", "header"), NOWHERE))
+        return _absent(code, absent_header(header, library))
     if len(source.text) > LONGEST:
         return None
     whole = Part(source=source, text=without_literals(source.text))
     name = code.name.rpartition("::")[2]
     if not re.search(rf"\b{re.escape(name)}\b|^\s*#\s*define\b", whole.text, re.M):
-        return _absent(code, _absent_class(name, whole))
+        word = Word(name, type_.class_spans.get(("cpp", "class"), NOWHERE))
+        return _absent(code, _absent_class(word, whole))
     head = whole.only(_CLASS.format(re.escape(name)))
     body = whole.inside(head)
     if head is None or body is None or "#" in body.text:
@@ -97,29 +99,29 @@ def _absent(code: ClassCode, fault: ClassFault | None) -> Declared | None:
     return Declared(name=name, span=NOWHERE, faults=(fault,)) if fault is not None else None
 
 
-def absent_header(header: str, library: Library) -> ClassFault | None:
+def absent_header(header: Word, library: Library) -> ClassFault | None:
     """The fault that a header is in no searched folder; None where it can be an installed one.
 
     It is certain if its folder has other headers; without a folder, if one of them has nearly the
     same name.
     """
-    folder, _, file = header.rpartition("/")
+    folder, _, file = header.text.rpartition("/")
     others = [each for each in library.code_names(folder) if each.endswith((".hpp", ".h", ".hh"))]
     near = guesser(others)(file)
     if not others or (not folder and near is None):
         return None
     meant = f"{folder}/{near}" if folder and near is not None else near
-    return ClassFault(kind="no module", name=Word(header, NOWHERE), near=meant)
+    return ClassFault(kind="no module", name=header, near=meant)
 
 
-def _absent_class(name: str, whole: Part) -> ClassFault | None:
+def _absent_class(name: Word, whole: Part) -> ClassFault | None:
     """The fault that a header has no class of a name; None if it includes other headers of the
     user, which can define it."""
     included = re.findall(r'^\s*#\s*include\s*"([^"]*)"', whole.source.text, re.M)
     if any(not each.startswith("smachac/") for each in included):
         return None
     classes = re.findall(r"\b(?:class|struct)\s+(\w+)", whole.text)
-    return ClassFault(kind="no class", name=Word(name, NOWHERE), near=guesser(classes)(name))
+    return ClassFault(kind="no class", name=name, near=guesser(classes)(name.text))
 
 
 def _faults(

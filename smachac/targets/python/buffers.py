@@ -155,7 +155,7 @@ class ModuleParts:
             line = lines[min(number, len(lines)) - 1]
             span = self._place(page, block, line) or node.span
             message = f"the block `{block}` does not print valid Python: {words}"
-            help = f"correct the printed line `{line.strip()}`"
+            help = printed_line_help(words, line.strip())
             self.fault(BlockError(template_error(span, message, help, (block, line.strip()))), node)
         return text
 
@@ -176,6 +176,13 @@ class ModuleParts:
             if found is not None:
                 return found
         return self.blocks.block_span(page.file, block)
+
+
+def printed_line_help(words: str, line: str) -> str:
+    """The help for a printed line that is no Python, by the message of Python."""
+    if words == "expected ':'" and ":" not in line:
+        return f"write `{line}:`"
+    return f"correct the printed line `{line}`"
 
 
 def walk_pages(page: Page) -> Iterator[Page]:

@@ -16,7 +16,7 @@ from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
 from smachac.targets.python import structure
-from smachac.targets.python.buffers import PREPENDED, ModuleParts
+from smachac.targets.python.buffers import PREPENDED, ModuleParts, printed_line_help
 from smachac.targets.python.formatter import WIDTH, docstring_lines
 from smachac.targets.python.functions import functions, one_function, stand_alone
 from smachac.targets.python.imports import (
@@ -370,7 +370,7 @@ def _checked(
         line = lines[number - 1]
         place = module.blocks.line_span(template, line) or machine.root.span
         message = f"the template of the base `{machine.base}` does not print valid Python: {words}"
-        help = f"correct the printed line `{line.strip()}`"
+        help = printed_line_help(words, line.strip())
         names = (machine.base, line.strip())
         raise BlockError(template_error(place, message, help, names)) from tree
     text = with_fallback(text, tree)

@@ -7,7 +7,7 @@ may extend and include one another.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from smachac.diagnostics.diagnostic import Diagnostic
@@ -265,6 +265,8 @@ _HAS_TOP_LEVEL = re.compile(r"\{%[-+]?\s*(?:set|import|from|do|macro|include)\b"
 
 
 _INNERMOST = re.compile(r"innermost block that needs to be closed is '(\w+)'")
+_UNKNOWN = re.compile(r"No (filter|test) named '(\w+)'")
+_UNEXPECTED = re.compile(r"unexpected '(.{1,20})'$")
 _UNCLOSED = re.compile(r"^Unexpected end of template\..* needs to be closed is '(\w+)'")
 
 
@@ -314,10 +316,11 @@ class _ErrorConverter:
         if name is not None:
             near = guesser(sorted(self.names() if self.names else ())).sure(name)
             help = f"did you mean `{near}`?" if near is not None else help
-            found = [*re.finditer(rf"\b{re.escape(name)}\b", span.text)]
-            if len(found) == 1:
-                start = span.start + found[0].start()
-                span = Span(span.source, start, start + len(name))
+            span = _marked(span, rf"\b{re.escape(name)}\b")
+        found = _at_a_word(error, self.blocks._environment.filters)
+        if found is not None:
+            message, help, pattern = found
+            span = _marked(span, pattern)
         raise BlockError(template_error(span, message, help, names)) from error
 
     def _place(self, error: Exception, trace: Any) -> Span:
@@ -339,6 +342,29 @@ class _ErrorConverter:
         starts = source.line_starts
         start = starts[min(line, len(starts)) - 1]
         return Span(source, start, start + len(source.line(line)))
+
+
+def _at_a_word(error: Exception, filters: Iterable[str]) -> tuple[str, str | None, str] | None:
+    """Message, help and the pattern of the wrong word for an error at one word of a template."""
+    text = getattr(error, "message", None) or ""
+    if (unknown := _UNKNOWN.match(text)) is not None:
+        kind, name = unknown.groups()
+        near = guesser(sorted(filters) if kind == "filter" else ())(name)
+        help = f"did you mean `{near}`?" if near is not None else None
+        return f"there is no {kind} `{name}`", help, rf"\b{name}\b"
+    if (token := _UNEXPECTED.match(text)) is not None:
+        sign = re.escape(token[1])
+        help = "write `}}` at the end of the expression" if token[1] == "}" else None
+        return f"`{token[1]}` is not expected here", help, f"(?<!{sign}){sign}(?!{sign})"
+    return None
+
+
+def _marked(line: Span, pattern: str) -> Span:
+    """The only place of a pattern in a line; the line if it has none or several."""
+    found = [*re.finditer(pattern, line.text)]
+    if len(found) != 1:
+        return line
+    return Span(line.source, line.start + found[0].start(), line.start + found[0].end())
 
 
 def _message_and_help(error: Exception) -> tuple[str, str | None]:

@@ -1,0 +1,125 @@
+"""The places and helps of findings about code in modules, headers and templates."""
+
+from __future__ import annotations
+
+import pytest
+
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.loader import memory_library
+from tests.trust.project_text import BUILT_IN
+
+MAIN = """\
+name: sm
+template: Base
+outcomes: [done, failed]
+states:
+  - MOVE: {template: Move, transitions: {moved: GRASP, blocked: failed}}
+  - GRASP: {template: Grasp, transitions: {held: done}}
+"""
+FILES = {
+    "templates/Move.yml": "outcomes: {moved: {}, blocked: {failure: true}}\n"
+    'code: {python: "cell.arm:Move"}\n',
+    "templates/Grasp.yml": "outcomes: {held: {}}\n"
+    'code: {python: "cell.arm:Grasp", cpp: {header: cell/grasp.hpp, class: "cell::Grasp"}}\n',
+    "cell/arm.py": """\
+import smach
+
+
+class Move(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["moved", "blocked"])
+
+    def execute(self, userdata):
+        if self.drive() == 1:
+            return "moved"
+        return "blocked"
+
+    def drive(self):
+        return 1
+
+
+class Grasp(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["held"])
+
+    def execute(self, userdata):
+        return "held"
+""",
+    "cell/grasp.hpp": """\
+namespace cell {
+class Grasp {
+ public:
+  enum class Outcome { held };
+  Outcome execute() { return Outcome::held; }
+};
+}  // namespace cell
+""",
+}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "expected"),
+    [
+        (
+            "cell/arm.py", 'return "blocked"', 'return "bloked"',
+            ("SM309", '"bloked"', "did you mean `blocked`?"),
+        ),
+        ("cell/arm.py", "drive() == 1", "drive() = 1", ("SM608", "=", "write `==` to compare")),
+        (
+            "templates/Grasp.yml", "cell/grasp.hpp", "cell/grsp.hpp",
+            ("SM608", "cell/grsp.hpp", "did you mean `cell/grasp.hpp`?"),
+        ),
+        (
+            "templates/Grasp.yml", '"cell::Grasp"', '"cell::Grsp"',
+            ("SM608", '"cell::Grsp"', "did you mean `Grasp`?"),
+        ),
+    ],
+)  # fmt: skip
+def test_a_slip_in_code_is_one_finding_at_its_place(
+    file: str, old: str, new: str, expected: tuple[str, str, str]
+) -> None:
+    assert old in FILES[file]
+    files = FILES | {file: FILES[file].replace(old, new, 1)}
+    report = analyse(Source("main.yml", MAIN), memory_library(files, BUILT_IN), []).report
+    found = [(each.code, each.span.text, each.help) for each in report]
+    assert expected in found
+    assert [each for each in found if each[0] == "SM608"] == [expected][expected[0] != "SM608" :]
+
+
+TEMPLATE = """\
+{% block class_defs %}
+class Move(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["moved", "blocked"])
+
+    def execute(self, userdata):
+        if {{ height | round }} < 2:
+            return "moved"
+        return "blocked"
+{% endblock %}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "marked", "help"),
+    [
+        ("round }}", "roud }}", "roud", "did you mean `round`?"),
+        ("round }}", "round }", "}", "write `}}` at the end of the expression"),
+        (
+            "{{ height | round }} < 2:", "1 < 2", "if 1 < 2",
+            "write `if 1 < 2:`",
+        ),
+    ],
+)  # fmt: skip
+def test_a_slip_in_a_template_is_at_its_word(old: str, new: str, marked: str, help: str) -> None:
+    files = {
+        "templates/Move.yml": "outcomes: {moved: {}, blocked: {failure: true}}\n",
+        "templates/Move.tpl.py": TEMPLATE.replace(old, new, 1),
+    }
+    script = MAIN.replace("moved: GRASP", "moved: done").partition("  - GRASP")[0]
+    report = analyse(
+        Source("main.yml", script), memory_library(files, BUILT_IN), [], render=True
+    ).report
+    found = [(each.span.text, each.help) for each in report if each.code == "SM605"]
+    assert found == [(marked, help)]
