@@ -57,9 +57,9 @@ def test_a_correct_class() -> None:
          "`Outcome` of `arm::Grasp` has no `mised` did you mean `missed`?"),
         ({"grasp": CLASS.replace("execute", "run")}, "SM609 arm/grasp.hpp:3:7",
          "the class `arm::Grasp` has no method `execute`"),
-        ({"grasp": CLASS.replace("class Grasp", "class Grip")}, "SM608 main.yml:5:5",
+        ({"grasp": CLASS.replace("class Grasp", "class Grip")}, "SM608 templates/Grasp.yml:4:44",
          "the header that `Grasp` names did you mean `Grip`?"),
-        ({"grisp": CLASS}, "SM608 main.yml:5:5", "did you mean `arm/grisp.hpp`?"),
+        ({"grisp": CLASS}, "SM608 templates/Grasp.yml:4:22", "did you mean `arm/grisp.hpp`?"),
     ],
 )  # fmt: skip
 def test_a_fault(headers: dict[str, str], place: str, words: str) -> None:
