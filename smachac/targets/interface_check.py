@@ -7,7 +7,7 @@ class. Parts that cannot be read are not checked.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -79,7 +79,7 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
                 found.extend(type_faults(leaf, type_, target, library, checked=True))
     for item in _once(found):
         yield replace(item, severity=Severity.WARNING)
-    for item in argument_faults(machine):
+    for item in argument_faults(machine, library):
         yield replace(item, severity=Severity.WARNING)
 
 
@@ -92,7 +92,7 @@ def target_faults(machine: Machine, library: Library, target: Language) -> Itera
             found.extend(type_faults(leaf, type_, target, library))
     yield from _once(found)
     if target.name == "python":
-        yield from argument_faults(machine)
+        yield from argument_faults(machine, library)
 
 
 def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -106,7 +106,7 @@ def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
         yield item
 
 
-def argument_faults(machine: Machine) -> Iterator[Diagnostic]:
+def argument_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
     """The states whose variables do not fit the constructor of their Python class, where the
     interface accepts any variable (`"*": {}`)."""
     for _, leaf in walk(machine.root):
@@ -116,16 +116,19 @@ def argument_faults(machine: Machine) -> Iterator[Diagnostic]:
         type_ = machine.state_types.get(leaf.type)
         if type_ is None or facts.name is None or "variables" not in type_.given:
             continue
-        for fault, related in _argument_faults(leaf, type_, facts.parameters):
+        given = {*type_.given, *(["outcomes"] if type_.optional else ())}
+        first = facts.parameters[0].word.text if facts.parameters else ""
+        given |= {"node"} if library.ros == 2 and first == "node" else set()
+        for fault, related in _argument_faults(leaf, type_, facts.parameters, given):
             yield bad_class(fault, "python", type_.name, facts.name.text, related)
 
 
 def _argument_faults(
-    leaf: Leaf, type_: StateType, parameters: Sequence[Parameter]
+    leaf: Leaf, type_: StateType, parameters: Sequence[Parameter], given: Set[str]
 ) -> Iterator[tuple[ClassFault, tuple[Related, ...]]]:
     known = {each.word.text: each for each in parameters}
     set_ = {one.name: one for one in leaf.variables}
-    passed = {*set_, *type_.variables, *type_.given, *(["outcomes"] if type_.optional else ())}
+    passed = {*set_, *type_.variables, *given}
     guess = guesser([name for name in known if name not in passed])
     meant = set()
     for name in sorted(set_.keys() - known.keys() - type_.variables.keys()):

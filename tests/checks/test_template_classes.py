@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from tests.trust.project_text import analysed
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.loader import Ros, memory_library
+from tests.trust.project_text import BUILT_IN, analysed
 
 TEMPLATE = """\
 {% block class_defs %}
@@ -20,12 +25,18 @@ class Open(smach.State):
 ADDED = '{% block body %}{{ add("Open", 0.1) }}{% endblock %}\n'
 
 
+MAIN = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - OPEN: {template: Open, FIELDS transitions: {done: done}}
+"""
+
+
 def findings(fields: str, **files: str) -> list[tuple[str, str, str]]:
     """Code, marked text and help of each finding about a state with these fields."""
-    main = (
-        "name: sm\ntemplate: Base\noutcomes: [done]\nstates:\n"
-        f"  - OPEN: {{template: Open, {fields} transitions: {{done: done}}}}\n"
-    )
+    main = MAIN.replace("FIELDS", fields)
     texts = {name.replace("_", ".", 1).replace("_", "."): text for name, text in files.items()}
     project = {"main.yml": main} | {f"templates/{name}": text for name, text in texts.items()}
     return [(each.code, each.span.text, each.help or "") for each in analysed(project).report]
@@ -86,6 +97,19 @@ def test_an_argument_that_nothing_passes(variables: str, fields: str, expected: 
     )
     help = "add `width: ...` to the state, or give `width` a default value in `__init__`"
     assert found == ([("SM609", "OPEN", help)] if expected else [])
+
+
+@pytest.mark.parametrize(("ros", "expected"), [(1, ["SM609"]), (2, [])])
+def test_a_program_for_ros_2_passes_its_node(ros: Ros, expected: list[str]) -> None:
+    main = MAIN.replace("FIELDS", "width: 0.1,")
+    module = (
+        TEMPLATE.partition("\n")[2].rpartition("{%")[0].replace("self, width", "self, node, width")
+    )
+    interface = INTERFACE.replace("VARIABLES", '"*": {}').replace("Open.tpl.py", "cell:Open")
+    files = {"templates/Open.yml": interface, "cell.py": f"import smach\n\n\n{module}"}
+    library = replace(memory_library(files, BUILT_IN), ros=ros)
+    report = analyse(Source("main.yml", main), library, []).report
+    assert [each.code for each in report] == expected
 
 
 def test_an_argument_that_the_constructor_does_not_accept() -> None:
