@@ -105,11 +105,10 @@ def with_meant_keys(container: Container) -> Container:
     return replace(container, children=children)
 
 
-def _with_meant_writes(leaf: Leaf) -> Leaf:
+def _with_meant_writes(leaf: Leaf, wrong: tuple[str, ...]) -> Leaf:
     """A leaf with the misspelt keys of its callbacks corrected, where it has such an output that no
     callback sets."""
-    wrong = undeclared_writes(leaf)
-    held = variable_of(leaf, "callbacks") if wrong else None
+    held = variable_of(leaf, "callbacks")
     if held is None or not isinstance(held.value.data, nodes.Struct):
         return leaf
     entries = held.value.data.entries
@@ -142,8 +141,11 @@ def _meant(node: Node, *, raw: bool) -> Node:
         reads = tuple(
             Key(name=key, span=code.span, type=PERHAPS) for key, code in undeclared_reads(node)
         )
-        node = _with_meant_writes(node)
-        writes = tuple(Key(name=key, span=node.span) for key in undeclared_writes(node))
+        dropped = undeclared_writes(node)
+        if dropped:
+            node = _with_meant_writes(node, dropped)
+            dropped = undeclared_writes(node)
+        writes = tuple(Key(name=key, span=node.span) for key in dropped)
         if reads or writes:
             node = replace(node, inputs=(*node.inputs, *reads), outputs=(*node.outputs, *writes))
     return node

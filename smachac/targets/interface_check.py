@@ -109,18 +109,21 @@ def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 def argument_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
     """The states whose variables do not fit the constructor of their Python class, where the
     interface accepts any variable (`"*": {}`)."""
-    for _, leaf in walk(machine.root):
-        facts = leaf.class_facts if isinstance(leaf, Leaf) else None
-        if not isinstance(leaf, Leaf) or facts is None or facts.parameters is None:
+    types: dict[str, tuple[StateType, str, tuple[Parameter, ...]]] = {}
+    for name, type_ in machine.state_types.items():
+        facts = type_.class_facts
+        if "variables" not in type_.given or facts is None or facts.name is None:
             continue
-        type_ = machine.state_types.get(leaf.type)
-        if type_ is None or facts.name is None or "variables" not in type_.given:
+        if facts.parameters:
+            types[name] = type_, facts.name.text, facts.parameters
+    for _, leaf in walk(machine.root) if types else ():
+        if not isinstance(leaf, Leaf) or leaf.type not in types:
             continue
+        type_, class_name, parameters = types[leaf.type]
         given = {*type_.given, *(["outcomes"] if type_.optional else ())}
-        first = facts.parameters[0].word.text if facts.parameters else ""
-        given |= {"node"} if library.ros == 2 and first == "node" else set()
-        for fault, related in _argument_faults(leaf, type_, facts.parameters, given):
-            yield bad_class(fault, "python", type_.name, facts.name.text, related)
+        given |= {"node"} if library.ros == 2 and parameters[0].word.text == "node" else set()
+        for fault, related in _argument_faults(leaf, type_, parameters, given):
+            yield bad_class(fault, "python", type_.name, class_name, related)
 
 
 def _argument_faults(
