@@ -301,6 +301,8 @@ def around(node: Node, own: Accesses) -> Accesses:
 
 
 def _renamed(node: Node, keys: Keys) -> Keys:
+    if not node.remaps:
+        return keys
     names = remapping(node)
     found: Keys = {}
     for key, origin in keys.items():

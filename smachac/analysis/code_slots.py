@@ -51,8 +51,8 @@ class CodeSlot:
 def code_slots(node: Node, types: Mapping[str, StateType]) -> Iterator[CodeSlot]:
     """The code slots of a state with code in them, in the order of the script."""
     if isinstance(node, Leaf):
-        known = types.get(node.type)
-        if known is not None and not node.open:
+        known = types.get(node.type) if node.variables and not node.open else None
+        if known is not None:
             for held in node.variables:
                 fact = known.variables.get(held.name)
                 if fact is not None and (fact.arguments is not None or fact.unquoted == "function"):

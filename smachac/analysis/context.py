@@ -25,6 +25,7 @@ from smachac.analysis.type_lattice import MisfitKind
 from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
+from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine
 from smachac.ir.secret_keys import SecretKeys, secret_keys
 
@@ -116,6 +117,17 @@ class Context:
     def containers(self) -> tuple[tuple[str, Container], ...]:
         """The containers with their paths, parents before children."""
         return tuple((path, node) for path, node in self.states if not isinstance(node, Leaf))
+
+    @cached_property
+    def leaves_with_class(self) -> tuple[tuple[str, Leaf, ClassFacts, Container], ...]:
+        """The leaves whose class was read, each with its path, the facts of the class, and its
+        container."""
+        return tuple(
+            (f"{path}/{child.name}", child, child.class_facts, container)
+            for path, container in self.containers
+            for child in container.children
+            if isinstance(child, Leaf) and child.class_facts is not None
+        )
 
     @cached_property
     def _ends_of_states(self) -> Sequence[int]:

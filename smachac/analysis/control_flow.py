@@ -47,8 +47,13 @@ def places_of(container: nodes.Container) -> Guesser:
     return guesser([*(child.name for child in container.children), *outcome_names(container)])
 
 
-def leads_somewhere(transition: Transition, names: frozenset[str], exits: frozenset[str]) -> bool:
-    return leads_to_child(transition, names) or transition.target in exits
+def strays(child: Node, names: frozenset[str], exits: frozenset[str]) -> list[Transition]:
+    """The transitions of a child that lead neither to one of `names` nor out by one of `exits`."""
+    return [
+        step
+        for step in child.transitions
+        if step.target not in exits and not leads_to_child(step, names)
+    ]
 
 
 def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
@@ -80,18 +85,19 @@ def corrected(container: Linear) -> Linear:
     guess = places_of(container)
 
     def target(step: Transition) -> Transition:
-        if leads_somewhere(step, names, exits):
-            return step
         return replace(step, target=guess(step.target) or step.target)
 
     def child(node: Node) -> Node:
         unknown = unknown_outcomes(node)
-        lost = [step for step in node.transitions if not leads_somewhere(step, names, exits)]
+        lost = strays(node, names, exits)
         if not unknown and not lost:
             return node
         wrong = {step.outcome: meant for step, meant in unknown}
         steps = [
-            replace(step, outcome=wrong.get(step.outcome) or step.outcome)
+            replace(
+                target(step) if step in lost else step,
+                outcome=wrong.get(step.outcome) or step.outcome,
+            )
             for step in node.transitions
         ]
         outcomes = node.outcomes or tuple(Outcome(name=s.outcome, span=s.span) for s in steps)

@@ -11,7 +11,6 @@ from smachac.analysis.control_flow import (
     children_names,
     corrected,
     is_open,
-    leads_somewhere,
 )
 from smachac.analysis.outcome_rules import (
     OTHER,
@@ -122,7 +121,7 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
                 continue
             if leads_to_child(step, names):
                 more.append(step.target)
-            elif leads_somewhere(step, names, exits):
+            elif step.target in exits:
                 found.add(step.target)
             else:
                 found |= exits

@@ -27,14 +27,12 @@ def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, L
     the keys it declares, unlike the child of an iterator. The iterator of `retry` and `for_each`
     has the keys that the state declares."""
     seen: set[str] = set()
-    for path, container in context.containers:
+    for path, leaf, facts, container in context.leaves_with_class:
         if declared and isinstance(container, nodes.Iterator) and not container.sugar:
             continue
-        for child in container.children:
-            known = child.class_facts if isinstance(child, Leaf) else None
-            if isinstance(child, Leaf) and known is not None and child.type not in seen:
-                seen.add(child.type)
-                yield f"{path}/{child.name}", child, known
+        if leaf.type not in seen:
+            seen.add(leaf.type)
+            yield path, leaf, facts
 
 
 def _own_types(

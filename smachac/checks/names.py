@@ -12,8 +12,8 @@ from smachac.analysis.control_flow import (
     children_names,
     is_catch_all,
     is_open,
-    leads_somewhere,
     places_of,
+    strays,
     unknown_outcomes,
 )
 from smachac.checks.expressions import unknown_endings
@@ -96,8 +96,8 @@ def _lost(path: str, container: Container) -> Iterator[_Lost]:
     exits = frozenset(outcome_names(container))
     guess = places_of(container)
     for child in container.children:
-        for step in child.transitions:
-            if not leads_somewhere(step, names, exits) and not _was_reported(step):
+        for step in strays(child, names, exits):
+            if not _was_reported(step):
                 meant, sure = guess(step.target), guess.sure(step.target)
                 yield _Lost(path, container, child, step, meant, sure)
 

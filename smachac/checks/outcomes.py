@@ -228,7 +228,8 @@ def unhandled(child: Node) -> list[Outcome]:
     """The outcomes of a state without a transition, except those that a misspelt transition is
     probably for."""
     handled = {step.outcome for step in child.transitions}
-    if all(outcome.name in handled for outcome in child.outcomes):
+    left = [outcome for outcome in child.outcomes if outcome.name not in handled]
+    if not left:
         return []
     unknown = unknown_outcomes(child)
     if any(is_catch_all(step) for step, _ in unknown):

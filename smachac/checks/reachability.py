@@ -9,7 +9,7 @@ from smachac.analysis.control_flow import (
     Linear,
     children_names,
     is_open,
-    leads_somewhere,
+    strays,
 )
 from smachac.checks.messages import calls, did_you_mean, own_name
 from smachac.checks.outcomes import endings, unhandled
@@ -205,9 +205,7 @@ def _linear_outcomes(container: Linear) -> frozenset[str] | None:
     exits = frozenset(outcome_names(container))
     found: set[str] = set()
     for child in container.children:
-        if any(not leads_somewhere(step, names, exits) for step in child.transitions):
-            return None
-        if unhandled(child):
+        if strays(child, names, exits) or unhandled(child):
             return None
         found.update(step.target for step in child.transitions)
     handled = [

@@ -177,10 +177,11 @@ def name_of(tree: Tree) -> Word | None:
 
 def as_name(tree: Tree, report: Report) -> Word | None:
     """A name: of a state, an outcome, a key, a script, a template."""
-    text = name_text(tree, report)
-    if text is None or not isinstance(tree, Scalar):
+    if not isinstance(tree, Scalar):
+        wrong(tree, "name", report)
         return None
-    return Word(text, Span(tree.source, tree.start, tree.end))
+    text = name_text(tree, report)
+    return None if text is None else Word(text, Span(tree.source, tree.start, tree.end))
 
 
 def name_text(tree: Tree, report: Report) -> str | None:

@@ -114,8 +114,8 @@ def is_known_wrong(tree: Tree) -> bool:
     return isinstance(tree, Scalar) and tree.value == "" and tree.plain
 
 
-_NULL = frozenset(["", "~", "null", "Null", "NULL"])
-_BOOL = {
+_WORDS: dict[str, bool | None] = {
+    **dict.fromkeys(["", "~", "null", "Null", "NULL"]),
     **dict.fromkeys(["true", "True", "TRUE"], True),
     **dict.fromkeys(["false", "False", "FALSE"], False),
 }
@@ -131,10 +131,8 @@ _MAYBE_NUMBER = frozenset("+-.0123456789")
 
 def _resolve(text: str) -> bool | int | float | str | None:
     """The value of a plain scalar by the core schema (YAML 1.2.2, section 10.3.2)."""
-    if text in _NULL:
-        return None
-    if text in _BOOL:
-        return _BOOL[text]
+    if text in _WORDS:
+        return _WORDS[text]
     if text[0] not in _MAYBE_NUMBER:
         return text
     if _INT.fullmatch(text):
@@ -402,7 +400,9 @@ class _Builder:
             value = _resolve(text)
         node = Scalar(value, plain, self.source, start, end)
         self.items.append(node)
-        self._count(1, start)
+        self.nodes += 1  # as `_count`, without a call for each value
+        if self.nodes > self.most:
+            self._too_many(start)
         if event.anchor is not None:
             self.anchors[event.anchor] = (node, 1)
 
@@ -490,12 +490,15 @@ class _Builder:
         """Adds nodes; `at` is the place of an error if they are too many."""
         self.nodes += nodes
         if self.nodes > self.most:
-            self._stop(
-                at,
-                f"the script has more than {self.most:,} values",
-                "put large data into a file that a state reads when the program runs",
-                "nodes",
-            )
+            self._too_many(at)
+
+    def _too_many(self, at: int) -> None:
+        self._stop(
+            at,
+            f"the script has more than {self.most:,} values",
+            "put large data into a file that a state reads when the program runs",
+            "nodes",
+        )
 
     def _stop(self, at: int, message: str, help: str, limit: str) -> None:
         span = Span(self.source, at, at + 1)

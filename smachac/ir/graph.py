@@ -183,10 +183,12 @@ def reachable(container: Container) -> frozenset[str]:
         return frozenset(names)
     if container.initial not in names:
         return frozenset(names)
+    children = frozenset(names)
     followers: dict[Vertex, list[Vertex]] = {}
-    for edge in edges(container):
-        followers.setdefault(edge.source, []).append(edge.target)
-    found = _children_from([START], followers)
+    for child in container.children:  # two states can have one name (SM106)
+        ahead = [each.target for each in _live_transitions(child) if leads_to_child(each, children)]
+        followers.setdefault(child.name, []).extend(ahead)
+    found = _children_from([container.initial], followers)
     unread = any(child.name in found and is_unread(child) for child in container.children)
     return frozenset(names) if unread else found
 
