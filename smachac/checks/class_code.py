@@ -12,7 +12,7 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -138,21 +138,33 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
             )
     if facts.silent and facts.execute is not None:
         does = "never returns" if facts.always_silent else "can end without returning"
+        alone = _text_alone(facts, outcomes)
         yield Finding(
-            span=facts.execute,
+            span=alone or facts.execute,
             message=f"`execute` of `{leaf.type}` {does} an outcome",
             arguments=(leaf.type,),
-            help=f"end each path with a `return`; {known}",
+            help=f"write `return {alone.text}`"
+            if alone
+            else f"end each path with a `return`; {known}",
             related=(*_open_end(facts), *_used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
         )
 
 
+def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> Span | None:
+    """The outcome that the last line of `execute` has without `return`."""
+    end = facts.open_end
+    if end is None or end.text != "text" or end.span.text.strip("'\"") not in outcomes:
+        return None
+    return end.span
+
+
 END_OF_EXECUTE = {
     "if": "if this is false, nothing is returned",
     "match": "if no `case` matches, nothing is returned",
     "except": "after this exception, nothing is returned",
+    "loop": "after this loop, nothing is returned",
 }
 """The place from which `execute` gets to its end without `return`, by its kind."""
 
@@ -160,7 +172,7 @@ END_OF_EXECUTE = {
 def _open_end(facts: ClassFacts) -> tuple[Related, ...]:
     """The place from which `execute` gets to its end without `return`."""
     end = facts.open_end
-    if end is None or facts.always_silent:
+    if end is None or facts.always_silent or end.text not in END_OF_EXECUTE:
         return ()
     return other_place(end.span, END_OF_EXECUTE[end.text])
 
@@ -205,6 +217,15 @@ def _is_called(word: Word) -> bool:
     return word.span.source.text.startswith("(", word.span.end)
 
 
+def _owner(word: Word) -> str:
+    """The name before the dot of an attribute in a text."""
+    text = word.span.source.text
+    start = word.span.start - 1
+    while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
+        start -= 1
+    return text[start : word.span.start - 1]
+
+
 def unknown_reads(context: Context) -> Iterator[Finding]:
     """The keys that the code of a type reads without an input in its interface (SM310)."""
     containers = dict(context.containers)
@@ -221,11 +242,11 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
             )
             if word.text in DICTIONARY_METHODS and _is_called(word):
+                name = _owner(word)
                 message = (
-                    f"the code of `{leaf.type}` calls `{word.span.text}`, but the userdata of a"
+                    f"the code of `{leaf.type}` calls `{name}.{word.text}`, but the userdata of a"
                     " state has no methods of a dictionary"
                 )
-                name = word.span.text.rpartition(".")[0]
                 help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
             yield Finding(
                 span=word.span,
@@ -464,6 +485,9 @@ def never_returned(context: Context) -> Iterator[Finding]:
         if not known or facts.stub or type_.optional:
             continue
         returned = {word.text for word in facts.returns}
+        alone = _text_alone(facts, outcome_names(leaf))  # SM309
+        if alone is not None:
+            returned.add(alone.text.strip("'\""))
         names = [each.name for each in type_.outcomes]
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant

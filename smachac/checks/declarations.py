@@ -13,7 +13,9 @@ from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes, unknown_remaps
-from smachac.analysis.unset_reads import container_name
+from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.type_lattice import misfit
+from smachac.analysis.unset_reads import Missing, container_name, reader_at
 from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
@@ -28,8 +30,9 @@ from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, StateType, Struct
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Preset, StateType, Struct
 from smachac.ir.traversal import expressions, remapping, walk
+from smachac.ir.types import ANY
 
 _PARAM_IN_CODE = re.compile(r"\bparams(?:\.|\[['\"])(\w+)")
 
@@ -78,6 +81,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
     unset: dict[str, set[str]] = {}
     for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
+    reported |= {(path, preset.key) for path, (_, preset) in meant_presets(context).items()}
     for scope in flow.scopes.values():
         container = scope.container
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
@@ -103,6 +107,31 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
             )
+
+
+def meant_presets(context: Context) -> dict[str, tuple[Missing, Preset]]:
+    """By path of a container, the only key of its userdata that nothing reads, with the only key
+    that is read there and that nothing sets: a remapping from the one to the other is probably
+    missing. Only where the reader has a type, and the value fits it."""
+    missing: dict[str, list[Missing]] = {}
+    for each in context.missing_keys("nowhere"):
+        missing.setdefault(each.scope.path, []).append(each)
+    found: dict[str, tuple[Missing, Preset]] = {}
+    for path, (first, *others) in missing.items():
+        scope = first.scope
+        if others:
+            continue
+        if context.of_container(_sees_everything, path, scope):
+            continue
+        read = context.of_container(_used_in, path, scope)
+        unread = [preset for preset in scope.container.userdata if preset.key not in read]
+        reader = reader_at(scope, first.vertices[0], first.key)
+        wanted = context.types.inputs.get((reader.path, reader.key), ANY)
+        if len(unread) != 1 or reader.key != first.key or reader.node is scope.container:
+            continue
+        if wanted != ANY and misfit(type_of_data(unread[0].value.data), wanted) is None:
+            found[path] = first, unread[0]
+    return found
 
 
 def _remaps_unknown(node: Node, key: str) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 
 from smachac.analysis.context import Context
@@ -17,6 +18,7 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
+from smachac.checks.declarations import meant_presets
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
@@ -27,7 +29,7 @@ from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
-from smachac.ir.nodes import Container, Node
+from smachac.ir.nodes import Container, Node, Preset
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.types import ANY, Type
 
@@ -90,12 +92,31 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     searches = Searches(flow)
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
+    presets = meant_presets(context)
     for missing in context.missing_keys("unset", "nowhere"):
         if missing.cause == "nowhere" and _is_dropped(missing):
             continue  # SM308 reports the cause
+        meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])
-            yield _unset(missing, witness, users, guesses, context.types.inputs)
+            finding = _unset(missing, witness, users, guesses, context.types.inputs)
+            if meant is not None and meant[0] is missing:
+                finding = _with_remapping(finding, missing, witness, meant[1])
+            yield finding
+
+
+def _with_remapping(
+    finding: Finding, missing: Missing, witness: Witness, preset: Preset
+) -> Finding:
+    """The finding on a key that nothing sets, where a remapping from a preset is missing."""
+    name = witness.reader.node.name
+    return replace(
+        finding,
+        help=f"if `{name}` must read `{preset.key}`, write `remapping: {{{missing.key}:"
+        f" {preset.key}}}` in `{name}`; otherwise give `{missing.key}` an initial value in"
+        f" {container_name(missing.scope, finding.span)}",
+        related=(*other_place(preset.span, f"nothing reads `{preset.key}`"), *finding.related),
+    )
 
 
 def _is_dropped(missing: Missing) -> bool:

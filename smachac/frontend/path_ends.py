@@ -63,8 +63,9 @@ class PathEnds:
         return False
 
     def open_end(self, body: list[ast.stmt]) -> tuple[str, ast.AST]:
-        """Where control comes from at the end of statements that do not end: the kind of place,
-        and its statement or handler."""
+        """Where control comes from at the end of statements that do not end: the kind of place
+        (`if`, `match`, `except`, `loop`, `text` alone, or none of these), and its statement or
+        handler."""
         last = body[-1]
         match last:
             case ast.If(orelse=[]):
@@ -80,6 +81,10 @@ class PathEnds:
                 handler = next((each for each in handlers if not self.block(each.body)), None)
                 if self.block(inner) and handler is not None:
                     return "except", handler
+            case ast.For() | ast.While():
+                return "loop", last
+            case ast.Expr(value=ast.Constant(value=str())):
+                return "text", last
         return "", last
 
     def _is_endless(self, loop: ast.For | ast.While) -> bool:

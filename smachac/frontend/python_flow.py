@@ -34,8 +34,8 @@ class Flow:
     """The control flow of a function; for the fields see ClassFacts.
 
     `written` are the keys that it can set; None: not known. `passed` are the parameters that it
-    returns, each with the keys that can be set before. `open_end` is the place of the `if`, `match`
-    or `except` after which it ends without `return`, with that word.
+    returns, each with the keys that can be set before. `open_end` is the place of the statement
+    after which it ends without `return`, with its kind (see PathEnds.open_end).
     """
 
     endings: tuple[Ending, ...] = ()
@@ -295,9 +295,10 @@ class _Reader:
             access = access_of(node, self.userdata) if node not in tried else None
             if access is None or access.key in tested:
                 continue
-            span = self.text.span(access.place)
-            if self.text.is_filled(span):
+            whole = self.text.span(access.place)
+            if self.text.is_filled(whole):
                 continue
+            span = self._key_span(access)
             if access.read or node in updated:
                 reads.append(Word(access.key, span))
             if not access.read:
@@ -310,6 +311,15 @@ class _Reader:
         reads += [word for flow in inner for word in flow.reads if word.text not in tested]
         writes += [word for flow in inner for word in flow.writes if word.text not in tested]
         return tuple(reads), tuple(writes)
+
+    def _key_span(self, access: Access) -> Span:
+        """The place of a key: the name in `userdata.key`, the text in `userdata["key"]`."""
+        if isinstance(access.place, ast.Subscript):
+            return self.text.span(access.place.slice)
+        whole = self.text.span(access.place)
+        if isinstance(access.place, ast.Attribute):
+            return Span(whole.source, whole.end - len(access.key), whole.end)
+        return whole
 
     # --- outcomes
 

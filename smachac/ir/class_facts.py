@@ -86,8 +86,9 @@ class ClassFacts:
 
     `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
     `execute` is the place of its name. `silent`: some path through it returns nothing,
-    `always_silent`: every path. `open_end` is the `if`, `match` or `except` after which it returns
-    nothing. `reads` and `writes` are the userdata keys that it accesses.
+    `always_silent`: every path. `open_end` is the place after which it returns nothing, with its
+    kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`.
+    `reads` and `writes` are the userdata keys that it accesses, each at its name.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
     `values` are the expressions that `execute` itself writes, each with its key.
     """

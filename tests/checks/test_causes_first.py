@@ -556,3 +556,26 @@ def test_branches_of_one_name_are_no_race() -> None:
     codes = [each.split()[0] for each in found(text, Find=FIND + "input_keys: {where: str}\n")]
     assert "SM106" in codes
     assert "SM405" not in codes
+
+
+def test_a_missing_remapping_is_one_finding() -> None:
+    script = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {grip: soft}
+states:
+  - GRASP:
+      template: ScriptedState
+      outcomes: [done]
+      input_keys: {kind: str}
+      transitions: {done: done}
+"""
+    report = analysed({"main.yml": script}).report
+    assert [(each.code, each.span.text) for each in report] == [("SM301", "kind")]
+    assert str(report[0].help).startswith(
+        "if `GRASP` must read `grip`, write `remapping: {kind: grip}`"
+    )
+    whole = script.replace("{kind: str}", "{kind: int}")  # the value does not fit
+    codes = {each.code for each in analysed({"main.yml": whole}).report}
+    assert codes == {"SM301", "SM305"}

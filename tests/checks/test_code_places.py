@@ -65,6 +65,10 @@ class Grasp {
             "cell/arm.py", 'return "blocked"', 'return "bloked"',
             ("SM309", '"bloked"', "did you mean `blocked`?"),
         ),
+        (
+            "cell/arm.py", 'return "blocked"', '"blocked"',
+            ("SM309", '"blocked"', 'write `return "blocked"`'),
+        ),
         ("cell/arm.py", "drive() == 1", "drive() = 1", ("SM608", "=", "write `==` to compare")),
         (
             "templates/Grasp.yml", "cell/grasp.hpp", "cell/grsp.hpp",
@@ -84,6 +88,7 @@ def test_a_slip_in_code_is_one_finding_at_its_place(
     report = analyse(Source("main.yml", MAIN), memory_library(files, BUILT_IN), []).report
     found = [(each.code, each.span.text, each.help) for each in report]
     assert expected in found
+    assert "SM315" not in [each[0] for each in found]
     assert [each for each in found if each[0] == "SM608"] == [expected][expected[0] != "SM608" :]
 
 

@@ -185,18 +185,18 @@ def test_helpers_that_never_return_and_cases_that_are_all(code: str, silent: boo
 @pytest.mark.parametrize(
     ("code", "reads", "writes"),
     [
-        ("x = userdata.a + userdata['b']", ["userdata.a", "userdata['b']"], []),
-        ("userdata.a = userdata['b'] = 1", [], ["userdata.a", "userdata['b']"]),
-        ("userdata.a += 1", ["userdata.a"], ["userdata.a"]),
-        ("userdata.a.append(userdata.b[0])", ["userdata.a", "userdata.b"], []),
-        ("f = lambda: userdata.a", ["userdata.a"], []),
+        ("x = userdata.a + userdata['b']", ["a", "'b'"], []),
+        ("userdata.a = userdata['b'] = 1", [], ["a", "'b'"]),
+        ("userdata.a += 1", ["a"], ["a"]),
+        ("userdata.a.append(userdata.b[0])", ["a", "b"], []),
+        ("f = lambda: userdata.a", ["a"], []),
         ("f = lambda userdata: userdata.a", [], []),
         ("userdata = {}\nuserdata['a'] = 1", [], []),
         ("userdata[key] = userdata.keys() + optional(userdata, 'c')", [], []),
         ("if 'a' in userdata:\n    x = userdata.a", [], []),
-        ("try:\n    x = userdata.a\nexcept KeyError:\n    userdata.b = 1", [], ["userdata.b"]),
+        ("try:\n    x = userdata.a\nexcept KeyError:\n    userdata.b = 1", [], ["b"]),
         ("x = userdata.{{ key }} + userdata['{{ key }}']", [], []),
-        ("x = 'ß'; y = userdata.ä", ["userdata.ä"], []),
+        ("x = 'ß'; y = userdata.ä", ["ä"], []),
     ],
 )
 def test_keys(code: str, reads: list[str], writes: list[str]) -> None:
