@@ -371,8 +371,14 @@ def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:
 
 
 def _class_spans(section: Section) -> dict[tuple[str, str], Span]:
-    """The places of the texts of `_classes`, by language and field."""
-    return {
+    """The places of the texts of `_classes`, by language and field; those of `_code` have no
+    field."""
+    found = {
+        (language, ""): value.span
+        for language, value in _declared(section)
+        if isinstance(value, Scalar)
+    }
+    return found | {
         (language, str(entry.key.value)): entry.value.span
         for language, value in _declared(section)
         if isinstance(value, Map)

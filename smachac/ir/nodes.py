@@ -423,8 +423,9 @@ class StateType:
     `given` names the parts that a script adds to the interface: any of "variables", "input_keys",
     "output_keys", "outcomes" (`"*": {}` in the interface). `code` maps a language to the file of a
     template or to a reference to code; `classes` maps a language to a class: `header`, `class`,
-    `with`; `class_spans` are the places of these texts, by language and field. `class_facts` are
-    those of its Python class. `open`: there is no interface.
+    `with`; `class_spans` are the places of these texts, by language and field, and those of
+    `code`, with an empty field. `class_facts` are those of its Python class. `open`: there is no
+    interface.
     `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
     A state has an outcome of `optional` only if its container or one of its transitions names it.
     `used` are the words in the template of a type that accepts any variable; None: not known.

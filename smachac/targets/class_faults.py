@@ -95,6 +95,11 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "the constructor of `{name}` has other parameters than the variables of its interface",
         "write `{near}`",
     ),
+    "no first argument": (
+        "the constructor of `{name}` takes `{word}` first, which the interface `{type}` does not"
+        " provide",
+        'add `with: "{near}"` to `cpp` in the `code` of `{type}.yml`',
+    ),
     "unused outcome": (
         "`execute` of `{name}` never returns `Outcome::{word}`",
         "return it where it is meant, or remove it from `Outcome`, from the interface, and from the"
@@ -118,6 +123,11 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " `{type}`",
         "give `{word}` a default value, or add it to the `variables` of `{type}.yml` and set it at"
         " the state",
+    ),
+    "other parameter": (
+        "`__init__` of `{name}` requires `{word}`, but the variable of the interface `{type}` is"
+        " `{near}`",
+        "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
     ),
     "no such parameter": (
         "`__init__` of `{name}` does not accept `{word}`, which is set here",
@@ -145,7 +155,16 @@ EFFECTS: Mapping[FaultKind, str] = {
 }
 """What happens, where it differs from most faults; empty if the message contains it."""
 
-WRITTEN = frozenset[FaultKind](["wrong result", "wrong parameters", "wrong constructor"])
+WRITTEN = frozenset[FaultKind](
+    [
+        "wrong result",
+        "wrong parameters",
+        "wrong constructor",
+        "no first argument",
+        "other parameter",
+        "other class",
+    ]
+)
 """Faults whose words contain what was probably meant."""
 
 
@@ -157,7 +176,7 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         for text in WORDS[fault.kind]
     )
     near = fault.near
-    if near is None or fault.kind == "other class" or fault.kind in WRITTEN:
+    if near is None or fault.kind in WRITTEN:
         return message, help
     if fault.kind == "no execute":
         return message, f"rename `{near}` to `execute`"

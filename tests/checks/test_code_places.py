@@ -78,6 +78,21 @@ class Grasp {
             "templates/Grasp.yml", '"cell::Grasp"', '"cell::Grsp"',
             ("SM608", '"cell::Grsp"', "did you mean `Grasp`?"),
         ),
+        (
+            "cell/grasp.hpp", "  Outcome execute", "  explicit Grasp(Arm &arm);\n  Outcome execute",
+            (
+                "SM609", '"cell::Grasp"',
+                'add `with: "cell::Arm &arm"` to `cpp` in the `code` of `Grasp.yml`',
+            ),
+        ),
+        (
+            "cell/arm.py", "def __init__(self):", "def __init__(self, limb):",
+            (
+                "SM609", "limb",
+                "give `limb` a default value, or add it to the `variables` of `Move.yml` and set it"
+                " at the state",
+            ),
+        ),
     ],
 )  # fmt: skip
 def test_a_slip_in_code_is_one_finding_at_its_place(
@@ -128,3 +143,46 @@ def test_a_slip_in_a_template_is_at_its_word(old: str, new: str, marked: str, he
     ).report
     found = [(each.span.text, each.help) for each in report if each.code == "SM605"]
     assert found == [(marked, help)]
+
+
+def test_a_parameter_of_another_name_is_one_finding() -> None:
+    files = FILES | {
+        "templates/Move.yml": "variables: {arm: str}\n" + FILES["templates/Move.yml"],
+        "cell/arm.py": FILES["cell/arm.py"].replace("__init__(self):", "__init__(self, limb):", 1),
+    }
+    script = MAIN.replace("template: Move,", "template: Move, arm: left,")
+    report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
+    found = [(each.span.text, each.help) for each in report if each.code == "SM609"]
+    assert found == [("limb", "rename the parameter `limb` to `arm`, or the variable to `limb`")]
+
+
+def test_a_misspelt_outcome_in_a_header_is_one_finding() -> None:
+    header = FILES["cell/grasp.hpp"].replace(
+        "held };\n  Outcome execute() { return Outcome::held; }",
+        "held, slipped, lost };\n  Outcome execute() {\n    if (closed()) return Outcome::held;\n"
+        "    if (open()) return Outcome::slipped;\n    return Outcome::lst;\n  }",
+    )
+    assert "lst" in header
+    files = FILES | {
+        "cell/grasp.hpp": header,
+        "templates/Grasp.yml": FILES["templates/Grasp.yml"].replace(
+            "held: {}", "held: {}, slipped: {}, lost: {}"
+        ),
+    }
+    report = analyse(Source("main.yml", MAIN), memory_library(files, BUILT_IN), []).report
+    found = [(each.span.text, each.help) for each in report if each.code == "SM609"]
+    assert found == [("lst", "did you mean `lost`?")]
+
+
+def test_a_template_that_does_not_exist_is_reported_at_its_name() -> None:
+    files = {
+        "templates/Move.yml": "outcomes: {moved: {}, blocked: {failure: true}}\n"
+        "code: {python: move.tpl.py}\n",
+        "templates/Move.tpl.py": TEMPLATE,
+    }
+    script = MAIN.replace("moved: GRASP", "moved: done").partition("  - GRASP")[0]
+    report = analyse(
+        Source("main.yml", script), memory_library(files, BUILT_IN), [], render=True
+    ).report
+    found = [(each.span.text, each.help) for each in report if each.code == "SM605"]
+    assert found == [("move.tpl.py", "did you mean `Move.tpl.py`?")]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import NOWHERE, Word
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.traversal import PREEMPTED
 from smachac.targets.cpp.header_text import Part
@@ -120,9 +120,37 @@ def _constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         count = _count(found[1]) if found is not None else None
         if found is None or count is None or count == len(wanted):
             return
+    first = _first_argument(code, heads, body, len(wanted)) if not code.parameters else None
+    if first is not None:
+        place = code.type.class_spans.get(("cpp", "class"), NOWHERE)
+        near = _qualified(first, code.name)
+        yield ClassFault(kind="no first argument", name=Word(first, place), near=near)
+        return
     word = body.word(name, heads[0].start(), heads[0].start() + len(name))
     near = f"{name}({', '.join(wanted)})"
     yield ClassFault(kind="wrong constructor", name=word, near=near)
+
+
+def _first_argument(
+    code: ClassCode, heads: list[re.Match[str]], body: Part, wanted: int
+) -> str | None:
+    """The reference or pointer that the only constructor takes before the variables, which have
+    the names of the interface."""
+    found = re.compile(r"([^()]*)\)").match(body.text, heads[0].end()) if len(heads) == 1 else None
+    if found is None:
+        return None
+    first, *others = (" ".join(each.split()) for each in found[1].split(","))
+    names = [each.split()[-1].lstrip("&*") for each in others if each]
+    if len(names) != wanted or names != [identifier(key) for key in code.type.variables]:
+        return None
+    return first if re.fullmatch(r"[\w:]+(?: const)? ?[&*] ?\w+", first) else None
+
+
+def _qualified(parameter: str, name: str) -> str:
+    """A parameter whose type is written with the namespace of a class."""
+    space = name.removeprefix("::").rpartition("::")[0]
+    plain = "::" not in parameter and bool(space)
+    return f"{space}::{parameter}" if plain else parameter
 
 
 def _is_plain(parameter: str) -> bool:
@@ -133,6 +161,9 @@ def _unused(whole: Part, body: Part, run: Part, outcomes: Words) -> Iterator[Cla
     """The outcomes that no code in the header names, if every `return` of `execute` names one. A
     class with one outcome in use is not written yet."""
     returned = [each[1] for each in _RETURN.finditer(run.text)]
+    known = {identifier(each.text) for each in outcomes}
+    if not known.issuperset(re.findall(r"\bOutcome\s*::\s*(\w+)", body.text)):
+        return  # a misspelt outcome is reported: it is probably the one that is not returned
     functions = _outcome_functions(body)
     if _ELSEWHERE.search(body.text) or functions is None:
         return

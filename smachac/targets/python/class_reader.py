@@ -51,16 +51,20 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
     known = {each.word.text for each in facts.parameters}
     guess = guesser(sorted(known - type_.variables.keys()))
     passed = {name for name, each in type_.variables.items() if not each.called_first}
+    if "variables" in type_.given:
+        return
+    unknown = sorted(passed - known)
+    given = passed | type_.given | {"node" if node else "", "outcomes" if type_.optional else ""}
+    required = [p.word for p in facts.parameters if p.required and p.word.text not in given]
+    if len(unknown) == len(required) == 1 and guess(unknown[0]) is None:
+        yield ClassFault(kind="other parameter", name=required[0], near=unknown[0])
+        return
     meant = set()
-    for name in sorted(passed - known) if "variables" not in type_.given else ():
+    for name in unknown:
         near = guess(name)
         meant.add(near)
         place = next((p.word.span for p in facts.parameters if p.word.text == near), None)
-        word = Word(name, place or facts.name.span)
-        yield ClassFault(kind="no parameter", name=word, near=near)
-    passed |= {"node"} if node else set()
-    passed |= type_.given | ({"outcomes"} if type_.optional else set())
-    for each in facts.parameters:
-        name = each.word.text
-        if each.required and "variables" not in type_.given and name not in {*passed, *meant}:
-            yield ClassFault(kind="required parameter", name=each.word)
+        yield ClassFault(kind="no parameter", name=Word(name, place or facts.name.span), near=near)
+    for word in required:
+        if word.text not in meant:
+            yield ClassFault(kind="required parameter", name=word)

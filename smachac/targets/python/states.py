@@ -9,7 +9,7 @@ from itertools import chain, count
 from textwrap import indent
 
 from smachac.analysis.code_slots import called_with_userdata
-from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.diagnostic import Diagnostic, did_you_mean
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
@@ -435,6 +435,13 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         if package and not code.endswith((".py", ".tpl")):
             help = f'write `code: {{python: "{package}:{class_}"}}` in `{leaf.type}.yml`'
         first = module.without_code.setdefault(leaf.type, leaf.span)
+        written = type_.class_spans.get(("python", ""))
+        if written is not None and code.endswith((".py", ".tpl")):
+            library = module.context.library
+            files = [f"{name}.tpl.py" for name in library.template_names()]
+            files = [file for file in files if library.own_template(file) is not None]
+            message = f"the template `{code}` of the state type `{leaf.type}` was not found"
+            help, first = did_you_mean(code, files) or help, written
         raise BlockError(template_error(first, message, help, (leaf.type,)))
     else:
         found = module.blocks.names(code)
