@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Literal
 
 from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
@@ -19,11 +19,11 @@ from smachac.analysis.unset_reads import Missing, container_name, reader_at
 from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
-from smachac.checks.messages import CALLED_HERE, calls, did_you_mean
+from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -182,6 +182,8 @@ def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ..
         names = remapping(child)
         for each in child.outputs:
             key = names.get(each.name, each.name)
+            if each.span == child.span != NOWHERE:
+                continue  # SM308: the script does not declare it
             if key not in seen and each.span.source is child.span.source and _sets(child, each):
                 seen.add(key)
                 found.append((key, child, place_of(child, each)))
@@ -255,7 +257,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         for key in container.outputs:
             if key.name not in set_ and (outer, scope.outputs[key.name]) not in missing:
                 yield _unused(scope.path, container, key, "output")
-    yield from _unused_by_the_script(context.machine)
+    yield from _unused_by_the_script(context)
 
 
 def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:
@@ -266,7 +268,9 @@ def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -
         effect = "the container around it must set a key that has no effect"
     if isinstance(node, Leaf):
         nothing = f"none of its functions {verb}s it"
-        other = f"{verb} it in one of its functions as `ud.{key.name}`"
+        other = f"read it in one of its functions as `ud.{key.name}`"
+        if role == "output":
+            other = f"add a callback: `callbacks: {{{key.name}: 'lambda ud: ...'}}`"
     else:
         nothing = f"no state in `{node.name}` {verb}s it"
         other = f"add it to the `{role}_keys` of the state in `{node.name}` that {verb}s it"
@@ -287,11 +291,38 @@ def _params_in_code(machine: Machine) -> set[str]:
     return {name for text in codes for name in _PARAM_IN_CODE.findall(text)}
 
 
-def _unused_by_the_script(machine: Machine) -> Iterator[Finding]:
+def _names_as_text(context: Context, names: Collection[str]) -> dict[str, Span]:
+    """The texts in the variables of states that are the name of a param, each the only one."""
+    found: dict[str, list[Span]] = {}
+    for _, node in context.states:
+        for held in node.variables if isinstance(node, Leaf) else ():
+            data = held.value.data
+            if isinstance(data, str) and data in names and data == held.value.span.text:
+                found.setdefault(data, []).append(held.value.span)
+    return {name: spans[0] for name, spans in found.items() if len(spans) == 1}
+
+
+def _unused_by_the_script(context: Context) -> Iterator[Finding]:
     """The params and types of the script that nothing uses."""
-    in_code = _params_in_code(machine) if machine.unused else set()
+    machine = context.machine
+    if not machine.unused:
+        return
+    in_code = _params_in_code(machine)
+    names = {each.word.text for each in machine.unused if each.what == "param"}
+    as_text = _names_as_text(context, names)
     for what, word, via in machine.unused:
         if what == "param" and word.text in in_code:  # SM019
+            continue
+        if what == "param" and (place := as_text.get(word.text)) is not None:
+            yield Finding(
+                span=place,
+                message=f"`{word.text}` is a text here, and nothing uses the param `{word.text}`",
+                arguments=(what, word.text),
+                help=f"write `[params, {word.text}]` for the value of the param",
+                effect=f"the state gets the text `{word.text}`, not the value of the param",
+                related=other_place(word.span, "the param is defined here"),
+                node=machine.root.name,
+            )
             continue
         outside = (call for call in via if call.source is not word.span.source)
         yield Finding(
@@ -330,8 +361,12 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
         yield from _unused_outcomes(path, leaf, conditions)
     results = [key for key in leaf.outputs if key.role == "result"] if callbacks else []
     if results:
-        made = callback_names(leaf) | _meant_keys(undeclared_writes(leaf), leaf.outputs)
-        yield from _unused_keys(path, leaf, results, made, "output")
+        undeclared = undeclared_writes(leaf)
+        made = callback_names(leaf) | _meant_keys(undeclared, leaf.outputs)
+        unmade = [key for key in results if key.name not in made]
+        if len(unmade) == 1 and len(undeclared) == 1:
+            return  # SM308 names both
+        yield from _unused_keys(path, leaf, unmade, (), "output")
 
 
 def _unused_outcomes(path: str, leaf: Leaf, conditions: Iterable[str]) -> Iterator[Finding]:
@@ -408,6 +443,9 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
             unset = _never_set(leaf) if not meant else []
             added = f"add `{key}` to the `output_keys` of `{leaf.name}`"
             help = f"did you mean {listed(unset)}? or {added}" if unset else added
+            if len(unset) == 1:
+                help = f"write `{key}` in place of `{unset[0]}` in the `output_keys` of"
+                help += f" `{leaf.name}`, or `{unset[0]}` in place of `{key}` here"
             yield Finding(
                 span=span,
                 message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",

@@ -240,16 +240,20 @@ def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterat
         if other is not None:
             message = f"`{type_text(named)}` is {KIND_WORDS[other]}, not {KIND_WORDS[kind]}"
         elif absent is not None:
-            what = KIND_WORDS[kind].partition(" ")[2]
-            message = f"the package `{parts[0]}` has no {what} `{parts[-1]}`"
+            message = f"the package `{parts[0]}` has no {kind_word(kind)} `{parts[-1]}`"
         else:
             continue
         names = absent.names if absent is not None else ()
         known = (
             f"write one of {listed(names)}" if names else f"write the name of {KIND_WORDS[kind]}"
         )
+        word = parts[-1]
+        if absent is None and other is not None and "/" in type_text(named):
+            word = "/".join(parts[1:])
+            known = f"write `{parts[0]}/{kind}/{parts[-1]}` if the package has this"
+            known += f" {kind_word(kind)}, or the name of another one"
         yield Finding(
-            span=_word(parts[-1], named.value.span).span,
+            span=_word(word, named.value.span).span,
             message=message,
             arguments=(parts[0], parts[-1]),
             help=did_you_mean(guesser(names)(parts[-1])) or known,
@@ -264,6 +268,11 @@ KIND_WORDS: Mapping[DefinitionKind, str] = {
     "srv": "a service",
     "action": "an action",
 }
+
+
+def kind_word(kind: DefinitionKind) -> str:
+    """The word for a kind, without its article."""
+    return KIND_WORDS[kind].partition(" ")[2]
 
 
 def _other_kind(parts: Sequence[str], kind: DefinitionKind) -> DefinitionKind | None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from smachac.analysis.accesses import Accesses
+from smachac.analysis.accesses import Accesses, callback_names
 from smachac.analysis.context import Context
 from smachac.analysis.resource_claims import Held, prefixes
 from smachac.checks.messages import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.wording import both
-from smachac.ir.leaf import variable_of
+from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.traversal import remapping
 
@@ -85,6 +85,8 @@ def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> 
     for child in container.children:
         own = known[f"{path}/{child.name}"]
         for key, origin in own.writes.items():
+            if child is origin and _is_never_set(child, key):
+                continue  # SM306 or SM308
             writers.setdefault(key, []).append((child, origin))
         for key, origin in own.reads.items():
             readers.setdefault(key, []).append((child, origin))
@@ -94,6 +96,15 @@ def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> 
         reading = [one for one in readers.get(key, ()) if one[0].name not in names]
         if len(names) > 1 or reading:
             yield _race(path, container, key, writing, reading)
+
+
+def _is_never_set(writer: Node, key: str) -> bool:
+    """Whether a state declares an output that its callbacks set, and none of them sets it."""
+    if not isinstance(writer, Leaf) or not functions(writer, "callbacks"):
+        return False
+    own = _own_key(writer, key)
+    results = {each.name for each in writer.outputs if each.role == "result"}
+    return own in results - callback_names(writer)
 
 
 def _own_key(writer: Node, key: str) -> str:

@@ -242,24 +242,33 @@ def _check_required(
             params = entries.get("params")
             entry = params.value.get(key) if params and isinstance(params.value, Map) else None
             inside = entry.key.span if entry is not None else None
+            help = _with_type(key, variable)
             report.append(
-                missing_variable(name.span, key, whose, related, example, in_params=inside)
+                missing_variable(
+                    name.span, key, whose, related, example, help=help, in_params=inside
+                )
             )
 
 
 TYPE_EXAMPLES = {
-    "message_type": "std_msgs/String",
-    "service_type": "std_srvs/Trigger",
-    "action_type": "actionlib/TestAction",
+    "message_type": ("the messages", "std_msgs/Float32"),
+    "service_type": ("the service", "std_srvs/Trigger"),
+    "action_type": ("the action", "actionlib/TestAction"),
 }
-"""A type of each kind, as a script names it."""
+"""What has a type of each kind, and the name of such a type, as a script writes it."""
+
+
+def _with_type(name: str, variable: VariableType | None) -> str | None:
+    """The help for a missing variable that names a type of ROS, which only the user knows."""
+    if variable is None or variable.unquoted != "type" or variable.role not in TYPE_EXAMPLES:
+        return None
+    what, example = TYPE_EXAMPLES[variable.role]
+    return f"add `{name}` with the type of {what}, such as `{name}: {example}`"
 
 
 def _example(variable: VariableType) -> str:
     """A value that the variable can have; empty if there is no short one."""
     limits = variable.limits
-    if variable.unquoted == "type":
-        return TYPE_EXAMPLES.get(variable.role, "")
     if variable.unquoted == "function" and variable.arguments:
         names = ("ud" if each == "userdata" else each for each in variable.arguments)
         return f"'lambda {', '.join(names)}: True'"

@@ -579,3 +579,52 @@ states:
     whole = script.replace("{kind: str}", "{kind: int}")  # the value does not fit
     codes = {each.code for each in analysed({"main.yml": whole}).report}
     assert codes == {"SM301", "SM305"}
+
+
+def test_an_output_that_no_callback_sets_is_no_race() -> None:
+    script = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [done]
+      default_outcome: done
+      output_keys: [part]
+      transitions: {done: done}
+      states:
+        - FIND: {template: ScriptedState, outcomes: [ok], output_keys: [part]}
+        - WARM:
+            template: CallbacksState
+            output_keys: [part]
+            callbacks: {heat: 'lambda ud: 3'}
+"""
+    report = analysed({"main.yml": script}).report
+    found = [(each.code, each.help) for each in report if each.severity is not Severity.INFO]
+    assert found == [
+        (
+            "SM308",
+            "write `heat` in place of `part` in the `output_keys` of `WARM`, or `part` in place of"
+            " `heat` here",
+        )
+    ]
+    both = script.replace("{heat:", "{part:")
+    assert "SM405" in [each.code for each in analysed({"main.yml": both}).report]
+
+
+def test_the_name_of_a_param_as_a_text() -> None:
+    script = """\
+name: sm
+template: Base
+outcomes: [done]
+params: {greeting: hello}
+states:
+  - SAY: {template: Say, text: greeting, transitions: {said: done}}
+"""
+    interface = "variables: {text: str}\noutcomes: {said: {}}\n"
+    report = analysed({"main.yml": script, "templates/Say.yml": interface}).report
+    found = [(each.code, each.span.text, each.help) for each in report]
+    help = "write `[params, greeting]` for the value of the param"
+    assert found == [("SM306", "greeting", help)]
+    assert report[0].span.start == script.index("greeting, ")

@@ -49,7 +49,7 @@ states:
         ),
         (
             WATCH, "      msg_type: std_msgs/Float32\n", "", "SM005", "WATCH",
-            "add `msg_type: std_msgs/String`",
+            "add `msg_type` with the type of the messages, such as `msg_type: std_msgs/Float32`",
         ),
         (
             GRIP, "std_srvs/SetBool", "std_srvs", "SM019", "std_srvs",

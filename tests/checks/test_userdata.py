@@ -401,7 +401,8 @@ states:
 def test_no_edit_where_a_declared_output_is_never_set(state: str, key: str) -> None:
     items = analysed({"main.yml": UNSET.replace("STATE", state)}).report
     (item,) = [item for item in items if item.code == "SM308"]
-    assert item.finding.help == f"did you mean `w`? or add `{key}` to the `output_keys` of `A`"
+    help = f"write `{key}` in place of `w` in the `output_keys` of `A`, or `w` in place of `{key}`"
+    assert item.finding.help == f"{help} here"
     assert item.finding.edits == ()
     every = state.replace("set: {widht", "set: {w: 1, widht").replace("{total", "{w: 1, total")
     if "set:" in every:

@@ -339,6 +339,7 @@ def missing_variable(
     related: tuple[Related, ...] = (),
     example: str = "",
     *,
+    help: str | None = None,
     instead: Word | None = None,
     in_params: Span | None = None,
 ) -> Finding:
@@ -360,7 +361,7 @@ def missing_variable(
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    help = f"add `{name}: {example or MISSING.get(name, '...')}`"
+    help = help or f"add `{name}: {example or MISSING.get(name, '...')}`"
     if name == "template":
         help += "; `smachac states` lists the types"
     if instead is not None:
