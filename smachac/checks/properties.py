@@ -125,9 +125,10 @@ def _violation(form: Form, example: Counterexample) -> str:
             return f"{event}{since}{' and' * bool(since and until)}{_before(until)}"
         case Before(earlier=earlier):
             return f"{event}{_before(earlier)}"
-        case After(answer=answer, within=within) if example.node:
+        case After(first=first, answer=answer, within=within) if example.node:
             if within and not example.outcome:
-                return f"{entered}, and {either(answer)} has not come within {within} states"
+                late = f"{either(answer)} does not come within {within} states after"
+                return f"{late} {either(first)}: {entered} first"
             return f"{event}{_before(answer)}"
         case After(first=first, answer=answer):
             return f"the run ends without {either(answer)} after {either(first)}"
@@ -145,18 +146,22 @@ def _before(events: Atoms) -> str:
     return f" before {either(events)}" if events else ""
 
 
+_CORRECT = "correct the property if this path is right"
+
+
 def _cure(form: Form, example: Counterexample) -> str:
     """What to do about a property that fails."""
     raised = bool(example.visits) and example.visits[-1].outcome is None
     match form:
         case Never(until=until, enter=enter):
             through = f" through {either(until)}, or" if until else ""
-            return f"lead this path{through} away from {either(enter)}"
+            return f"lead this path{through} away from {either(enter)}, or {_CORRECT}"
         case Before(later=later, earlier=earlier):
-            return f"lead each path to {either(later)} through {either(earlier)}"
+            return f"lead each path to {either(later)} through {either(earlier)}, or {_CORRECT}"
         case After(first=first, answer=answer):
             on_error = ", also the exceptions, with `error: TARGET` in `transitions`" * raised
-            return f"lead each path from {either(first)} through {either(answer)}{on_error}"
+            way = f"lead each path from {either(first)} through {either(answer)}{on_error}"
+            return f"{way}, or {_CORRECT}"
         case AtMost() | AlwaysEnds():
             return (
                 "limit the number of tries, for example with `retry: {on: [OUTCOME], max: 3}` in"

@@ -248,9 +248,26 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
         message=f"{first}, but {second}" if at_origin else f"{second}, but {first}",
         arguments=(about.key, str(widened(clash.misfit.given)), str(clash.misfit.wanted)),
         help=_help(clash),
+        effect=_effect(clash),
         related=(*related, *(calls(about.node, span) if about.node is not None else ())),
         node=about.path,
     )
+
+
+def _effect(clash: Clash) -> str | None:
+    """What the type leads to in Python, where that is certain."""
+    wanted, given = present(clash.misfit.wanted), clash.misfit.given
+    if wanted.name == "one_of":
+        return "the interface allows these values only: the code may fail with another one"
+    if wanted.name in ("int", "float") and kinds(given) == {"text"}:
+        return "arithmetic with a text raises a TypeError, or repeats the text"
+    if wanted.name == "int" and kinds(given) == {"number"}:
+        return "a number with a fraction raises a TypeError as an index and in `range`"
+    if wanted.name == "str" and kinds(given) == {"number"}:
+        return "a number has no operations of a text: they raise an error in the run"
+    if wanted.name == "bool" and kinds(given) == {"text"}:
+        return "each text that is not empty counts as true in Python"
+    return None
 
 
 def _place(clash: Clash) -> Span:

@@ -97,7 +97,10 @@ def _file(word: Scalar, source: Source, library: Library, report: Report) -> Tre
 
 
 def _fault(tree: Tree | Scalar, message: str, help: str | None, *arguments: str) -> Any:
-    return wrong_shape(tree.span, message, help, arguments=arguments)
+    effect = "a property that cannot be read is not checked, so no program is generated"
+    if arguments[:1] == ("file",):
+        effect = "without the file, none of its properties is checked, so no program is generated"
+    return wrong_shape(tree.span, message, help, arguments=arguments, effect=effect)
 
 
 class _Reader:

@@ -374,7 +374,9 @@ def _check_qos(tree: Tree, report: Report) -> None:
             listed = ", ".join(f"`{each}`" for each in fault.known)
             choice = f"write one of {listed}" if entry is not None else help
             help = did_you_mean(place.span.text.strip("\"'"), fault.known) or choice
-        report.append(wrong_shape(place.span, fault.text, help, arguments=("qos", fault.text)))
+        effect = "ROS 2 has no such quality of service: the program could not use the topic"
+        arguments = ("qos", fault.text)
+        report.append(wrong_shape(place.span, fault.text, help, arguments=arguments, effect=effect))
 
 
 def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:

@@ -295,6 +295,7 @@ def wrong_shape(
     *,
     arguments: tuple[str, ...] = (),
     edits: tuple[Edit, ...] = (),
+    effect: str | None = None,
 ) -> Finding:
     """A value has a shape that the language does not allow at this place.
 
@@ -322,7 +323,13 @@ def wrong_shape(
               transitions: {done: done}
     """
     return Finding(
-        span=span, message=message, arguments=arguments, help=help, related=related, edits=edits
+        span=span,
+        message=message,
+        arguments=arguments,
+        help=help,
+        related=related,
+        edits=edits,
+        effect=effect,
     )
 
 
