@@ -127,6 +127,8 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
             near = f"write `{ending.meant}`" if ending.meant is not None else None
             near = near or did_you_mean(_meant(leaf, word.text, guess))
             near = near or _without_tuple(word.text, outcomes)
+            if ending.silent:
+                near = f"end each path of `{ending.silent}` with a `return`; {known}"
             yield Finding(
                 span=word.span,
                 message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",

@@ -142,9 +142,16 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
 
 def _through_outcome(container: Linear, step: Transition, above: str) -> str:
     """The help for a transition to a state in another container: it leads there through an outcome
-    of its own container."""
+    of its own container; an outcome that has another use does not get a second one."""
     target, name = step.target, container.name
+    used = {each.target for child in container.children for each in child.transitions}
     for outer in container.transitions:
+        if outer.target == target and outer.outcome in used:
+            own = step.outcome
+            return (
+                f"add the outcome `{own}` to `{name}`, write `{own}: {own}` here, and"
+                f" `{own}: {target}` in the transitions of `{name}`"
+            )
         if outer.target == target:
             return (
                 f"write `{step.outcome}: {outer.outcome}`: the outcome `{outer.outcome}` of"

@@ -26,7 +26,7 @@ from smachac.frontend.python_modules import (
     template_module,
     with_bases,
 )
-from smachac.frontend.python_source import PythonText
+from smachac.frontend.python_source import PythonText, name_span
 from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
 
 PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
@@ -152,13 +152,6 @@ def _undefined(own: OwnClass, lists: dict[str, Words | None] | None) -> Iterator
 
 def _fillings(module: Module, node: ast.stmt) -> list[str]:
     return module.text.fillings(module.text.span(node))
-
-
-def name_span(text: PythonText, node: ast.ClassDef | ast.FunctionDef) -> Span:
-    """The place of the name in a definition."""
-    span = text.span(node)
-    at = max(span.source.text.find(node.name, span.start), span.start)
-    return Span(span.source, at, at + len(node.name))
 
 
 # --- execute

@@ -16,6 +16,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_constants import entries, member, table
 from smachac.frontend.python_modules import Module, OwnClass, constant, find_function
+from smachac.frontend.python_source import name_span
 from smachac.ir.class_facts import Ending
 
 METHODS = frozenset(["extract", "keys", "merge", "update"])
@@ -35,7 +36,8 @@ class Flow:
 
     `written` are the keys that it can set; None: not known. `passed` are the parameters that it
     returns, each with the keys that can be set before. `open_end` is the place of the statement
-    after which it ends without `return`, with its kind (see PathEnds.open_end).
+    after which it ends without `return`, with its kind (see PathEnds.open_end);
+    `name` is that of the function.
     """
 
     endings: tuple[Ending, ...] = ()
@@ -47,6 +49,7 @@ class Flow:
     written: Keys = None
     passed: tuple[tuple[str, Keys], ...] = ()
     open_end: Word | None = None
+    name: Word | None = None
 
 
 def is_plain(function: ast.FunctionDef) -> bool:
@@ -126,6 +129,7 @@ class _Reader:
             writes=writes,
             written=written,
             open_end=self._open_end() if not self.path_ends.block(body) else None,
+            name=Word(self.function.name, name_span(self.text, self.function)),
             passed=tuple(self.passed if known else [(name, None) for name, _ in self.passed]),
         )
 
@@ -524,6 +528,10 @@ class _Reader:
             written = each.written if call in self.called else NONE
             known = None if written is None else _both(before, written)
             self.endings.append(replace(each, written=known))
+        if flow.silent and flow.name is not None:
+            none = Word("None", flow.name.span)
+            sometimes = not flow.always_silent
+            self.endings.append(Ending(outcome=none, possible=sometimes, silent=flow.name.text))
         given = self._arguments(call) or {}
         complete = flow.complete and not flow.silent
         for name, written in flow.passed:

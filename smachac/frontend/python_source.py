@@ -120,3 +120,10 @@ def syntax_error(source: Source) -> Word | None:
     except (ValueError, RecursionError, MemoryError):
         return None
     return None
+
+
+def name_span(text: PythonText, node: ast.ClassDef | ast.FunctionDef) -> Span:
+    """The place of the name in a definition."""
+    span = text.span(node)
+    at = max(span.source.text.find(node.name, span.start), span.start)
+    return Span(span.source, at, at + len(node.name))

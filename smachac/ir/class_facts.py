@@ -69,13 +69,15 @@ class Parameter:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ending:
     """A constant that `execute` returns, and the userdata keys that the code before it can set;
-    None: not known. `possible`: an entry of a table, which may be one that is never used. `meant`
-    is the expression that was probably meant."""
+    None: not known. `possible`: an entry of a table, which may be one that is never used, or a path
+    that may be impossible. `meant` is the expression that was probably meant; `silent` the helper
+    that ends without `return`, and so returns None."""
 
     outcome: Word
     written: frozenset[str] | None = None
     possible: bool = False
     meant: str | None = None
+    silent: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

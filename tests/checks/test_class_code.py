@@ -500,3 +500,39 @@ def test_the_item_of_for_each_is_a_key_of_its_state() -> None:
     assert "SM310" not in {item.code for item in findings(text, script=script)}
     text = changed(("range(userdata.tries)", "range(userdata.other)"))
     assert "SM310" in {item.code for item in findings(text, script=script)}
+
+
+HELPER = (
+    CLASS[: CLASS.index("    def execute")]
+    + """\
+    def execute(self, userdata):
+        if self.preempt_requested():
+            return "preempted"
+        userdata.pose = camera.look(self.speed)
+        return self.judge(userdata.tries)
+
+    def judge(self, tries):
+        if tries > 3:
+            return "lost"
+        TAIL
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("tail", "severity"),
+    [
+        ('return "found"', None),
+        ("raise ValueError(tries)", None),
+        ("self.last = tries", Severity.WARNING),
+        ('if tries > 1:\n            return "found"', Severity.WARNING),
+    ],
+)
+def test_a_helper_that_ends_without_return(tail: str, severity: Severity | None) -> None:
+    files = {"templates/FindPart.yml": INTERFACE, "cell/find.py": HELPER.replace("TAIL", tail)}
+    report = analyse(Source("main.yml", SCRIPT), memory_library(files, BUILT_IN), []).report
+    found = [each for each in report if each.code == "SM309"]
+    assert [each.severity for each in found] == ([severity] if severity is not None else [])
+    for each in found:
+        assert each.span.text == "judge"
+        assert str(each.help).startswith("end each path of `judge` with a `return`")
