@@ -25,7 +25,10 @@ FORMS = {
 
 NOUNS = {"Pose": "pose", "Transform": "transform", "Point": "point", "Quaternion": "rotation"}
 
-HELP = {name: f"write a {NOUNS[name]} as `{form}`" for name, form in FORMS.items()}
+HELP = {name: f"write a {NOUNS[name]} as `{form}`" for name, form in FORMS.items()} | {
+    "Quaternion": "write a rotation as the 4 numbers of a quaternion, `[qx, qy, qz, qw]`, not as"
+    " 3 angles"
+}
 
 
 def in_words(type_: Type) -> str:

@@ -155,6 +155,25 @@ EFFECTS: Mapping[FaultKind, str] = {
 }
 """What happens, where it differs from most faults; empty if the message contains it."""
 
+_PASSED = "the program passes each variable by its name: the call raises a TypeError"
+_CALLED = "the program makes the state without this argument: the call raises a TypeError"
+
+PYTHON_EFFECTS: Mapping[FaultKind, str] = {
+    "no state": "SMACH uses attributes of `smach.State` that the object does not have",
+    "no execute": "`execute` of `smach.State` raises a NotImplementedError when the state runs",
+    "arguments": "SMACH calls `execute` with the userdata alone: the call raises a TypeError",
+    "no method": "SMACH needs the name of an outcome: the machine stops with an error",
+    "coroutine": "SMACH needs the name of an outcome: the machine stops with an error",
+    "no constructor call": "the outcomes and keys of the state are missing: the program stops",
+    "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
+    "no parameter": _PASSED,
+    "no such parameter": _PASSED,
+    "other parameter": _PASSED,
+    "required parameter": _CALLED,
+    "missing argument": _CALLED,
+}
+"""What happens in a program in Python, where it is certain."""
+
 WRITTEN = frozenset[FaultKind](
     [
         "wrong result",
@@ -191,4 +210,6 @@ def class_effect(fault: ClassFault, target: str) -> str | None:
     """The effect of a fault of a class; empty if its message contains it."""
     if fault.kind in EFFECTS:
         return EFFECTS[fault.kind]
-    return "the C++ compiler refuses the class" if target == "cpp" else None
+    if target == "cpp":
+        return "the C++ compiler refuses the class"
+    return PYTHON_EFFECTS.get(fault.kind)
