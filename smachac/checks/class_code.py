@@ -12,7 +12,7 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -142,10 +142,10 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
         does = "never returns" if facts.always_silent else "can end without returning"
         alone = _text_alone(facts, outcomes)
         yield Finding(
-            span=alone or facts.execute,
+            span=alone.span if alone else facts.execute,
             message=f"`execute` of `{leaf.type}` {does} an outcome",
             arguments=(leaf.type,),
-            help=f"write `return {alone.text}`"
+            help=f"write `return {alone.span.text}`"
             if alone
             else f"end each path with a `return`; {known}",
             related=(*_open_end(facts), *_used_here(leaf)),
@@ -154,12 +154,13 @@ def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding
         )
 
 
-def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> Span | None:
+def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> Word | None:
     """The outcome that the last line of `execute` has without `return`."""
     end = facts.open_end
-    if end is None or end.text != "text" or end.span.text.strip("'\"") not in outcomes:
+    if end is None or end.text != "text":
         return None
-    return end.span
+    outcome = end.span.text.strip("'\"")
+    return Word(outcome, end.span) if outcome in outcomes else None
 
 
 END_OF_EXECUTE = {
@@ -489,7 +490,7 @@ def never_returned(context: Context) -> Iterator[Finding]:
         returned = {word.text for word in facts.returns}
         alone = _text_alone(facts, outcome_names(leaf))  # SM309
         if alone is not None:
-            returned.add(alone.text.strip("'\""))
+            returned.add(alone.text)
         names = [each.name for each in type_.outcomes]
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant

@@ -259,7 +259,8 @@ TYPE_EXAMPLES = {
 
 
 def _with_type(name: str, variable: VariableType | None) -> str | None:
-    """The help for a missing variable that names a type of ROS, which only the user knows."""
+    """The help for a missing variable that names a type of ROS: an example, because the script does
+    not contain the type. None for other variables."""
     if variable is None or variable.unquoted != "type" or variable.role not in TYPE_EXAMPLES:
         return None
     what, example = TYPE_EXAMPLES[variable.role]
