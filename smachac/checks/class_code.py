@@ -306,11 +306,14 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
     The rules and the next states rely on the interface: a state that reads the key stops the
     machine with an error, or works with an old value.
 
-    Exactly: the class is read, never run. There is a finding only if no path to that `return` can
-    set the key: methods of the class and functions of its module are followed, and a class that
-    passes the userdata to other code is not checked. `writes:` in the interface names the outcomes
-    that set a key. A key that is not in it must be set before one `return` at least; after the
-    others it counts as unset (SM301).
+    Exactly: the class is read, never run: methods of the class and functions of its module are
+    followed, and a class that passes the userdata to other code is not checked. `writes:` in the
+    interface names the outcomes that set a key. There is a finding at a `return` of such an outcome
+    if no path to it sets the key, or if a branch, an exception or the end of a loop leads past the
+    assignment straight to it. Behind a further condition, and where a condition was examined
+    before, the key counts as set, because the conditions can depend on each other. A key that is
+    not in `writes:` must be set before one `return` at least; after the others it counts as unset
+    (SM301).
 
     Wrong:
         name: sm
@@ -402,6 +405,7 @@ def _unwritten(
                     related=_used_here(leaf),
                     node=path,
                 )
+        yield from _skipped_output(path, leaf, facts, key, promised)
     elif facts.complete and facts.execute is not None and missing == [*facts.endings] != []:
         yield Finding(
             span=facts.execute,
@@ -409,6 +413,40 @@ def _unwritten(
             arguments=(leaf.type, key),
             help=f"set `userdata.{key}`, or remove it from the interface `{leaf.type}`",
             related=_used_here(leaf),
+            node=path,
+        )
+
+
+WAY_PAST = {
+    "if": "if this is false, `{key}` is not set",
+    "else": "if this is true, `{key}` is not set",
+    "match": "not every `case` sets `{key}`",
+    "except": "after this exception, `{key}` is not set",
+    "loop": "this loop can end without setting `{key}`",
+    "return": "this `return` comes before `{key}` is set",
+}
+"""The place that leads past the assignment to an output key, by its kind."""
+
+
+def _skipped_output(
+    path: str, leaf: Leaf, facts: ClassFacts, key: str, promised: Collection[str]
+) -> Iterator[Finding]:
+    """The returns that break a promise of `writes:` on some of the paths to them."""
+    for ending in facts.endings:
+        place = dict(ending.skipped).get(key)
+        if place is None or ending.outcome.text not in promised:
+            continue
+        yield Finding(
+            span=ending.outcome.span,
+            message=f"`{leaf.type}` can return `{ending.outcome.text}` without setting its output"
+            f" key `{key}`",
+            arguments=(leaf.type, key, ending.outcome.text),
+            help=f"set `userdata.{key}` on each path to this `return`, or correct `writes:` in the"
+            f" interface `{leaf.type}`",
+            related=(
+                *other_place(place.span, WAY_PAST[place.text].format(key=key)),
+                *_used_here(leaf),
+            ),
             node=path,
         )
 

@@ -39,7 +39,7 @@ class PathEnds:
                 return True
             case ast.If(body=body, orelse=orelse):
                 return self.block(body) and self.block(orelse)
-            case ast.For() | ast.While() if self._is_endless(node):
+            case ast.For() | ast.While() if self.is_endless(node):
                 return not any(_breaks(node.body))
             case (
                 ast.For(body=body, orelse=[_, *_] as orelse)
@@ -87,7 +87,7 @@ class PathEnds:
                 return "text", last
         return "", last
 
-    def _is_endless(self, loop: ast.For | ast.While) -> bool:
+    def is_endless(self, loop: ast.For | ast.While) -> bool:
         """Whether the head of a loop never ends it."""
         if isinstance(loop, ast.While):
             return isinstance(loop.test, ast.Constant) and bool(loop.test.value)

@@ -17,6 +17,7 @@ from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_constants import entries, member, table
 from smachac.frontend.python_modules import Module, OwnClass, constant, find_function
 from smachac.frontend.python_source import name_span
+from smachac.frontend.skipped_writes import Paths, SkippedWrites
 from smachac.ir.class_facts import Ending
 
 METHODS = frozenset(["extract", "keys", "merge", "update"])
@@ -35,8 +36,9 @@ class Flow:
     """The control flow of a function; for the fields see ClassFacts.
 
     `written` are the keys that it can set; None: not known. `passed` are the parameters that it
-    returns, each with the keys that can be set before. `open_end` is the place of the statement
-    after which it ends without `return`, with its kind (see PathEnds.open_end);
+    returns, each with the keys that can be set before. `skipped` are the keys that a call sets only
+    on some paths, each with the place that leads past the assignment. `open_end` is the place of
+    the statement after which it ends without `return`, with its kind (see PathEnds.open_end);
     `name` is that of the function.
     """
 
@@ -48,6 +50,7 @@ class Flow:
     writes: tuple[Word, ...] = ()
     written: Keys = None
     passed: tuple[tuple[str, Keys], ...] = ()
+    skipped: tuple[tuple[str, Word], ...] = ()
     open_end: Word | None = None
     name: Word | None = None
 
@@ -106,7 +109,11 @@ class _Reader:
         self.effect: dict[ast.AST, frozenset[str]] = {}
         self.endings: list[Ending] = []
         self.passed: list[tuple[str, Keys]] = []
+        self.jumps: list[Keys] = []
         self.complete = True
+        self.paths = SkippedWrites(
+            self.path_ends, userdata, self._effects, self._skips, self._first_line
+        )
 
     def flow(self) -> Flow:
         body = self.function.body
@@ -117,6 +124,8 @@ class _Reader:
             self._follow_calls()
         reads, writes = ((), ()) if rebound else self._accesses()
         known = not rebound and self._is_closed() and not filled
+        if known and self._effects(self.function):
+            self.paths.read(body)
         self._block(body, NONE)
         endings = self.endings if known else [replace(e, written=None) for e in self.endings]
         written = self._effects(self.function) if known else None
@@ -128,6 +137,7 @@ class _Reader:
             reads=reads,
             writes=writes,
             written=written,
+            skipped=tuple(self.paths.whole().items()),
             open_end=self._open_end() if not self.path_ends.block(body) else None,
             name=Word(self.function.name, name_span(self.text, self.function)),
             passed=tuple(self.passed if known else [(name, None) for name, _ in self.passed]),
@@ -136,8 +146,10 @@ class _Reader:
     def _open_end(self) -> Word | None:
         """The kind of place from which control gets to the end, and its first line."""
         kind, node = self.path_ends.open_end(self.function.body)
-        if not kind:
-            return None
+        return self._first_line(kind, node) if kind else None
+
+    def _first_line(self, kind: str, node: ast.AST) -> Word:
+        """The place of the first line of a statement or handler, with its kind."""
         line = getattr(node, "lineno", 1)
         start = self.text.offset(line, getattr(node, "col_offset", 0))
         source = self.text.source
@@ -281,6 +293,11 @@ class _Reader:
             self.effect[node] = frozenset(found)
         return self.effect[node]
 
+    def _skips(self, node: ast.AST) -> dict[str, Word]:
+        """The keys that the called functions in an expression set only on some paths."""
+        calls = [self.called.get(each) for each in ast.walk(node) if isinstance(each, ast.Call)]
+        return {key: place for flow in calls if flow is not None for key, place in flow.skipped}
+
     def _accesses(self) -> tuple[tuple[Word, ...], tuple[Word, ...]]:
         """The keys that are read and written; without keys whose presence the code tests, and
         without code in `try`."""
@@ -338,18 +355,16 @@ class _Reader:
             case ast.Return():
                 self._returned(node, _both(before, self._effects(node)))
                 return None
-            case ast.Raise() | ast.Break() | ast.Continue():
+            case ast.Break() | ast.Continue():
+                self.jumps.append(before)
+                return None
+            case ast.Raise():
                 return None
             case ast.If():
                 head = _both(before, self._effects(node.test))
                 return _either(self._block(node.body, head), self._block(node.orelse, head))
             case ast.For() | ast.AsyncFor() | ast.While():
-                # A round can follow any other one that does not leave the function.
-                head = _both(before, self._carried(node.body) | self._head(node))
-                self._block(node.body, head)
-                self._block(node.orelse, head)
-                after = _both(head, self._carried(node.orelse))
-                return None if self.path_ends.statement(node) else after
+                return self._loop(node, before)
             case ast.With() | ast.AsyncWith():
                 # A context manager can suppress an exception.
                 self._block(node.body, _both(before, self._all(node.items)))
@@ -366,6 +381,13 @@ class _Reader:
                 return _both(before, self._effects(node))
         return None if self.path_ends.statement(node) else _both(before, self._effects(node))
 
+    def _loop(self, node: ast.For | ast.AsyncFor | ast.While, before: Keys) -> Keys:
+        # A round can follow any other one that does not leave the function.
+        head = _both(before, self._carried(node.body) | self._head(node))
+        self._block(node.body, head)
+        after = _either(head, self._block(node.orelse, head))
+        return None if self.path_ends.statement(node) else after
+
     def _try(self, node: ast.Try, before: Keys) -> Keys:
         head = _both(before, self._all(node.finalbody))
         after = self._block(node.orelse, self._block(node.body, head))
@@ -380,19 +402,12 @@ class _Reader:
         return self._all(parts)
 
     def _carried(self, body: list[ast.stmt]) -> frozenset[str]:
-        """The keys that statements can set on paths that do not end with `return` or `raise`."""
-        leaves = any(isinstance(each, ast.Return | ast.Raise) for each in body)
-        jumps = ast.Break | ast.Continue
-        if leaves and not any(isinstance(node, jumps) for each in body for node in ast.walk(each)):
-            return NONE
-        found = NONE
-        for each in body:
-            if isinstance(each, ast.If):
-                found |= self._effects(each.test)
-                found |= self._carried(each.body) | self._carried(each.orelse)
-            else:
-                found |= self._effects(each)
-        return found
+        """The keys that a round of a loop can set on paths that do not leave the function."""
+        kept = self.endings, self.passed, self.jumps, self.complete
+        self.endings, self.passed, self.jumps = [], [], []
+        end = _either(self._block(body, NONE), *self.jumps)
+        self.endings, self.passed, self.jumps, self.complete = kept
+        return end or NONE
 
     def _all(self, parts: Iterable[ast.AST]) -> frozenset[str]:
         return NONE.union(*map(self._effects, parts))
@@ -401,9 +416,23 @@ class _Reader:
         if node.value is None:
             self.endings.append(Ending(outcome=Word("None", self.text.span(node)), written=before))
             return
+        first = len(self.endings)
         for value in alternatives(node.value):
             if not self._constants(value, before):
                 self.complete = False
+        self._skipped(node, first)
+
+    def _skipped(self, node: ast.Return, first: int) -> None:
+        """Adds the skipped keys before a `return` to its ending, from the index `first`. With
+        several endings, a condition decides, which can depend on what was skipped."""
+        paths = self.paths.returns.get(node, Paths())
+        stored = isinstance(node.value, ast.Name) and self._is_local(node.value.id)
+        for index, ending in enumerate(self.endings[first:], first):
+            skips = dict(ending.skipped)
+            if len(self.endings) - first == 1 and not stored:
+                skips |= paths.skipped
+            left = tuple((key, place) for key, place in skips.items() if key not in paths.sure)
+            self.endings[index] = replace(ending, skipped=left)
 
     def _constants(self, value: ast.expr, before: Keys) -> bool:
         """Adds the endings with the values of an expression; False if it can have others."""

@@ -71,11 +71,13 @@ class Ending:
     """A constant that `execute` returns, and the userdata keys that the code before it can set;
     None: not known. `possible`: an entry of a table, which may be one that is never used, or a path
     that may be impossible. `meant` is the expression that was probably meant; `silent` the helper
-    that ends without `return`, and so returns None."""
+    that ends without `return`, and so returns None. `skipped` are the keys that a path to it does
+    not set, each with the place that leads past the assignment (frontend/skipped_writes.py)."""
 
     outcome: Word
     written: frozenset[str] | None = None
     possible: bool = False
+    skipped: tuple[tuple[str, Word], ...] = ()
     meant: str | None = None
     silent: str = ""
 

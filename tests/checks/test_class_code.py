@@ -188,7 +188,6 @@ def test_a_fault(text: str, found: list[str], help: str | None) -> None:
         (SET, "                userdata['pose'] = pose\n"),
         (SET, "                pose, userdata.pose = 1, pose\n"),
         (SET, "                with lock:\n                    userdata.pose = pose\n"),
-        (SET, "                if pose.ok:\n                    userdata.pose = pose\n"),
         (FIRST, "        userdata.pose = None\n" + FIRST),
         # the class is made in another way
         (HEAD, "class FindPart(Skill):\n"),
