@@ -302,7 +302,10 @@ def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) 
         if isinstance(container, nodes.Iterator) and isinstance(edge.target, str):
             item = frozenset([container.item_key])
             given = Writes(
-                given.sure | item, given.trusted | item, given.perhaps | item, given.anything
+                given.sure | item,
+                given.trusted | item,
+                given.perhaps | item,
+                given.anything or not container.item_key,
             )
         found.setdefault(edge.source, []).append(KeyStep(edge.target, edge.outcome, given))
     return {vertex: tuple(steps) for vertex, steps in found.items()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
 from smachac.analysis.code_slots import free_in, undeclared_slot_reads
@@ -81,7 +81,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
     unset: dict[str, set[str]] = {}
     for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
-    reported |= {(path, preset.key) for path, (_, preset) in meant_presets(context).items()}
+    reported |= {(path, preset.key) for path, (_, preset, *_) in meant_presets(context).items()}
     for scope in flow.scopes.values():
         container = scope.container
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
@@ -109,14 +109,24 @@ def dead_key(context: Context) -> Iterator[Finding]:
             )
 
 
-def meant_presets(context: Context) -> dict[str, tuple[Missing, Preset]]:
-    """By path of a container, the only key of its userdata that nothing reads, with the only key
-    that is read there and that nothing sets: a remapping from the one to the other is probably
-    missing. Only where the reader has a type, and the value fits it."""
+class MeantPreset(NamedTuple):
+    """A key that nothing sets, and the only userdata of its container that nothing reads, which is
+    probably meant for it: by a remapping or, if `looped`, by a `for_each` over its items. `state`
+    is the path of the state that reads the key."""
+
+    missing: Missing
+    preset: Preset
+    state: str
+    looped: bool
+
+
+def meant_presets(context: Context) -> dict[str, MeantPreset]:
+    """The values that are probably meant for keys that nothing sets, by path of the container. Only
+    where one key is unset and one is unread, and where the type of the reader fits."""
     missing: dict[str, list[Missing]] = {}
     for each in context.missing_keys("nowhere"):
         missing.setdefault(each.scope.path, []).append(each)
-    found: dict[str, tuple[Missing, Preset]] = {}
+    found: dict[str, MeantPreset] = {}
     for path, (first, *others) in missing.items():
         scope = first.scope
         if others:
@@ -129,8 +139,13 @@ def meant_presets(context: Context) -> dict[str, tuple[Missing, Preset]]:
         wanted = context.types.inputs.get((reader.path, reader.key), ANY)
         if len(unread) != 1 or reader.key != first.key or reader.node is scope.container:
             continue
-        if wanted != ANY and misfit(type_of_data(unread[0].value.data), wanted) is None:
-            found[path] = first, unread[0]
+        data = unread[0].value.data
+        looped = isinstance(data, tuple) and not isinstance(reader.node, nodes.Iterator)
+        if wanted == ANY or misfit(type_of_data(data), wanted) is not None:
+            if looped:
+                found[path] = MeantPreset(first, unread[0], reader.path, looped=True)
+        else:
+            found[path] = MeantPreset(first, unread[0], reader.path, looped=False)
     return found
 
 
@@ -143,7 +158,10 @@ def _sees_everything(scope: UserdataScope) -> bool:
     """Whether a state in a container can read any key."""
     raw = isinstance(scope.container, nodes.Iterator)
     return any(
-        is_open(child) or (raw and isinstance(child, Leaf)) for child in scope.container.children
+        is_open(child)
+        or (raw and isinstance(child, Leaf))
+        or (isinstance(child, nodes.Iterator) and not child.item_key)
+        for child in scope.container.children
     )
 
 

@@ -16,6 +16,7 @@ from smachac.analysis.control_flow import (
     strays,
     unknown_outcomes,
 )
+from smachac.checks.declarations import meant_presets
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
@@ -25,7 +26,7 @@ from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import PREEMPTED, outcome_names
 
 
 class _Lost(NamedTuple):
@@ -225,7 +226,14 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    yield from context.at_containers(_unknown_outcomes)
+    for finding in context.at_containers(_unknown_outcomes):
+        if finding.span.text != PREEMPTED or finding.node not in _missing_loops(context):
+            yield finding
+
+
+def _missing_loops(context: Context) -> set[str]:
+    """The states in which `for_each` is probably missing, which SM301 reports."""
+    return {each.state for each in meant_presets(context).values() if each.looped}
 
 
 def _unknown_outcomes(path: str, container: Container) -> Iterator[Finding]:

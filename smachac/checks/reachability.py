@@ -13,6 +13,7 @@ from smachac.analysis.control_flow import (
 )
 from smachac.checks.messages import calls, did_you_mean, own_name
 from smachac.checks.outcomes import endings, unhandled
+from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -67,6 +68,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
+    missed = missed_states(context)
     for (path, container), whole in zip(context.linear, context.corrected, strict=True):
         seen = context.of_container(reachable, path, whole)
         hidden = [child for child in container.children if child.name not in seen]
@@ -75,6 +77,8 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
             continue
         before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
         for child in hidden:
+            if f"{path}/{child.name}" in missed:
+                continue  # SM701 reports the transition that must lead to it
             yield Finding(
                 span=child.span,
                 message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial"

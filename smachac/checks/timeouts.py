@@ -360,9 +360,11 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
 
 def undeclared_stops(container: nodes.Iterator) -> list[str]:
     """The undeclared outcomes with which an iterator ends after a preempt request."""
+    if container.catches or not container.item_key:  # without an item: SM004 or SM005
+        return []
     own = outcome_names(container)
     ends = stopped_endings(container)
-    return [] if container.catches else [each for each, result in ends.items() if result not in own]
+    return [each for each, result in ends.items() if result not in own]
 
 
 @rule(

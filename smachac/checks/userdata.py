@@ -18,7 +18,7 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
-from smachac.checks.declarations import meant_presets
+from smachac.checks.declarations import MeantPreset, meant_presets
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
@@ -29,7 +29,7 @@ from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
-from smachac.ir.nodes import Container, Node, Preset
+from smachac.ir.nodes import Container, Node
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.types import ANY, Type
 
@@ -100,21 +100,23 @@ def read_before_write(context: Context) -> Iterator[Finding]:
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])
             finding = _unset(missing, witness, users, guesses, context.types.inputs)
-            if meant is not None and meant[0] is missing:
-                finding = _with_remapping(finding, missing, witness, meant[1])
+            if meant is not None and meant.missing is missing:
+                finding = _with_preset(finding, witness, meant)
             yield finding
 
 
-def _with_remapping(
-    finding: Finding, missing: Missing, witness: Witness, preset: Preset
-) -> Finding:
-    """The finding on a key that nothing sets, where a remapping from a preset is missing."""
-    name = witness.reader.node.name
+def _with_preset(finding: Finding, witness: Witness, meant: MeantPreset) -> Finding:
+    """The finding on a key that nothing sets, where a loop over a preset or a remapping from it is
+    missing."""
+    name, key, preset = witness.reader.node.name, meant.missing.key, meant.preset
+    purpose, text = f"must read `{preset.key}`", f"remapping: {{{key}: {preset.key}}}"
+    if meant.looped:
+        purpose = f"must run for each item of `{preset.key}`"
+        text = f"for_each: {{item: {key}, in: {preset.key}}}"
     return replace(
         finding,
-        help=f"if `{name}` must read `{preset.key}`, write `remapping: {{{missing.key}:"
-        f" {preset.key}}}` in `{name}`; otherwise give `{missing.key}` an initial value in"
-        f" {container_name(missing.scope, finding.span)}",
+        help=f"if `{name}` {purpose}, write `{text}` in `{name}`; otherwise give `{key}` an initial"
+        f" value in {container_name(meant.missing.scope, finding.span)}",
         related=(*other_place(preset.span, f"nothing reads `{preset.key}`"), *finding.related),
     )
 

@@ -40,6 +40,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 from smachac.ir.traversal import PREEMPTED, outcome_names, remapping
+from smachac.ir.types import optional
 
 
 def desugared(node: Node, sugar: Sugar) -> Node:
@@ -208,6 +209,8 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
     remaps = remapping(node)
     item = next((key for key, to in remaps.items() if to == loop.item), loop.item)
     fields["inputs"] = tuple(key for key in node.inputs if key.name != item)
+    if not loop.item:  # any of them can be the item
+        fields["inputs"] = tuple(replace(key, type=optional(key.type)) for key in node.inputs)
     fields["remaps"] = tuple(remap for remap in node.remaps if remap.key != item)
     kept = tuple(each for each in node.outcomes if each.name not in on[1:])
     exhausted = _fresh(EXHAUSTED, own)
@@ -218,7 +221,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
         **fields,
         type="Iterator",
         sugar="for_each",
-        outcomes=_with_outcomes(kept, [PREEMPTED], loop.span),
+        outcomes=_with_outcomes(kept, [PREEMPTED] if loop.preempted else [], loop.span),
         children=(_inside(node),),
         items=None if items_key else items,
         items_key=items_key,

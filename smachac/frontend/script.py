@@ -61,12 +61,17 @@ class Retry:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForEach:
-    """One run for each item of `items`, under the key `item`, while the outcome is in `on`."""
+    """One run for each item of `items`, under the key `item`, while the outcome is in `on`.
+
+    In a wrong loop the item can be empty, and `preempted`, whether the loop adds that outcome,
+    false.
+    """
 
     item: str
     items: Value
     on: tuple[Word, ...]
     span: Span
+    preempted: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -67,7 +67,9 @@ def read_fields(
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
         read["default_outcome"] = name_of(entries["default_outcome"].value)
     if not NAMES.isdisjoint(entries):
-        read["sugar"] = read_sugar(entries, type_, read.get("outcomes", ()), report)
+        written = (word.text for word, _ in read.get("input_keys", ()))
+        inputs = (*written, *(key.name for key in type_.input_keys))
+        read["sugar"] = read_sugar(entries, type_, read.get("outcomes", ()), inputs, report)
     if "outcomes" in schema.REQUIRED[owner] and "outcomes" not in entries:
         read["outcomes"] = outcomes_used(entries)
     if owner == "state" and not type_.open:

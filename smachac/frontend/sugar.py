@@ -60,9 +60,13 @@ def is_own(name: str, type_: StateType) -> bool:
 
 
 def read_sugar(
-    entries: Mapping[str, Entry], type_: StateType, outcomes: tuple[Outcome, ...], report: Report
+    entries: Mapping[str, Entry],
+    type_: StateType,
+    outcomes: tuple[Outcome, ...],
+    inputs: tuple[str, ...],
+    report: Report,
 ) -> Sugar:
-    """The sugar among the fields of a state, which declares these outcomes.
+    """The sugar among the fields of a state, which declares these outcomes and input keys.
 
     Errors in it are reported (SM004), also outcomes that the state does not have; they are
     corrected then, so that nothing follows from them.
@@ -78,19 +82,19 @@ def read_sugar(
         own += tuple(outcome.name for outcome in outcomes)
     retry = _retry(fields["retry"], own, report) if "retry" in fields else None
     wrong_retry, before = len(report) > before, len(report)
-    for_each = _for_each(fields["for_each"], report) if "for_each" in fields else None
+    for_each = _for_each(fields["for_each"], inputs, report) if "for_each" in fields else None
     wrong_loop = len(report) > before
     pairs = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
     led = {word.text for word, _ in pairs}
-    # Wrong sugar is kept only where the script uses an outcome that it adds: otherwise that outcome
-    # would be reported because it has no transition.
+    # The outcomes that wrong sugar adds are kept only where the script uses one of them: otherwise
+    # they would be reported because they have no transition.
     used = led.union(word.text for part in (retry, for_each) if part for word in part.on)
     if wrong_timeout and used.isdisjoint({TIMEOUT, PREEMPTED}.difference(own)):
         timeout = None
     if wrong_retry and used.isdisjoint({EXHAUSTED, PREEMPTED}.difference(own)):
         retry = None
-    if wrong_loop and PREEMPTED not in {*own, *used}:
-        for_each = None
+    if for_each is not None and wrong_loop and PREEMPTED not in {*own, *used}:
+        for_each = replace(for_each, preempted=False)
     sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
     return _with_known_outcomes(sugar, own, led, report)
 
@@ -108,10 +112,11 @@ def _with_known_outcomes(
     if sugar.for_each is not None:
         on = _known(sugar.for_each.on, second, led, report)
         sugar = replace(sugar, for_each=replace(sugar.for_each, on=on))
-    if sugar.for_each and not sugar.for_each.on and not set(second) & set(GOOD_OUTCOMES):
+    loop = sugar.for_each
+    if loop and loop.item and not loop.on and not set(second) & set(GOOD_OUTCOMES):
         message = "`for_each` needs `on` here: no outcome of this state has the name of a success"
         help = f"add `on: [...]` with one or more of {listed(second)}" if second else NO_OUTCOMES
-        report.append(wrong_shape(sugar.for_each.span, message, help, arguments=("on",)))
+        report.append(wrong_shape(loop.span, message, help, arguments=("on",)))
     return sugar
 
 
@@ -184,7 +189,7 @@ def _parts(
     """The entries of a mapping with known keys, without those that are missing; None for other
     values. All errors are reported. `required`: keys that must be there, with example values."""
     if not isinstance(entry.value, Map):
-        wrong(entry.value, "map", report, _mapping_for(entry))
+        wrong(entry.value, "map", report, _mapping_for(entry, required))
         return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
     parts: dict[str, Tree] = {}
@@ -220,13 +225,14 @@ def _part_meant(word: str, parts: tuple[str, ...]) -> str | None:
     return near
 
 
-def _mapping_for(entry: Entry) -> str:
+def _mapping_for(entry: Entry, required: Mapping[str, str]) -> str:
     """How a field is written whose value is no mapping, with the user's value where it belongs."""
     value, text = entry.value, entry.value.span.text
     if entry.key.value == "for_each":
         items = text if isinstance(value, (Seq, Scalar)) and "\n" not in text and text else "KEY"
         sentence = _SENTENCE.fullmatch(text)
-        item, items = (sentence[1], sentence[2]) if sentence is not None else ("NAME", items)
+        meant = required["item"], items
+        item, items = (sentence[1], sentence[2]) if sentence is not None else meant
         return f"write `for_each: {{item: {item}, in: {items}}}`"
     number = value.value if isinstance(value, Scalar) and type(value.value) is int else 3
     return f"write `retry: {{on: [OUTCOME], max: {number}}}`, with the outcomes to try again after"
@@ -251,27 +257,26 @@ def _tries(tree: Tree, report: Report) -> int:
         return number
     message = f"`max`, the number of tries, must be a whole number from 1 to {MOST_TRIES:,}"
     help = "write a whole number, such as `3`"
+    if isinstance(tree, Scalar) and isinstance(tree.value, str) and tree.value.isdecimal():
+        help = f"quotes make it a text: write the number `{tree.value}`"
     if number is not None and number < 1:
         help = "write `max: 1` or more, or remove `retry` if one try is enough"
     report.append(wrong_shape(tree.span, message, help, arguments=("max",)))
     return UNKNOWN_TRIES
 
 
-def _for_each(entry: Entry, report: Report) -> ForEach | None:
-    required = {"item": "NAME", "in": "items"}
-    parts = _parts(entry, ("item", "in", "on"), required, report)
-    if parts is None:
-        sentence = _SENTENCE.fullmatch(entry.value.span.text)
-        if sentence is None:
-            return None
-        items = replace(as_value(entry.value), data=Expression(text=UNKNOWN, span=entry.value.span))
-        return ForEach(item=sentence[1], items=items, on=(), span=entry.key.span)
-    if not {"item", "in"} <= parts.keys():
-        return None
-    item = as_name(parts["item"], report)
-    on = as_names(parts["on"], report) if "on" in parts else ()
+def _for_each(entry: Entry, inputs: tuple[str, ...], report: Report) -> ForEach:
+    """The loop. Wrong or missing parts are reported; the item has no name then, so that nothing
+    follows from it. `inputs` are the input keys of the state."""
+    value = entry.value
+    used = {each.value.span.text for each in value.entries} if isinstance(value, Map) else set()
+    names = [key for key in inputs if key not in {*used, value.span.text}]
+    required = {"item": names[0] if len(names) == 1 else "NAME", "in": "KEY"}
     before = len(report)
-    items = as_items(parts["in"], report)
-    if item is None or len(report) > before:
-        return None
-    return ForEach(item=item.text, items=items, on=on, span=entry.key.span)
+    parts = _parts(entry, ("item", "in", "on"), required, report) or {}
+    unknown = replace(as_value(entry.value), data=Expression(text=UNKNOWN, span=entry.value.span))
+    name = as_name(parts["item"], report) if "item" in parts else None
+    items = as_items(parts["in"], report) if "in" in parts else unknown
+    item = name.text if name is not None and len(report) == before else ""
+    on = as_names(parts["on"], report) if "on" in parts else ()
+    return ForEach(item=item, items=items if item else unknown, on=on, span=entry.key.span)

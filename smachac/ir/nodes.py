@@ -336,7 +336,8 @@ class Concurrence(_Container):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Iterator(_Container):
-    """A container that runs its child once for each item; the item is in the key `item_key`.
+    """A container that runs its child once for each item; the item is in the key `item_key`, which
+    is empty where the script does not name it.
 
     The items are the value `items`, or the userdata of the container in `items_key`; `items_span`
     is their place. Outcomes in `loop_outcomes` continue with the next item; other outcomes end the

@@ -10,6 +10,7 @@ import pytest
 
 import smachac
 from smachac.commands.cli import main
+from tests.trust.project_text import analysed
 
 STATES = """\
   - PICK:
@@ -153,3 +154,45 @@ def test_explain_lists_the_properties(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["explain", script, "--properties", "--scenario", "a"]) == 2
     assert "all properties hold" in capsys.readouterr().err
     assert main(["explain", script, "PICK", "--scenario", "a"]) == 2
+
+
+TURN = """
+name: carry
+template: Base
+outcomes: [succeeded, aborted]
+properties:
+  - after: {LIFT: STOP}
+states:
+  - CLOSE: {template: ScriptedState, outcomes: [done], transitions: {done: LIFT}}
+  - LIFT:
+      template: ScriptedState
+      outcomes: [done, slipped]
+      transitions: {done: STOP, slipped: HOME}
+  - STOP: {template: ScriptedState, outcomes: [done], transitions: {done: succeeded}}
+  - HOME: {template: ScriptedState, outcomes: [done], transitions: {done: aborted}}
+"""
+
+
+def test_the_transition_that_leads_past_the_required_state() -> None:
+    """It is marked, also where the path ends later, and the help corrects it. A state to which no
+    transition leads because of it is no second finding."""
+    for text in (TURN, TURN.replace("done: STOP", "done: HOME")):
+        (item,) = analysed({"main.yml": text}).report
+        assert item.code == "SM701"
+        (place,) = item.related
+        assert place.span.text == "HOME"
+        assert place.message == "this transition leads to `HOME`, not to `STOP`"
+        outcome = "slipped" if text == TURN else "done"
+        assert item.help is not None
+        assert item.help.startswith(
+            f"write `{outcome}: STOP` in `LIFT`, or correct the property if this path is right\n"
+        )
+
+
+def test_a_path_has_no_pause_and_no_stopped_timer() -> None:
+    text = TURN.replace("- LIFT:\n", "- LIFT:\n      retry: {on: [done], max: 2, delay: 1s}\n")
+    text = text.replace("{done: STOP, slip", "{exhausted: STOP, preempted: STOP, slip")
+    (item,) = analysed({"main.yml": text}).report
+    shown = [step.label for step in item.finding.path]
+    assert "PAUSE" not in shown
+    assert "LIFT" in shown
