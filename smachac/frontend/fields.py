@@ -18,11 +18,13 @@ from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_w
 from smachac.ir.nodes import Outcome, Preset, Value
 from smachac.ir.types import ANY, parse_type
 
-_YAML_1_1_BOOLEANS = frozenset(
-    form
-    for word in ("yes", "no", "on", "off", "true", "false")
+YAML_1_1_BOOLEANS = {
+    form: value
+    for value, words in (("true", ("yes", "on", "true")), ("false", ("no", "off", "false")))
+    for word in words
     for form in (word, word.capitalize(), word.upper())
-)
+}
+"""The words that YAML 1.1 reads as booleans, with their value in YAML 1.2."""
 
 
 def kind_of(tree: Tree) -> str:
@@ -160,7 +162,7 @@ def _words_of(tree: Tree) -> tuple[Word, ...]:
     words, start = [], tree.start
     for part in tree.value.split(","):
         name = part.strip()
-        if not name.isidentifier() or name in _YAML_1_1_BOOLEANS:
+        if not name.isidentifier() or name in YAML_1_1_BOOLEANS:
             return ()
         begin = start + part.index(name)
         words.append(Word(name, Span(tree.source, begin, begin + len(name))))
@@ -190,7 +192,7 @@ def name_text(tree: Tree, report: Report) -> str | None:
         wrong(tree, "name", report)
         return None
     value = tree.value
-    if isinstance(value, str) and (value not in _YAML_1_1_BOOLEANS or not tree.plain):
+    if isinstance(value, str) and (value not in YAML_1_1_BOOLEANS or not tree.plain):
         return value
     if value is None:
         wrong(tree, "name", report)
@@ -277,7 +279,7 @@ def as_map(tree: Tree, report: Report, value: str = "...") -> tuple[Entry, ...]:
 def _names(key: Scalar, report: Report) -> bool:
     """Whether a key is a name; if not, that is reported."""
     value = key.value
-    if isinstance(value, str) and value not in _YAML_1_1_BOOLEANS:
+    if isinstance(value, str) and value not in YAML_1_1_BOOLEANS:
         return True
     return as_name(key, report) is not None
 

@@ -60,6 +60,7 @@ from smachac.frontend.state_fields import (
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
+    meant_container,
     read_fields,
     second_key,
     with_further_states,
@@ -635,7 +636,8 @@ class _Resolver:
             return StateType(name="", open=True), role or nested
         kind = schema.CONTAINERS.get(word.text)
         if not role and kind is not None:
-            return StateType(name=word.text, kind="container"), kind
+            kind = meant_container(around.inner or name, word, kind, entries, self.report)
+            return StateType(name=kind, kind="container"), kind
         found = self.state_type(word.text)
         if found is None:
             searched, names = self.known_templates()

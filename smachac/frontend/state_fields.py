@@ -9,22 +9,38 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
+from smachac.diagnostics.diagnostic import Diagnostic, Edit, Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
-from smachac.frontend.fields import READERS, as_outcomes, listed_keys, name_of, wrong
+from smachac.frontend.fields import (
+    READERS,
+    YAML_1_1_BOOLEANS,
+    as_outcomes,
+    listed_keys,
+    name_of,
+    wrong,
+)
 from smachac.frontend.missing_outcomes import outcomes_used
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
-from smachac.frontend.script import Keys, State
+from smachac.frontend.script import Keys, Pairs, State
 from smachac.frontend.sugar import NAMES, is_own, read_sugar
 from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
-from smachac.ir.nodes import Key, Outcome, StateType, Struct, Value, Variable, VariableType
+from smachac.ir.nodes import (
+    ContainerKind,
+    Key,
+    Outcome,
+    StateType,
+    Struct,
+    Value,
+    Variable,
+    VariableType,
+)
 from smachac.ir.types import ANY, EXAMPLES
 
 Entries = Mapping[str, Entry]
@@ -47,6 +63,51 @@ _BASE_VARIABLES = ("node_name", "function_name", "manifest")
 """The fields of the base that are variables of every base type."""
 
 
+def meant_container(
+    name: Word, word: Word, kind: ContainerKind, entries: Mapping[str, Entry], report: Report
+) -> ContainerKind:
+    """The kind of container that a state of the template `word` is meant to be (SM004): another one
+    if two or more of its fields belong to no other kind than that; a StateMachine if its states
+    have transitions to each other, and every field is missing that only its kind requires."""
+    rows = [schema.VARIABLES[key] for key in entries if key in schema.VARIABLES]
+    others = [row for row in rows if row.owners and kind not in row.owners]
+    shared: list[ContainerKind] = []
+    for each in schema.CONTAINERS.values():
+        if all(row.owners.issuperset([each]) for row in others):
+            shared.append(each)
+    own = {row.name for row in schema.VARIABLES.values() if row.owners == {kind}}
+    meant: ContainerKind = kind
+    why = ""
+    if len(others) > 1 and len(shared) == 1:
+        meant = shared[0]
+        why = " and ".join(f"`{row.name}`" for row in others) + f" are fields of `{meant}`"
+    elif own and entries.keys().isdisjoint(own) and _leads_inside(entries.get("states")):
+        meant = "StateMachine"
+        why = "its states have transitions to each other"
+    if meant != kind:
+        message = f"the template of `{name.text}` is `{word.text}`, but {why}"
+        help = f"write `template: {meant}`"
+        if not others:
+            help += f"; the states of a container of type `{kind}` have no such transitions"
+        edits = (Edit(span=word.span, text=meant),) if others else ()
+        report.append(
+            wrong_shape(word.span, message, help, arguments=("container", name.text), edits=edits)
+        )
+    return meant
+
+
+def _leads_inside(states: Entry | None) -> bool:
+    """Whether a state of a container has a transition to another one."""
+    items = states.value.items if states is not None and isinstance(states.value, Seq) else ()
+    firsts = [item.entries[0] for item in items if isinstance(item, Map) and item.entries]
+    names = {first.key.value for first in firsts}
+    inside = [each for first in firsts if isinstance(first.value, Map)
+              for each in first.value.entries]  # fmt: skip
+    steps = [step for each in inside if each.key.value in ("transitions", "t")
+             and isinstance(each.value, Map) for step in each.value.entries]  # fmt: skip
+    return any(isinstance(each.value, Scalar) and each.value.value in names for each in steps)
+
+
 def read_fields(
     name: Word,
     entries: Entries,
@@ -61,7 +122,10 @@ def read_fields(
 
     `scope` are the params in its scope; `inner` is its name in the sub-script, if it is called.
     """
+    before = len(report)
     read, rejected = _known_fields(entries, owner, type_, report)
+    if len(report) > before and "transitions" in read:
+        read["transitions"] = _meant_booleans(read["transitions"], type_, report)
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
         read["name"] = name
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
@@ -85,6 +149,25 @@ def read_fields(
     if type_.prints_itself:
         read["written"] = tuple(_written(read["name"], entries, scope))
     return read
+
+
+def _meant_booleans(steps: Pairs, type_: StateType, report: Report) -> Pairs:
+    """The transitions, with the outcomes `true` and `false` of the type in place of other words for
+    booleans, such as `yes`; the help of their finding (SM004) has the outcome that is meant."""
+    names = {each.name for each in type_.outcomes}
+    places = {each.span: number for number, each in enumerate(report)}
+    found: list[tuple[Word, Word]] = []
+    for word, target in steps:
+        meant = YAML_1_1_BOOLEANS.get(word.text, "")
+        if meant in names and word.text not in names and word.span in places:
+            message = f"`{word.text}` is a boolean for many YAML parsers, not an outcome"
+            help = f"write the outcome in quotes: '{meant}'"
+            report[places[word.span]] = wrong_shape(
+                word.span, message, help, arguments=("boolean", word.text)
+            )
+            word = Word(meant, word.span)
+        found.append((word, target))
+    return tuple(found)
 
 
 def accepts(type_: StateType, name: str) -> bool:
