@@ -16,7 +16,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.class_facts import ClassFacts
+from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
 from smachac.ir.traversal import outcome_names
@@ -393,19 +393,9 @@ def _unwritten(
     missing = [each for each in facts.endings if each.written is not None]
     missing = [each for each in missing if key not in (each.written or ())]
     if promised:
-        for ending in missing:
+        for ending in facts.endings:
             if ending.outcome.text in promised:
-                yield Finding(
-                    span=ending.outcome.span,
-                    message=f"`{leaf.type}` returns `{ending.outcome.text}` without setting its"
-                    f" output key `{key}`",
-                    arguments=(leaf.type, key, ending.outcome.text),
-                    help=f"set `userdata.{key}` before this `return`, or correct `writes:` in the"
-                    f" interface `{leaf.type}`",
-                    related=_used_here(leaf),
-                    node=path,
-                )
-        yield from _skipped_output(path, leaf, facts, key, promised)
+                yield from _broken_promise(path, leaf, ending, key)
     elif facts.complete and facts.execute is not None and missing == [*facts.endings] != []:
         yield Finding(
             span=facts.execute,
@@ -428,27 +418,24 @@ WAY_PAST = {
 """The place that leads past the assignment to an output key, by its kind."""
 
 
-def _skipped_output(
-    path: str, leaf: Leaf, facts: ClassFacts, key: str, promised: Collection[str]
-) -> Iterator[Finding]:
-    """The returns that break a promise of `writes:` on some of the paths to them."""
-    for ending in facts.endings:
-        place = dict(ending.skipped).get(key)
-        if place is None or ending.outcome.text not in promised:
-            continue
-        yield Finding(
-            span=ending.outcome.span,
-            message=f"`{leaf.type}` can return `{ending.outcome.text}` without setting its output"
-            f" key `{key}`",
-            arguments=(leaf.type, key, ending.outcome.text),
-            help=f"set `userdata.{key}` on each path to this `return`, or correct `writes:` in the"
-            f" interface `{leaf.type}`",
-            related=(
-                *other_place(place.span, WAY_PAST[place.text].format(key=key)),
-                *_used_here(leaf),
-            ),
-            node=path,
-        )
+def _broken_promise(path: str, leaf: Leaf, ending: Ending, key: str) -> Iterator[Finding]:
+    """The finding on a return that breaks a promise of `writes:`, on all paths to it or on some."""
+    place = dict(ending.skipped).get(key)
+    never = ending.written is not None and key not in ending.written
+    if place is None and not never:
+        return
+    does, where = ("returns", "before") if place is None else ("can return", "on each path to")
+    past = other_place(place.span, WAY_PAST[place.text].format(key=key)) if place else ()
+    yield Finding(
+        span=ending.outcome.span,
+        message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
+        f" `{key}`",
+        arguments=(leaf.type, key, ending.outcome.text),
+        help=f"set `userdata.{key}` {where} this `return`, or correct `writes:` in the interface"
+        f" `{leaf.type}`",
+        related=(*past, *_used_here(leaf)),
+        node=path,
+    )
 
 
 @rule(

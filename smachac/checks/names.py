@@ -226,14 +226,12 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    for finding in context.at_containers(_unknown_outcomes):
-        if finding.span.text != PREEMPTED or finding.node not in _missing_loops(context):
-            yield finding
-
-
-def _missing_loops(context: Context) -> set[str]:
-    """The states in which `for_each` is probably missing, which SM301 reports."""
-    return {each.state for each in meant_presets(context).values() if each.looped}
+    found = context.at_containers(_unknown_outcomes)
+    loops: set[str] = set()
+    if any(each.span.text == PREEMPTED for each in found):
+        # The states in which `for_each` is probably missing, which SM301 reports.
+        loops = {each.state for each in meant_presets(context).values() if each.looped}
+    yield from (each for each in found if each.span.text != PREEMPTED or each.node not in loops)
 
 
 def _unknown_outcomes(path: str, container: Container) -> Iterator[Finding]:

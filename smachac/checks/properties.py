@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
 from smachac.checks.messages import other_place
@@ -14,7 +14,7 @@ from smachac.diagnostics.source import Word, assert_never
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import reachable
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
+from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.properties import (
     After,
@@ -35,6 +35,7 @@ from smachac.ir.traversal import walk
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit
     from smachac.analysis.property_events import NameFault
+    from smachac.analysis.property_turns import Turn
     from smachac.interpreter.counterexample import Replay
 
 LONGEST_SCENARIO = 200
@@ -94,13 +95,12 @@ def property_fails(context: Context) -> Iterator[Finding]:
     from smachac.interpreter.counterexample import replay
 
     script = shlex.quote(context.machine.root.span.source.name)
-    for number, each in enumerate(context.judgements, 1):
+    for number, (each, turn) in enumerate(zip(context.judgements, context.turns, strict=True), 1):
         example = each.counterexample
         if example is None:
             continue
         shown = replay(context.machine, example.visits, example.again)
         form = each.property.form
-        turn = _turn(context, form, example)
         yield Finding(
             span=each.property.span,
             message=f"{_named(each.property)} does not hold: {_violation(form, example)}",
@@ -165,84 +165,7 @@ def _shown(context: Context, visits: Sequence[Visit]) -> tuple[Visit, ...]:
     return tuple(each for each in visits if each.path not in added or not ends_nothing(each))
 
 
-class _Turn(NamedTuple):
-    """The transition of the script at which a counterexample leaves the way that the property
-    requires, with its state. `missed` are the required states beside it, if none is reached."""
-
-    node: Node
-    step: Transition
-    missed: tuple[Node, ...]
-
-
-def _turn(context: Context, form: Form, example: Counterexample) -> _Turn | None:
-    if not example.visits:
-        return None
-    containers = dict(context.containers)
-    if isinstance(form, After):
-        for visit in _from_last(form.first, example.visits):
-            turn = _taken(containers, visit, form.answer)
-            if turn is not None and turn.missed:
-                return turn
-        first = _from_last(form.first, example.visits)
-        return _taken(containers, first[0], ()) if first else None
-    return _taken(containers, example.visits[-1], ())
-
-
-def _from_last(events: Atoms, visits: Sequence[Visit]) -> Sequence[Visit]:
-    """The visits from the last one that is one of some events."""
-    numbers = [n for n, visit in enumerate(visits) if any(_matches(each, visit) for each in events)]
-    return visits[numbers[-1] :] if numbers else ()
-
-
-def _taken(containers: Mapping[str, Container], visit: Visit, answer: Atoms) -> _Turn | None:
-    """The transition of the script that follows a visit. A state of `answer` beside it is missed if
-    no transition behind it leads there."""
-    path = visit.path if visit.outcome is not None else ""
-    while "/" in path:
-        path, _, name = path.rpartition("/")
-        children = {child.name: child for child in containers[path].children}
-        for step in children[name].transitions:
-            if step.outcome == visit.outcome and step.origin == "written":
-                return _Turn(children[name], step, _missed(answer, step.target, children))
-    return None
-
-
-def _missed(answer: Atoms, start: str, children: Mapping[str, Node]) -> tuple[Node, ...]:
-    """The states of `answer`, or those around them, if no transition from `start` on leads to any
-    of them: those to which none leads at all, if there are some."""
-    names = [each.name for each in answer if each.subject == "path" and each.outcome is None]
-    found = {name: _holder(name, children) for name in names}
-    states = tuple(node for node in found.values() if node is not None)
-    if len(states) < len(answer) or any(n.name in _reached(start, children) for n in states):
-        return ()
-    led = {step.target for node in children.values() for step in node.transitions}
-    return tuple(node for node in states if node.name not in led) or states
-
-
-def _holder(name: str, children: Mapping[str, Node]) -> Node | None:
-    """The state of a name, or else the one that has such a state inside."""
-    inside = (child for child in children.values() if any(n.name == name for _, n in walk(child)))
-    return children.get(name) or next(inside, None)
-
-
-def _reached(start: str, children: Mapping[str, Node]) -> set[str]:
-    """The names to which the transitions from a state or outcome lead, with its own."""
-    found, todo = {start}, [start]
-    while todo:
-        node = children.get(todo.pop())
-        ahead = {step.target for step in node.transitions} - found if node is not None else set()
-        found |= ahead
-        todo += ahead
-    return found
-
-
-def _matches(atom: Atom, visit: Visit) -> bool:
-    """Whether an event names the state of a visit, and its outcome."""
-    same = f"/{visit.path}".endswith(f"/{atom.name}")
-    return atom.subject == "path" and same and atom.outcome in (None, visit.outcome)
-
-
-def _turn_place(turn: _Turn | None) -> tuple[Related, ...]:
+def _turn_place(turn: Turn | None) -> tuple[Related, ...]:
     """The transition at which the path leaves the required way, as a related place."""
     if turn is None:
         return ()
@@ -256,7 +179,7 @@ def _named_states(states: Sequence[Node]) -> str:
     return " or ".join(f"`{node.name}`" for node in states)
 
 
-def _cure(form: Form, example: Counterexample, turn: _Turn | None) -> str:
+def _cure(form: Form, example: Counterexample, turn: Turn | None) -> str:
     """What to do about a property that fails."""
     if turn is not None and turn.missed:
         way = f"write `{turn.step.outcome}: {turn.missed[0].name}` in `{turn.node.name}`"
@@ -297,11 +220,9 @@ def _replayed(shown: Replay, number: int, script: str) -> str:
 def missed_states(context: Context) -> set[str]:
     """The states, by path, to which a transition must lead because of a property (SM701)."""
     found = set()
-    for each in context.judgements:
-        if each.counterexample is not None:
-            turn = _turn(context, each.property.form, each.counterexample)
-            for state in turn.missed if turn is not None else ():
-                found |= {path for path in each.states if path.endswith(f"/{state.name}")}
+    for each, turn in zip(context.judgements, context.turns, strict=True):
+        for state in turn.missed if turn is not None else ():
+            found |= {path for path in each.states if path.endswith(f"/{state.name}")}
     return found
 
 

@@ -110,6 +110,7 @@ class _Reader:
         self.endings: list[Ending] = []
         self.passed: list[tuple[str, Keys]] = []
         self.jumps: list[Keys] = []
+        self.carried: dict[ast.stmt, frozenset[str]] = {}
         self.complete = True
         self.paths = SkippedWrites(
             self.path_ends, userdata, self._effects, self._skips, self._first_line
@@ -383,8 +384,10 @@ class _Reader:
 
     def _loop(self, node: ast.For | ast.AsyncFor | ast.While, before: Keys) -> Keys:
         # A round can follow any other one that does not leave the function.
-        head = _both(before, self._carried(node.body) | self._head(node))
+        head = _both(before, self._carried(node) | self._head(node))
+        outer, self.jumps = self.jumps, []
         self._block(node.body, head)
+        self.jumps = outer
         after = _either(head, self._block(node.orelse, head))
         return None if self.path_ends.statement(node) else after
 
@@ -401,13 +404,16 @@ class _Reader:
         parts = [node.test] if isinstance(node, ast.While) else [node.target, node.iter]
         return self._all(parts)
 
-    def _carried(self, body: list[ast.stmt]) -> frozenset[str]:
-        """The keys that a round of a loop can set on paths that do not leave the function."""
-        kept = self.endings, self.passed, self.jumps, self.complete
-        self.endings, self.passed, self.jumps = [], [], []
-        end = _either(self._block(body, NONE), *self.jumps)
-        self.endings, self.passed, self.jumps, self.complete = kept
-        return end or NONE
+    def _carried(self, loop: ast.For | ast.AsyncFor | ast.While) -> frozenset[str]:
+        """The keys that a round of a loop can set on paths that do not leave the function. Judged
+        once for each loop: otherwise the time would double with each level of nesting."""
+        if loop not in self.carried:
+            kept = self.endings, self.passed, self.jumps, self.complete
+            self.endings, self.passed, self.jumps = [], [], []
+            end = _either(self._block(loop.body, NONE), *self.jumps)
+            self.endings, self.passed, self.jumps, self.complete = kept
+            self.carried[loop] = end or NONE
+        return self.carried[loop]
 
     def _all(self, parts: Iterable[ast.AST]) -> frozenset[str]:
         return NONE.union(*map(self._effects, parts))

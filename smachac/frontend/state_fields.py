@@ -125,7 +125,7 @@ def read_fields(
     before = len(report)
     read, rejected = _known_fields(entries, owner, type_, report)
     if len(report) > before and "transitions" in read:
-        read["transitions"] = _meant_booleans(read["transitions"], type_, report)
+        read["transitions"] = _meant_booleans(read["transitions"], type_, report, before)
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
         read["name"] = name
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
@@ -151,11 +151,12 @@ def read_fields(
     return read
 
 
-def _meant_booleans(steps: Pairs, type_: StateType, report: Report) -> Pairs:
+def _meant_booleans(steps: Pairs, type_: StateType, report: Report, begin: int) -> Pairs:
     """The transitions, with the outcomes `true` and `false` of the type in place of other words for
-    booleans, such as `yes`; the help of their finding (SM004) has the outcome that is meant."""
+    booleans, such as `yes`; the help of their finding (SM004) has the outcome that is meant. The
+    findings of this state begin at the number `begin`."""
     names = {each.name for each in type_.outcomes}
-    places = {each.span: number for number, each in enumerate(report)}
+    places = {each.span: number for number, each in enumerate(report[begin:], begin)}
     found: list[tuple[Word, Word]] = []
     for word, target in steps:
         meant = YAML_1_1_BOOLEANS.get(word.text, "")

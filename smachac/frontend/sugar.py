@@ -17,9 +17,9 @@ from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
-from smachac.frontend.values import UNKNOWN, as_value
+from smachac.frontend.values import UNKNOWN
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
-from smachac.ir.nodes import Expression, Outcome, StateType
+from smachac.ir.nodes import Expression, Outcome, StateType, Value
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
 
 NAMES = frozenset(["timeout", "retry", "for_each"])
@@ -269,12 +269,13 @@ def _for_each(entry: Entry, inputs: tuple[str, ...], report: Report) -> ForEach:
     """The loop. Wrong or missing parts are reported; the item has no name then, so that nothing
     follows from it. `inputs` are the input keys of the state."""
     value = entry.value
-    used = {each.value.span.text for each in value.entries} if isinstance(value, Map) else set()
-    names = [key for key in inputs if key not in {*used, value.span.text}]
+    given = [each.value for each in value.entries] if isinstance(value, Map) else [value]
+    used = {each.value for each in given if isinstance(each, Scalar)}
+    names = [key for key in inputs if key not in used]
     required = {"item": names[0] if len(names) == 1 else "NAME", "in": "KEY"}
     before = len(report)
     parts = _parts(entry, ("item", "in", "on"), required, report) or {}
-    unknown = replace(as_value(entry.value), data=Expression(text=UNKNOWN, span=entry.value.span))
+    unknown = Value(data=Expression(text=UNKNOWN, span=value.span), span=value.span)
     name = as_name(parts["item"], report) if "item" in parts else None
     items = as_items(parts["in"], report) if "in" in parts else unknown
     item = name.text if name is not None and len(report) == before else ""

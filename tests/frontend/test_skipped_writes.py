@@ -118,3 +118,12 @@ def test_no_run_sets_a_key_that_the_reader_excludes(text: str) -> None:
         for keys in seen.get(ending.outcome.text, []):
             assert ending.written is not None
             assert keys <= ending.written
+
+
+def test_the_body_of_a_nested_loop_is_judged_once_for_each_level() -> None:
+    """Otherwise the time doubles with each of the sixty levels, and this test does not end."""
+    depth = 60
+    loops = "".join(f"{' ' * level}for _ in items:\n" for level in range(depth))
+    (ending,) = known(f"{loops}{' ' * depth}userdata.a = 1\nreturn 'x'").endings
+    assert ending.written == {"a"}
+    assert ending.skipped == ()
