@@ -125,5 +125,5 @@ def test_the_body_of_a_nested_loop_is_judged_once_for_each_level() -> None:
     depth = 60
     loops = "".join(f"{' ' * level}for _ in items:\n" for level in range(depth))
     (ending,) = known(f"{loops}{' ' * depth}userdata.a = 1\nreturn 'x'").endings
-    assert ending.written == {"a"}
+    assert ending.written == frozenset("a")
     assert ending.skipped == ()
