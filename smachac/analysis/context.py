@@ -31,7 +31,6 @@ from smachac.ir.secret_keys import SecretKeys, secret_keys
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Judgement
-    from smachac.analysis.property_turns import Turn
 
 C = TypeVar("C")
 T = TypeVar("T")
@@ -285,15 +284,6 @@ class Context:
         from smachac.analysis.properties import judge
 
         return tuple(judge(self.machine.properties, self.machine.root, self.claims))
-
-    @cached_property
-    def turns(self) -> tuple[Turn | None, ...]:
-        """The transition at which each counterexample leaves the required way, by judgement."""
-        if not self.judgements:
-            return ()
-        from smachac.analysis.property_turns import turns
-
-        return turns(self.judgements, self.states)
 
     @cached_property
     def failures(self) -> tuple[Failure, ...]:

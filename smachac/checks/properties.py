@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.checks.messages import other_place
+from smachac.checks.property_turns import Turn, turn_of
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
 from smachac.diagnostics.source import Word, assert_never
@@ -35,7 +36,6 @@ from smachac.ir.traversal import walk
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit
     from smachac.analysis.property_events import NameFault
-    from smachac.analysis.property_turns import Turn
     from smachac.interpreter.counterexample import Replay
 
 LONGEST_SCENARIO = 200
@@ -92,24 +92,41 @@ def property_fails(context: Context) -> Iterator[Finding]:
     if not context.machine.properties:
         return
     from smachac.analysis.properties import witness
-    from smachac.interpreter.counterexample import replay
 
     script = shlex.quote(context.machine.root.span.source.name)
-    for number, (each, turn) in enumerate(zip(context.judgements, context.turns, strict=True), 1):
-        example = each.counterexample
-        if example is None:
-            continue
-        shown = replay(context.machine, example.visits, example.again)
-        form = each.property.form
+    for number, given, example, shown, turn in _failures(context):
         yield Finding(
-            span=each.property.span,
-            message=f"{_named(each.property)} does not hold: {_violation(form, example)}",
-            arguments=(each.property.name, in_words(form)),
-            help=f"{_cure(form, example, turn)}\n{_replayed(shown, number, script)}",
+            span=given.span,
+            message=f"{_named(given)} does not hold: {_violation(given.form, example)}",
+            arguments=(given.name, in_words(given.form)),
+            help=f"{_cure(given.form, example, turn)}\n{_replayed(shown, number, script)}",
             related=_turn_place(turn),
             path=witness(example._replace(visits=_shown(context, example.visits))),
             node=example.node or context.machine.root.name,
         )
+
+
+class _Failure(NamedTuple):
+    """A property that fails, with its number in the script from 1, its counterexample with the
+    replay of it, and the transition that leaves the required way."""
+
+    number: int
+    property: Property
+    example: Counterexample
+    shown: Replay
+    turn: Turn | None
+
+
+def _failures(context: Context) -> Iterator[_Failure]:
+    from smachac.interpreter.counterexample import replay
+
+    nodes = dict(context.states)
+    for number, each in enumerate(context.judgements, 1):
+        example = each.counterexample
+        if example is not None:
+            shown = replay(context.machine, example.visits, example.again)
+            turn = turn_of(each.property.form, shown, len(example.visits), nodes)
+            yield _Failure(number, each.property, example, shown, turn)
 
 
 def _named(given: Property) -> str:
@@ -154,13 +171,15 @@ _CORRECT = "correct the property if this path is right"
 
 
 def _shown(context: Context, visits: Sequence[Visit]) -> tuple[Visit, ...]:
-    """The visits without those of pauses, and of timers that their state stopped."""
+    """The visits without those of pauses, and of timers that their state stopped, except those at
+    which a stop request arrives."""
     added = {each.full for each in walk_script(context.machine.root) if each.added}
     containers = dict(context.containers) if added else {}
 
     def ends_nothing(visit: Visit) -> bool:
         holder = containers[visit.path.rpartition("/")[0]]
-        return not isinstance(holder, Concurrence) or visit.outcome == PREEMPTED
+        ended = visit.outcome == PREEMPTED or not isinstance(holder, Concurrence)
+        return ended and not visit.stop
 
     return tuple(each for each in visits if each.path not in added or not ends_nothing(each))
 
@@ -219,11 +238,9 @@ def _replayed(shown: Replay, number: int, script: str) -> str:
 
 def missed_states(context: Context) -> set[str]:
     """The states, by path, to which a transition must lead because of a property (SM701)."""
-    found = set()
-    for each, turn in zip(context.judgements, context.turns, strict=True):
-        for state in turn.missed if turn is not None else ():
-            found |= {path for path in each.states if path.endswith(f"/{state.name}")}
-    return found
+    turns = [each.turn for each in _failures(context)] if context.judgements else []
+    missed = {id(node) for turn in turns if turn is not None for node in turn.missed}
+    return {path for path, node in context.states if id(node) in missed} if missed else set()
 
 
 @rule(

@@ -68,16 +68,18 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
-    missed = missed_states(context)
+    missed: set[str] | None = None
     for (path, container), whole in zip(context.linear, context.corrected, strict=True):
         seen = context.of_container(reachable, path, whole)
         hidden = [child for child in container.children if child.name not in seen]
         if hidden and isinstance(container, Sequence) and _never_continues(container):
             yield _wrong_connector(path, container)
             continue
+        if hidden and missed is None:
+            missed = missed_states(context)
         before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
         for child in hidden:
-            if f"{path}/{child.name}" in missed:
+            if f"{path}/{child.name}" in (missed or ()):
                 continue  # SM701 reports the transition that must lead to it
             yield Finding(
                 span=child.span,

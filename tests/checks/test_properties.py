@@ -196,3 +196,16 @@ def test_a_path_has_no_pause_and_no_stopped_timer() -> None:
     shown = [step.label for step in item.finding.path]
     assert "PAUSE" not in shown
     assert "LIFT" in shown
+
+
+@pytest.mark.parametrize("wrong", ["timeout", "slipped"])
+def test_the_transition_of_a_state_with_a_time_limit(wrong: str) -> None:
+    """It is the one that the run takes, whatever the timer beside the state ends with."""
+    right = "timeout" if wrong == "slipped" else "slipped"
+    steps = f"{{done: STOP, {wrong}: HOME, {right}: STOP, preempted: STOP}}"
+    text = TURN.replace("{done: STOP, slipped: HOME}", steps)
+    text = text.replace("- LIFT:\n", "- LIFT:\n      timeout: 5s\n")
+    (item,) = [each for each in analysed({"main.yml": text}).report if each.code == "SM701"]
+    (place,) = item.related
+    assert place.message == "this transition leads to `HOME`, not to `STOP`"
+    assert (item.help or "").startswith(f"write `{wrong}: STOP` in `LIFT`, or correct")

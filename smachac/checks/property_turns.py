@@ -1,0 +1,126 @@
+"""Turns: the transition at which a counterexample leaves the way that its property requires.
+
+The transitions are those of the replay of the counterexample, so that time limits, retries, loops
+and stop requests lead where they lead in a run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import takewhile
+from typing import TYPE_CHECKING, NamedTuple
+
+from smachac.ir.nodes import Leaf, Node, Transition
+from smachac.ir.properties import After, Atoms, Form
+from smachac.ir.traversal import walk
+
+if TYPE_CHECKING:
+    from smachac.interpreter.counterexample import Replay
+
+
+class Turn(NamedTuple):
+    """A transition of the script with its state. `missed` are the states beside it that the
+    property requires, if no transition behind this one leads to any of them."""
+
+    node: Node
+    step: Transition
+    missed: tuple[Node, ...] = ()
+
+
+class _Taken(NamedTuple):
+    """A transition of the script that the replay takes, with the path of its state."""
+
+    path: str
+    step: Transition
+
+
+def turn_of(form: Form, replayed: Replay, visits: int, nodes: Mapping[str, Node]) -> Turn | None:
+    """The turn of a counterexample with a number of visits; None if there is none. `nodes` are all
+    nodes by path. For an `after` it is the first transition behind which no required state comes,
+    otherwise the one that follows its first event; for the other forms it is the last transition.
+    """
+    steps = list(_steps(replayed, visits, nodes))
+    if isinstance(form, After):
+        steps = _from_last(form.first, steps)
+        missed = _first_miss(form.answer, steps, nodes)
+        if missed is not None:
+            return missed
+        steps = steps[:1]
+    return Turn(nodes[steps[-1].path], steps[-1].step) if steps else None
+
+
+def _steps(replayed: Replay, visits: int, nodes: Mapping[str, Node]) -> Iterator[_Taken]:
+    """The transitions of the script up to the visit after the last one of a counterexample."""
+    ended = 0
+    for event in replayed.events if replayed.followed else ():
+        node = nodes.get(event["path"])
+        ended += event["event"] == "exit" and isinstance(node, Leaf)
+        if ended > visits:
+            return
+        for step in node.transitions if node is not None and event["event"] == "transition" else ():
+            if step.outcome == event["outcome"] and step.origin == "written":
+                yield _Taken(event["path"], step)
+
+
+def _from_last(events: Atoms, steps: list[_Taken]) -> list[_Taken]:
+    """The transitions from the last one that follows one of some events."""
+
+    def follows(taken: _Taken) -> bool:
+        return any(
+            each.subject == "path"
+            and f"/{taken.path}".endswith(f"/{each.name}")
+            and each.outcome in (None, taken.step.outcome)
+            for each in events
+        )
+
+    before = len([*takewhile(lambda each: not follows(each), reversed(steps))])
+    return steps[len(steps) - before - 1 :] if before < len(steps) else []
+
+
+def _first_miss(answer: Atoms, steps: list[_Taken], nodes: Mapping[str, Node]) -> Turn | None:
+    """The first transition behind which no state of `answer` comes."""
+    required: dict[str, _Required] = {}
+    for path, step in steps:
+        around = path.rpartition("/")[0]
+        if around not in required:
+            required[around] = _required(nodes[around], answer)
+        if required[around].states and step.target not in required[around].leading:
+            return Turn(nodes[path], step, required[around].states)
+    return None
+
+
+class _Required(NamedTuple):
+    """The states of a container that a property requires, and the names from which transitions
+    lead to one of them. No states, where the container does not have all of them."""
+
+    states: tuple[Node, ...]
+    leading: frozenset[str]
+
+
+def _required(container: Node, answer: Atoms) -> _Required:
+    """The states of `answer`, or those around them; only those to which no transition leads, if
+    there are some."""
+    children = () if isinstance(container, Leaf) else container.children
+    names = [each.name for each in answer if each.subject == "path" and each.outcome is None]
+    beside = {child.name: child for child in children}
+    inside: dict[str, Node] = {}
+    for child in children:
+        for _, node in walk(child):
+            if node.name in names:
+                inside.setdefault(node.name, child)
+    found = [beside.get(name) or inside.get(name) for name in names]
+    states = tuple(node for node in found if node is not None)
+    if not states or len(states) < len(answer):
+        return _Required((), frozenset())
+    sources: dict[str, list[str]] = {}
+    for child in children:
+        for step in child.transitions:
+            sources.setdefault(step.target, []).append(child.name)
+    leading = {node.name for node in states}
+    todo = list(leading)
+    while todo:
+        before = set(sources.get(todo.pop(), ())) - leading
+        leading |= before
+        todo += before
+    unled = tuple(node for node in states if node.name not in sources)
+    return _Required(unled or states, frozenset(leading))
