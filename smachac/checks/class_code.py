@@ -379,9 +379,27 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
         outputs = [key.name for key in type_.output_keys if key.name not in kept]
         guess = guesser(outputs)
         misspelt = {guess(word.text) for word in facts.writes if word.text not in outputs}
+        unused = dict(facts.unused)
         for key in outputs:
-            if key not in misspelt:
-                yield from _unwritten(path, leaf, type_, facts, key)
+            if key in misspelt:
+                continue
+            found = [*_unwritten(path, leaf, type_, facts, key)]
+            if found and key in unused:
+                found = [_local(path, leaf, key, unused[key])]
+            yield from found
+
+
+def _local(path: str, leaf: Leaf, key: str, meant: Word) -> Finding:
+    """The finding on a local variable with the name of an output key that is not set."""
+    return Finding(
+        span=meant.span,
+        message=f"`{key}` is a local variable here: the output key `{key}` of `{leaf.type}` is not"
+        " set",
+        arguments=(leaf.type, key),
+        help=f"write `{meant.text}`",
+        related=_used_here(leaf),
+        node=path,
+    )
 
 
 def _unwritten(

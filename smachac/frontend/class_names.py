@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -40,55 +40,188 @@ INHERITED = STATE_METHODS.union(
 )
 """The attributes of a state of SMACH."""
 
+SMACH_CLASSES = frozenset([
+    "State", "CBState", "StateMachine", "Concurrence", "Iterator", "Sequence", "Container",
+    "UserData", "Remapper",
+])  # fmt: skip
+"""The classes that the package `smach` exports."""
+
 LATE = frozenset(["__getattr__", "__getattribute__", "__dict__", "__slots__"])
 """Names in a class that can have attributes without a definition."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Scope:
+    """The nodes of a method, or those of the class outside its methods (`method` is None), and the
+    names bound there and in functions inside."""
+
+    nodes: Sequence[ast.AST]
+    bound: frozenset[str]
+    method: ast.FunctionDef | ast.AsyncFunctionDef | None = None
+
+
 def undefined_names(
-    module: Module, node: ast.ClassDef, outcomes: Iterable[str]
+    own: OwnClass, module: Module, node: ast.ClassDef, lists: Mapping[str, Iterable[str]]
 ) -> list[ClassFault]:
-    """The misspelt names in the methods of a class of a module: nothing in its text defines them,
-    and a name one slip away is defined, or it is a usual module. `outcomes` are those of the class:
-    an outcome without quotes is such a name. Other names may be those of a sketch."""
+    """The names in a class, one of `own.classes`, that nothing defines where they are used: a name
+    is in the scope of another function or is an attribute of `self`, a name one slip away is
+    defined, or it is a usual module. Other names may be those of a sketch.
+
+    `lists` are the outcomes and keys of the class, by parameter of `smach.State.__init__`. Each
+    name is found once in a class."""
     text = module.text
     if module.dynamic or not module.name or "NameError" in text.source.text:
         return []
     every = [*ast.walk(text.tree)]
-    used = {each.id for each in every if isinstance(each, ast.Name)}
-    if not DYNAMIC.isdisjoint(used):
+    if not DYNAMIC.isdisjoint(each.id for each in every if isinstance(each, ast.Name)):
         return []
-    bound = {name for each in every for name in _bound(each)} | BUILT_IN
-    ends, guess, found = set(outcomes), guesser(sorted(bound - BUILT_IN)), []
-    methods = _only_methods(every)
-    owners = {each.value for each in every if isinstance(each, ast.Attribute)}
-    for each in _evaluated(node):
-        if (
-            isinstance(each, ast.Call)
-            and isinstance(each.func, ast.Name)
-            and each.func.id in methods
-        ):
-            methods.remove(each.func.id)
-            name = Word(each.func.id, text.span(each.func))
-            found.append(ClassFault(kind="undefined name", name=name, near=f"self.{name.text}"))
-        if isinstance(each, ast.Name) and each.id not in bound:
-            bound.add(each.id)
-            near = f'"{each.id}"' if each.id in ends else guess.sure(each.id)
-            name = Word(each.id, text.span(each))
-            if each in owners and each.id in USUAL_MODULES:
-                found.append(ClassFault(kind="no import", name=name))
-            elif near is not None:
-                found.append(ClassFault(kind="undefined name", name=name, near=near))
+    anywhere = {name for each in every for name in _bound(each)} | BUILT_IN
+    inner = node not in module.names.get(node.name, ())  # in a function: its names are visible
+    shared = anywhere if inner else {*module.names, *BUILT_IN, *_declared_global(every)}
+    near = _Near(own, module, every, anywhere, lists)
+    found, done = [], set[str]()
+    for scope in _scopes(node):
+        visible = shared | scope.bound
+        for each in scope.nodes:
+            if isinstance(each, ast.Name) and each.id not in visible and each.id not in done:
+                fault = near.fault(each, scope)
+                if fault is not None:
+                    done.add(each.id)
+                    found.append(fault)
     return found
 
 
-def _only_methods(every: list[ast.AST]) -> set[str]:
-    """The names that only methods of classes have: a call needs `self.` or the class."""
-    classes = [each for each in every if isinstance(each, ast.ClassDef)]
-    methods = Counter(
-        each.name for owner in classes for each in owner.body if isinstance(each, ast.FunctionDef)
-    )
-    uses = Counter(name for each in every for name in _bound(each))
-    return {name for name, times in methods.items() if uses[name] == times} - BUILT_IN
+class _Near:
+    """What was probably meant by a name that nothing defines where it is used."""
+
+    def __init__(
+        self, own: OwnClass, module: Module, every: Sequence[ast.AST], anywhere: set[str],
+        lists: Mapping[str, Iterable[str]],
+    ) -> None:  # fmt: skip
+        self.module, self.every, self.anywhere = module, every, anywhere
+        self.outcomes = {*lists.get("outcomes", ())}
+        self.inputs = {*lists.get("input_keys", ()), *lists.get("io_keys", ())}
+        self.attributes = {*own.assigned(), *(name for names in own.names for name in names)}
+        constructor = own.method("__init__")
+        self.given = _arguments(constructor[1]) if constructor is not None else set()
+        self.kept = {
+            each.value
+            for each in every
+            if isinstance(each, ast.Assign) and isinstance(each.value, ast.Name)
+            for target in each.targets
+            if isinstance(target, ast.Attribute) and target.attr == each.value.id
+        }
+        execute = own.method("execute")
+        positional = execute[1].args.args[1:] if execute is not None else []
+        self.userdata = positional[0].arg if len(positional) == 1 else None
+        self.owners = {each.value for each in every if isinstance(each, ast.Attribute)}
+
+    def fault(self, node: ast.Name, scope: _Scope) -> ClassFault | None:
+        """The fault of a name; None if it may be one of a sketch."""
+        word = Word(node.id, self.module.text.span(node))
+        bound = node.id in self.anywhere
+        if node in self.owners and node.id in USUAL_MODULES and not bound:
+            return self._not_imported(node.id)
+        if scope.method is not None and node.id in ("self", "userdata", "ud", self.userdata):
+            return self._no_parameter(word, scope.method, scope.nodes)
+        runs = scope.method is not None and scope.method.name == "execute"
+        if node.id in self.outcomes:
+            near: str | None = f'"{node.id}"'
+        elif node.id in self.attributes and node not in self.kept:
+            near = f"self.{node.id}"
+        elif node.id in SMACH_CLASSES and "smach" in self.module.names:
+            near = f"smach.{node.id}"
+        elif node.id in self.given and bound:
+            return ClassFault(kind="lost argument", name=word)
+        elif node.id in self.inputs and self.userdata is not None and runs:
+            near = f"{self.userdata}.{node.id}"
+        else:
+            known = {*self.module.names, *scope.bound} if bound else self.anywhere - BUILT_IN
+            near = guesser(sorted(known)).sure(node.id)
+        if near is None:
+            return ClassFault(kind="other scope", name=word) if bound else None
+        return ClassFault(kind="undefined name", name=word, near=near)
+
+    def _no_parameter(
+        self, word: Word, method: ast.FunctionDef | ast.AsyncFunctionDef, nodes: Sequence[ast.AST]
+    ) -> ClassFault | None:
+        """The fault of `self` or the userdata in a method that has no such parameter."""
+        text = self.module.text
+        given = [each.arg for each in method.args.args]
+        if method.name == "execute":
+            if word.text == "self" or len(given) != 2:
+                return None  # a fault of the parameters of `execute`
+            parameter = method.args.args[1]
+            if any(isinstance(each, ast.Name) and each.id == parameter.arg for each in nodes):
+                return ClassFault(kind="undefined name", name=word, near=parameter.arg)
+            start = text.offset(parameter.lineno, parameter.col_offset)
+            place = Span(text.source, start, start + len(parameter.arg))
+            return ClassFault(
+                kind="other userdata", name=Word(parameter.arg, place), near=word.text
+            )
+        rest = text.source.text[: text.span(method.body[0]).start]
+        if method.decorator_list or f"({', '.join(given)})" not in rest:
+            return ClassFault(kind="other scope", name=word)
+        if word.text == "self":
+            near = f"def {method.name}({', '.join(['self', *given])}):"
+            start = text.source.text.find(method.name, text.span(method).start)
+            place = Span(text.source, start, start + len(method.name))
+            return ClassFault(kind="no self parameter", name=Word(method.name, place), near=near)
+        near = f"def {method.name}({', '.join([*given, word.text])}):"
+        return ClassFault(kind="lost userdata", name=word, near=near)
+
+    def _not_imported(self, name: str) -> ClassFault:
+        """A module that is not imported, at its first use in the file, or at the import of a module
+        that nothing uses and whose name is one slip away."""
+        text = self.module.text
+        used = {each.id for each in self.every if isinstance(each, ast.Name)}
+        for each in self.every:
+            for alias in each.names if isinstance(each, ast.Import) else ():
+                written = alias.asname or alias.name
+                if written not in used and guesser([name]).sure(written) is not None:
+                    start = text.offset(alias.lineno, alias.col_offset)
+                    span = Span(text.source, start, start + len(alias.name))
+                    return ClassFault(kind="wrong import", name=Word(alias.name, span), near=name)
+        uses = (text.span(each) for each in self.owners
+                if isinstance(each, ast.Name) and each.id == name)  # fmt: skip
+        return ClassFault(kind="no import", name=Word(name, min(uses, key=lambda each: each.start)))
+
+
+def _arguments(function: ast.FunctionDef) -> set[str]:
+    """The names of the parameters of a function."""
+    return {each.arg for each in ast.walk(function.args) if isinstance(each, ast.arg)}
+
+
+def _declared_global(every: Iterable[ast.AST]) -> Iterator[str]:
+    for each in every:
+        if isinstance(each, ast.Global):
+            yield from each.names
+
+
+def _scopes(node: ast.ClassDef) -> Iterator[_Scope]:
+    """The scopes of a class: that of the class itself, and one for each method."""
+    methods = [each for each in node.body
+               if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef)]  # fmt: skip
+    head: list[ast.AST] = [*node.decorator_list, *node.bases, *node.keywords]
+    for each in node.body:
+        if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef):
+            head += [
+                *each.decorator_list,
+                *each.args.defaults,
+                *filter(None, each.args.kw_defaults),
+            ]
+        else:
+            head.append(each)
+    names = {name for each in head for part in ast.walk(each) for name in _bound(part)}
+    nodes = [part for each in head for part in _evaluated(each)]
+    yield _Scope(nodes=nodes, bound=frozenset(names.union(each.name for each in methods)))
+    for method in methods:
+        inner = [part for each in [method.args, *method.body] for part in ast.walk(each)]
+        yield _Scope(
+            nodes=[part for each in method.body for part in _evaluated(each)],
+            bound=frozenset(name for each in inner for name in _bound(each)),
+            method=method,
+        )
 
 
 def _bound(node: ast.AST) -> Iterator[str]:
@@ -139,6 +272,8 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     if not LATE.isdisjoint(each.attr for each in attributes):
         return []
     defined |= {each.attr for each in attributes if isinstance(each.ctx, ast.Store)} | INHERITED
+    defined |= {each.left.attr for each in map(compared, every)
+                if each is not None and isinstance(each.left, ast.Attribute)}  # fmt: skip
     quoted = {each.value for each in every if isinstance(each, ast.Constant)}
     called = [each.func for each in every if isinstance(each, ast.Call)]
     guess, found = guesser(sorted(name for name in defined if not name.startswith("__"))), []
@@ -162,6 +297,38 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
                 defined.add(each.attr)
                 found.append(ClassFault(kind="undefined method", name=word, near=near))
     return found
+
+
+def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:
+    """The methods that a class calls on `super()` and that no base class defines."""
+    if own.root != "state" or any(not LATE.isdisjoint(names) for names in own.names):
+        return
+    for at, (module, node) in enumerate(own.classes):
+        defined = INHERITED.union(*own.names[at + 1 :])
+        for each in _evaluated(node):
+            match each:
+                case ast.Attribute(value=ast.Call(func=ast.Name(id="super"), args=[]), attr=name):
+                    span = module.text.span(each)
+                case _:
+                    continue
+            if name in defined or module.text.is_filled(span):
+                continue
+            plain = name.strip("_") in ("init", "int")
+            near = "__init__" if plain else guesser(sorted(defined))(name)
+            word = Word(name, _end_of(span, name))
+            yield ClassFault(kind="undefined method", name=word, near=near)
+
+
+def compared(node: ast.AST) -> ast.Compare | None:
+    """The comparison `x == y` that is a statement of its own, in place of `x = y`."""
+    match node:
+        case ast.Expr(
+            value=ast.Compare(
+                left=ast.Attribute() | ast.Subscript() | ast.Name(), ops=[ast.Eq()]
+            ) as found
+        ):
+            return found
+    return None
 
 
 def _of_self(node: ast.Attribute) -> bool:

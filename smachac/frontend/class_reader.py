@@ -12,7 +12,19 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.class_names import STATE_METHODS, undefined_methods, undefined_names
+from smachac.frontend.class_names import (
+    STATE_METHODS,
+    undefined_in_base,
+    undefined_methods,
+    undefined_names,
+)
+from smachac.frontend.class_slips import (
+    joined_texts,
+    missing_comma,
+    slips,
+    unknown_argument,
+    wrong_base,
+)
 from smachac.frontend.loader import Library
 from smachac.frontend.python_flow import Flow, Flows, is_plain
 from smachac.frontend.python_modules import (
@@ -96,12 +108,15 @@ def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
 def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
     """The facts about a class."""
     own = with_bases(module, node, library)
-    flow, execute, place = _execute(own, library)
     lists = _declared(module.text, node)
     whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
+    undefined = (*_undefined(own, lists),) if whole else ()
+    flow, execute, place = _execute(own, library)
+    if execute is not None and any(_is_userdata(each, execute) for each in undefined):
+        flow = Flow()  # its code uses another name for the userdata
     return ClassFacts(
         name=Word(node.name, name_span(module.text, node)),
-        faults=(*_faults(own, module, node), *_undefined(own, lists)) if whole else (),
+        faults=(*_faults(own, module, node), *undefined) if whole else (),
         parameters=_parameters(own) if whole else None,
         outcomes=lists.get("outcomes", ()) if lists is not None else None,
         inputs=_together(lists, "input_keys"),
@@ -117,6 +132,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         stub=execute is not None and all(map(_does_nothing, execute.body)),
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
         values=_values(own, execute) if execute is not None and flow.writes else (),
+        unused=_unused(own, execute) if execute is not None else (),
     )
 
 
@@ -142,12 +158,37 @@ def _values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word],
     return tuple(found)
 
 
+def _unused(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
+    """The local variables that `execute` assigns and does not use, with the key of each."""
+    text = next(module.text for module, node in own.classes if function in node.body)
+    userdata = function.args.args[1].arg
+    names = [each for each in ast.walk(function) if isinstance(each, ast.Name)]
+    used = {each.id for each in names if not isinstance(each.ctx, ast.Store)}
+    assigned = [each.targets[0] for each in ast.walk(function)
+                if isinstance(each, ast.Assign) and len(each.targets) == 1]  # fmt: skip
+    return tuple(
+        (each.id, Word(f"{userdata}.{each.id}", text.span(each)))
+        for each in assigned
+        if isinstance(each, ast.Name) and each.id not in used
+    )
+
+
 def _undefined(own: OwnClass, lists: dict[str, Words | None] | None) -> Iterator[ClassFault]:
-    """The names and attributes that nothing defines."""
-    outcomes = (lists or {}).get("outcomes") or ()
+    """The names and attributes that nothing defines, and other slips in the code."""
+    names = {key: [word.text for word in words or ()] for key, words in (lists or {}).items()}
     for module, node in own.classes:
-        yield from undefined_names(module, node, [word.text for word in outcomes])
+        yield from undefined_names(own, module, node, names)
     yield from undefined_methods(own)
+    yield from undefined_in_base(own)
+    yield from slips(own)
+
+
+def _is_userdata(fault: ClassFault, execute: ast.FunctionDef) -> bool:
+    """Whether a fault is another name for the userdata in `execute`."""
+    parameter = execute.args.args[1].arg
+    return fault.kind == "other userdata" or (
+        fault.kind == "undefined name" and fault.near == parameter
+    )
 
 
 def _fillings(module: Module, node: ast.stmt) -> list[str]:
@@ -196,7 +237,7 @@ def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFaul
     """The certain faults of a class."""
     found = _twice(module, node)
     if own.root == "unknown":
-        return [*found, *_data_class_fault(module, node)]
+        return [*found, *_data_class_fault(module, node), *wrong_base(*own.classes[-1])]
     if own.root == "object":
         certain = not own.binds("get_registered_outcomes")
         return [*found, _at_class("no state", module, node)] if certain else found
@@ -337,7 +378,8 @@ def _call_faults(own: OwnClass) -> Iterator[ClassFault]:
 
 
 def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
-    """The arguments of `smach.State.__init__` that are no lists: SMACH joins the lists of keys."""
+    """The arguments of `smach.State.__init__` that do not exist or are no lists, as SMACH joins the
+    lists of keys, and items of lists without a comma between them."""
     found = own.method("__init__")
     if found is None or len(own.classes) > 1:
         return
@@ -345,8 +387,14 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
     for call in ast.walk(maker):
         if not isinstance(call, ast.Call) or not _is_super(call):
             continue
+        for keyword in call.keywords:
+            if keyword.arg is not None and keyword.arg not in PARAMETERS and own.root == "state":
+                yield unknown_argument(module.text, keyword, PARAMETERS)
         for key, value in (_given(call) or {}).items():
             span = module.text.span(value)
+            for item in value.elts if isinstance(value, ast.List | ast.Tuple | ast.Set) else ():
+                if isinstance(item, ast.Constant) and isinstance(item.value, str):
+                    yield from missing_comma(module.text, item)
             kinds = ast.Tuple | ast.Set | ast.Dict | ast.SetComp | ast.GeneratorExp
             text = value.value if isinstance(value, ast.Constant) else None
             wrong = isinstance(text, str) or (key != "outcomes" and isinstance(value, kinds))
@@ -371,7 +419,20 @@ def _hidden(own: OwnClass) -> list[ClassFault]:
         if name in STATE_METHODS
         for _, value, span in entries
         if isinstance(value, ast.Constant | ast.Compare | ast.List | ast.Dict | ast.Tuple)
+        or _is_text(own, value)
     ]
+
+
+def _is_text(own: OwnClass, value: ast.expr | None) -> bool:
+    """Whether an expression is a parameter of `__init__` whose default is a text or a number."""
+    found = own.method("__init__")
+    if not isinstance(value, ast.Name) or found is None:
+        return False
+    given = found[1].args
+    pairs = zip(reversed([*given.posonlyargs, *given.args]), reversed(given.defaults), strict=False)
+    constants = {name.arg for name, default in pairs
+                 if isinstance(default, ast.Constant) and default.value is not None}  # fmt: skip
+    return value.id in constants
 
 
 # --- the constructor
@@ -452,7 +513,10 @@ def _given(call: ast.Call) -> dict[str, ast.expr] | None:
     for keyword in call.keywords:
         if keyword.arg is None:
             return None
-        found[keyword.arg] = keyword.value
+        meant = keyword.arg if keyword.arg in PARAMETERS else guesser(PARAMETERS)(keyword.arg)
+        if meant is None:
+            return None
+        found.setdefault(meant, keyword.value)
     return found
 
 
@@ -467,7 +531,7 @@ def _words(text: PythonText, value: ast.expr) -> Words | None:
             return None
         if text.is_filled(span):
             return None
-        found.append(Word(each.value, span))
+        found += joined_texts(text, each)
     return None if text.is_filled(text.span(value)) else tuple(found)
 
 

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from smachac.diagnostics.source import Span, Word
+from smachac.frontend.class_names import compared
 from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_constants import entries, member, table
@@ -288,6 +289,10 @@ class _Reader:
                 access = access_of(each, self.userdata)
                 if access is not None and not access.read:
                     found.add(access.key)
+                line = compared(each)
+                meant = access_of(line.left, self.userdata) if line is not None else None
+                if meant is not None:
+                    found.add(meant.key)
                 flow = self.called.get(each) if isinstance(each, ast.Call) else None
                 found.update(flow.written or () if flow is not None else ())
                 todo.extend(ast.iter_child_nodes(each))
@@ -312,11 +317,15 @@ class _Reader:
                     tested.add(word)
                 case ast.Try(handlers=[_, *_]):
                     tried.update(inner for each in node.body for inner in ast.walk(each))
+        lines = [*map(compared, self.nodes)]
+        compared_keys = {line.left for line in lines if line is not None}
         updated = {each.target for each in self.nodes if isinstance(each, ast.AugAssign)}
         for node in self.nodes:
             access = access_of(node, self.userdata) if node not in tried else None
             if access is None or access.key in tested:
                 continue
+            if node in compared_keys:
+                access = replace(access, read=False)
             whole = self.text.span(access.place)
             if self.text.is_filled(whole):
                 continue

@@ -38,10 +38,23 @@ FaultKind = Literal[
     "no answer to stops",
     "unset output",
     "undefined name",
+    "other scope",
+    "other userdata",
+    "lost argument",
+    "lost userdata",
+    "no self parameter",
     "no import",
+    "wrong import",
     "undefined method",
     "unset attribute",
     "no list",
+    "no comma",
+    "no argument",
+    "no state class",
+    "not called",
+    "no effect",
+    "identity",
+    "comparison",
 ]
 
 
@@ -96,7 +109,8 @@ class ClassFacts:
     kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`.
     `reads` and `writes` are the userdata keys that it accesses, each at its name.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
-    `values` are the expressions that `execute` itself writes, each with its key.
+    `values` are the expressions that `execute` itself writes, each with its key. `unused` are the
+    local variables that it assigns and does not use, each with the userdata key of that name.
     """
 
     name: Word | None = None
@@ -116,6 +130,7 @@ class ClassFacts:
     stub: bool = False
     checks_stop: bool = False
     values: tuple[tuple[str, Word], ...] = ()
+    unused: tuple[tuple[str, Word], ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

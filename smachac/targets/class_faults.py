@@ -56,12 +56,38 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "give the attribute another name, such as `self.own_{word}`",
     ),
     "undefined name": (
-        "`{word}` is used in `{name}`, but nothing defines it: Python stops there",
+        "`{word}` is used in `{name}`, but nothing defines it: Python stops here",
         "define it in the module, or import it",
     ),
+    "other scope": (
+        "`{word}` is not visible here: only another function of the file defines it, and Python"
+        " stops here",
+        "write `self.{word}` in both places, or define `{word}` in this method",
+    ),
+    "other userdata": (
+        "the parameter of `execute` is `{word}`, but its code uses `{near}`: Python stops",
+        "write `def execute(self, {near}):`",
+    ),
+    "lost argument": (
+        "`{word}` is a parameter of `__init__`, which this method cannot use: Python stops here",
+        "write `self.{word} = {word}` in `__init__`, and `self.{word}` here",
+    ),
+    "lost userdata": (
+        "`{word}` is a parameter of `execute`, which this method cannot use: Python stops here",
+        "write `{near}`, and pass `{word}` in `execute`",
+    ),
+    "no self parameter": (
+        "the method `{word}` uses `self`, but has no parameter `self`: Python stops when it is"
+        " called",
+        "write `{near}`",
+    ),
     "no import": (
-        "`{word}` is used in `{name}`, but not imported: Python stops there",
+        "`{word}` is used in this file, but not imported: Python stops here",
         "write `import {word}` at the top of the file",
+    ),
+    "wrong import": (
+        "the file imports `{word}`, but uses `{near}`: Python stops here",
+        "write `import {near}`",
     ),
     "undefined method": (
         "neither `{name}` nor `smach.State` defines `{word}`: Python stops here",
@@ -74,6 +100,34 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     "no list": (
         "`{word}` of `{name}` must be a list: SMACH cannot use another collection",
         "write `{word}=[...]`",
+    ),
+    "no comma": (
+        "a comma is missing: Python joins the two texts to `{word}`",
+        "write `{near}`",
+    ),
+    "no argument": (
+        "`smach.State.__init__` has no argument `{word}`",
+        "its arguments are `outcomes`, `input_keys`, `output_keys` and `io_keys`",
+    ),
+    "no state class": (
+        "`{word}` is not a class of SMACH",
+        "write `{near}`",
+    ),
+    "not called": (
+        "`{word}` without `()` does not call the method",
+        "write `{near}`",
+    ),
+    "no effect": (
+        "the line `{word}` does nothing: without `()` a method is not called",
+        "write `{near}`, or remove the line",
+    ),
+    "identity": (
+        "`is` compares objects, not values: two equal values can be two objects",
+        "write `{near}`",
+    ),
+    "comparison": (
+        "`==` compares, and nothing uses the result: `{word}` is not set",
+        "write `{near}`",
     ),
     "defined twice": (
         "`{word}` is defined twice: only the last definition counts",
@@ -140,8 +194,18 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
 }
 """The message and the help for each kind of fault."""
 
-CHECKED_ONLY = frozenset[FaultKind](["unused outcome", "no answer to stops", "unset output"])
-"""Faults of a class that a compiler accepts: a build does not fail."""
+CHECKED_ONLY = frozenset[FaultKind](
+    [
+        "unused outcome",
+        "no answer to stops",
+        "unset output",
+        "not called",
+        "no effect",
+        "identity",
+        "comparison",
+    ]
+)
+"""Faults of a class that a compiler or Python accepts: a build does not fail."""
 
 EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
@@ -149,6 +213,16 @@ EFFECTS: Mapping[FaultKind, str] = {
     "undefined method": "",
     "unset attribute": "",
     "no import": "",
+    "other scope": "",
+    "other userdata": "",
+    "lost argument": "",
+    "lost userdata": "",
+    "no self parameter": "",
+    "wrong import": "",
+    "not called": "a method without `()` is true in every condition",
+    "no effect": "",
+    "identity": "the comparison can be false for equal values",
+    "comparison": "the line has no effect: the old value stays, or there is none",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
     "unset output": "a state that reads the key afterwards gets an old value, or fails",
@@ -165,6 +239,9 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no method": "SMACH needs the name of an outcome: the machine stops with an error",
     "coroutine": "SMACH needs the name of an outcome: the machine stops with an error",
     "no constructor call": "the outcomes and keys of the state are missing: the program stops",
+    "no comma": "SMACH knows the joined name only: the machine stops with an error",
+    "no argument": "the call raises a TypeError when the program makes the state",
+    "no state class": "the definition of the class raises an error when the program starts",
     "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
     "no parameter": _PASSED,
     "no such parameter": _PASSED,
@@ -182,6 +259,16 @@ WRITTEN = frozenset[FaultKind](
         "no first argument",
         "other parameter",
         "other class",
+        "other userdata",
+        "lost userdata",
+        "no self parameter",
+        "wrong import",
+        "no comma",
+        "no state class",
+        "not called",
+        "no effect",
+        "identity",
+        "comparison",
     ]
 )
 """Faults whose words contain what was probably meant."""
@@ -202,7 +289,7 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
     if fault.kind == "no parameter":
         what = f"rename the parameter `{near}` to `{fault.name.text}`"
         return message, f"{what}, or correct the name in the interface"
-    written = fault.kind == "no list" or near.startswith('"')
+    written = fault.kind == "no list" or near.startswith('"') or "." in near
     return message, f"write `{near}`" if written else f"did you mean `{near}`?"
 
 

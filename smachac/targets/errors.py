@@ -490,9 +490,10 @@ def bad_class(
 
     Exactly: the class is read, never run. A program makes the state with the variables that a
     script sets, passed by their names. `check` reports a warning; a build for the language of the
-    class fails. Found are also misspelt names, usual modules that are not imported, methods of
-    `self` that no class defines, and keys that are not in a list. Where a name can be defined
-    elsewhere, nothing is reported.
+    class fails. Found are also misspelt names, names that only another function defines, usual
+    modules that are not imported, methods of `self` that no class defines, methods without `()`,
+    `is` with a text or a number, `==` in place of `=`, and keys that are not in a list. Where a
+    name can be defined elsewhere, nothing is reported.
 
     Wrong:
         name: sm

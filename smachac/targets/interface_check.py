@@ -96,13 +96,14 @@ def target_faults(machine: Machine, library: Library, target: Language) -> Itera
 
 
 def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """The findings, with one for a syntax error in a module that has classes of several types."""
-    seen: set[Span] = set()
+    """The findings, with one for each fault of a module or base class that several types use."""
+    seen: set[tuple[Span, tuple[str, ...]]] = set()
     for item in found:
-        if item.finding.arguments[2:3] == ("syntax",):
-            if item.span in seen:
+        fault = item.finding.arguments[2:]
+        if item.code in ("SM608", "SM609"):
+            if (item.span, fault) in seen:
                 continue
-            seen.add(item.span)
+            seen.add((item.span, fault))
         yield item
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from tests.trust.project_text import analysed
 
 MAIN = """\
@@ -70,7 +70,7 @@ def report(body: str, old: str = "", new: str = "") -> list[Diagnostic]:
         ("return found", "found", 'write `"found"`'),
         ("x = maths.sqrt(2)", "maths", "did you mean `math`?"),
         ("self.serch()", "serch", "did you mean `search`?"),
-        ("search()", "search", "did you mean `self.search`?"),
+        ("search()", "search", "write `self.search`"),
         ("self.grip()", "grip", "define `grip` in the class, or correct the name"),
         ("self.loks += self.look", "look", "did you mean `looks`?"),
         ("if self.prempt_requested(): return 'nothing'", "prempt_requested", "preempt_requested"),
@@ -183,3 +183,117 @@ def test_an_argument_that_the_constructor_does_not_keep() -> None:
 )
 def test_an_argument_that_is_set_elsewhere_or_not_read(body: str) -> None:
     assert report(body, *UNSET) == []
+
+
+SLIPS = [
+    # names in the scope of another function
+    ("return looks", "looks", "write `self.looks`"),
+    ("print(HIGHT)", "HIGHT", "did you mean `HEIGHT`?"),
+    ("x = part", "part", "write `userdata.part`"),
+    # methods that are not called
+    ("if self.search: return 'nothing'", "self.search", "write `self.search()`"),
+    ("if not self.preempt_requested and 1: print()", "self.preempt_requested",
+     "write `self.preempt_requested()`"),
+    ("while self.search == 3: pass", "self.search", "write `self.search()`"),
+    ("self.search", "self.search", "write `self.search()`, or remove the line"),
+    ("self.looks.bit_length", "self.looks.bit_length",
+     "write `self.looks.bit_length()`, or remove the line"),
+    # comparisons
+    ("if userdata.part is 'x': print()", "is", "write `userdata.part == 'x'`"),
+    ("print(userdata.part is not 3)", "is not", "write `userdata.part != 3`"),
+    ("self.looks == 3", "==", "write `self.looks = 3`"),
+    ("self.last == 3; print(self.last)", "==", "write `self.last = 3`"),
+    ("userdata.width == 0.1", "==", "write `userdata.width = 0.1`"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("body", "name", "help"), SLIPS)
+def test_a_slip_of_python(body: str, name: str, help: str) -> None:
+    lists = '"part", "width"]'
+    (item,) = analysed_text(body, lists, f'{lists}, input_keys=["part"]')
+    assert (item.code, item.span.text, item.help) == ("SM609", name, help)
+
+
+def analysed_text(body: str, old: str = "", new: str = "") -> list[Diagnostic]:
+    """The findings on the class with a body of `execute`, without those of the class as it is."""
+    text = CLASS.replace("BODY", f"{body}\n        {PART}").replace(old, new, 1)
+    files = {"main.yml": MAIN, "templates/Find.yml": FIND, "find_part.py": text}
+    as_it_is = [("SM314", "execute"), ("SM315", "execute"), ("SM310", "part")]
+    return [
+        item
+        for item in analysed(files).report
+        if item.severity is not Severity.INFO
+        and item.code != "SM603"
+        and (item.code, item.span.text) not in as_it_is
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "name", "help"),
+    [
+        ("self, userdata", "self, ud", "ud", "write `def execute(self, userdata):`"),
+        ("def search(self):\n        self.looks += 1\n        return",
+         "def search():\n        self.looks += 1\n        return",
+         "search", "write `def search(self):`"),
+        ("self.looks > 1", "userdata.part", "userdata",
+         "write `def search(self, userdata):`, and pass `userdata` in `execute`"),
+        ("super().__init__(outcomes", "super().init(outcomes", "init", "did you mean `__init__`?"),
+        ("super().__init__(outcomes", "super().__int__(outcomes", "__int__",
+         "did you mean `__init__`?"),
+        ("outcomes=", "outcome=", "outcome", "did you mean `outcomes`?"),
+        ('"found", "nothing"', '"found" "nothing"', '"found" "nothing"',
+         'write `"found", "nothing"`'),
+        ("FindPart(smach.State)", "FindPart(smach.state)", "smach.state", "write `smach.State`"),
+        ("FindPart(smach.State)", "FindPart(State)", "State", "write `smach.State`"),
+        ("import smach", "import smatch", "smatch", "write `import smach`"),
+        ("import smach\n", "", "smach", "write `import smach` at the top of the file"),
+        ("class FindPart(smach.State):\n    def __init__(self):",
+         "class FindPart(smach.State):\n    def __init__(self, force=2):",
+         "force", "write `self.force = force` in `__init__`, and `self.force` here"),
+    ],
+)  # fmt: skip
+def test_a_slip_in_the_class(old: str, new: str, name: str, help: str) -> None:
+    body = "print(force)" if name == "force" else "self.search()"
+    items = analysed_text(body, old, new)
+    assert [(item.code, item.span.text, item.help) for item in items] == [("SM609", name, help)]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "x = self.search; print(x() or self.search is None)",
+        "print(callable(self.search))",
+        "if userdata.part is None or userdata.part is True: print()",
+        "try:\n            userdata.part.position\n        except AttributeError: pass",
+        "userdata.part",
+        "looks = 3; print(looks)",
+        "global HEIGHT; HEIGHT = 3",
+        "class Inner:\n            x = 1\n        print(Inner.x)",
+        "def twice(n): return n * looks\n        looks = 3; print(twice(1))",
+        "self.search = lambda: 3\n        if self.search: print()",
+    ],
+)
+def test_python_that_is_no_slip(body: str) -> None:
+    lists = '"part", "width"]'
+    found = analysed_text(body, lists, f'{lists}, input_keys=["part"]')
+    assert [item.message for item in found] == []
+
+
+def test_a_local_variable_in_place_of_an_output_key() -> None:
+    found = analysed_text("pass", "userdata.part = [[", "part = [[")
+    (item,) = [each for each in found if each.code == "SM314"]
+    assert (item.span.text, item.help) == ("part", "write `userdata.part`")
+
+
+def test_a_fault_of_a_module_is_found_once_for_all_its_classes() -> None:
+    runs = '    def execute(self, userdata):\n        return "succeeded"\n\n    def search'
+    text = CLASS.replace("BODY", PART).replace("import smach\n", "")
+    text = text.replace("    def search", runs, 1)
+    files = {
+        "main.yml": MAIN.replace("PrintUserdataState, input_keys: [part]", "Look"),
+        "templates/Find.yml": FIND,
+        "templates/Look.yml": 'outcomes: {succeeded: {}}\ncode: {python: "find_part:Camera"}\n',
+        "find_part.py": text,
+    }
+    found = [item.span.text for item in analysed(files).report if item.code == "SM609"]
+    assert found == ["smach"]
