@@ -24,7 +24,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, is_failure
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
@@ -57,13 +57,47 @@ def strays(child: Node, names: frozenset[str], exits: frozenset[str]) -> list[Tr
 
 
 def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
-    """The transitions for outcomes that a state does not have, with the nearest known outcome."""
+    """The transitions for outcomes that a state does not have, each with the outcome that is
+    probably meant: the nearest known one, or the one of the same meaning without a
+    transition."""
     declared = {outcome.name for outcome in child.outcomes}
     unknown = [step for step in child.transitions if step.outcome not in declared]
     if not unknown or is_open(child):
         return []
     guess = guesser(outcome_names(child))
-    return [(step, guess(step.outcome)) for step in unknown]
+    near = {step.outcome: guess(step.outcome) for step in unknown}
+    used = {*near.values(), *(step.outcome for step in child.transitions)}
+    left = [name for name in outcome_names(child) if name not in used and name != PREEMPTED]
+    others = [step.outcome for step in unknown if not near[step.outcome] and not is_catch_all(step)]
+    alike = _of_one_meaning(child, others, left) if others and left else {}
+    return [(step, near[step.outcome] or alike.get(step.outcome)) for step in unknown]
+
+
+def _of_one_meaning(child: Node, others: list[str], left: list[str]) -> dict[str, str]:
+    """For unknown outcomes the ones in `left` that are probably meant: the only success, the only
+    failure, the only one that remains."""
+    found: dict[str, str] = {}
+    means = {name: _meaning(name, is_failure(name)) for name in others if name != PREEMPTED}
+    known = {name: _meaning(name, fails(child, name)) for name in left}
+    for meaning in ("success", "failure"):
+        wrong = [name for name in means if means[name] == meaning]
+        right = [name for name in known if known[name] == meaning]
+        if len(wrong) == len(right) == 1:
+            found[wrong[0]] = right[0]
+    wrong = [name for name in means if name not in found]
+    right = [name for name in known if name not in found.values()]
+    if len(wrong) == len(right) == 1 and {means[wrong[0]], known[right[0]]} != {
+        "success",
+        "failure",
+    }:
+        found[wrong[0]] = right[0]
+    return found
+
+
+def _meaning(outcome: str, failure: bool) -> str:
+    if failure:
+        return "failure"
+    return "success" if outcome.lower() in GOOD | SUCCESSES else ""
 
 
 CATCH_ALL = frozenset(["*", "_", "any", "default", "else", "other", "others", "otherwise"])

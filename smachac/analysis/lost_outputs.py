@@ -9,6 +9,7 @@ from typing import NamedTuple
 from smachac.analysis.def_use import around, place_in
 from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
 from smachac.analysis.unset_reads import MOST_STEPS, Missing, Reader, reader_at
+from smachac.diagnostics.spelling import guesser
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Key, Leaf, Node
 from smachac.ir.traversal import remapping
@@ -17,7 +18,8 @@ from smachac.ir.traversal import remapping
 class Lost(NamedTuple):
     """A key that is written inside the container `keeper` and is no output, but `reader` reads it.
 
-    `own` is what the keeper calls it. `is_missing`: the reader finds nothing else.
+    `own` is what the keeper calls it. `is_missing`: the reader finds nothing else. `misspelt` is an
+    output key of the keeper that nothing in it sets and that is probably meant for it.
     """
 
     keeper: UserdataScope
@@ -27,6 +29,7 @@ class Lost(NamedTuple):
     reader: Reader
     key: str
     is_missing: bool
+    misspelt: Key | None = None
 
 
 def lost_outputs(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> tuple[Lost, ...]:
@@ -68,8 +71,18 @@ def _missed(flow: DataFlow, missing: Missing) -> Lost:
             own = names.get(written.name, written.name)
             if own not in keeper.outputs and _name_at(flow, keeper, own, missing) == missing.key:
                 reader = reader_at(missing.scope, missing.vertices[0], missing.key)
-                return Lost(keeper, own, writer, written, reader, missing.key, True)
+                meant = _misspelt(keeper, own)
+                return Lost(keeper, own, writer, written, reader, missing.key, True, meant)
     raise AssertionError("a keeper writes what it keeps")
+
+
+def _misspelt(keeper: UserdataScope, own: str) -> Key | None:
+    """The output key of a container that no state in it sets and whose name is near to a key."""
+    children = keeper.container.children
+    set_ = {remapping(each).get(key.name, key.name) for each in children for key in each.outputs}
+    set_ |= {*keeper.inputs, *(preset.key for preset in keeper.container.userdata)}
+    unset = {key.name: key for key in keeper.container.outputs if key.name not in set_}
+    return unset.get(guesser(unset)(own) or "")
 
 
 def _name_at(flow: DataFlow, scope: UserdataScope, own: str, missing: Missing) -> str:

@@ -93,6 +93,8 @@ UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the pro
 
 def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     children = {child.name: child for child in container.children}
+    if len(children) < len(container.children):
+        return  # SM106: a rule can be about a state that has the name of another one
     guess = guesser(children)
     states = f"use one of its states: {listed(children)}" if children else "add states to it"
     inverted = inverted_rules(container)

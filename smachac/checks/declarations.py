@@ -19,6 +19,7 @@ from smachac.analysis.unset_reads import Missing, container_name, reader_at
 from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
+from smachac.checks.message_fields import TYPE_KEY, lacks_type_key
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.value_places import place_of_part
@@ -94,6 +95,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 continue  # SM301 or SM302 is about the same slip
             if any(_remaps_unknown(child, key) for child in container.children):
                 continue  # SM302
+            if key == TYPE_KEY and any(map(lacks_type_key, container.children)):
+                continue  # SM515
             # The userdata of the machine can be read after the run.
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
@@ -261,6 +264,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     flow = context.corrected_flow
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
+    misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     for scope in flow.scopes.values():
         container = scope.container
@@ -273,7 +277,9 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         set_ = context.of_container(_written_in, scope.path, scope)
         outer = scope.path.rpartition("/")[0]
         for key in container.outputs:
-            if key.name not in set_ and (outer, scope.outputs[key.name]) not in missing:
+            if key.name in set_ or id(key) in misspelt:
+                continue
+            if (outer, scope.outputs[key.name]) not in missing:
                 yield _unused(scope.path, container, key, "output")
     yield from _unused_by_the_script(context)
 

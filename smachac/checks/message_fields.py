@@ -39,7 +39,7 @@ from smachac.ir.message_types import (
     MissingDefinitions,
     userdata_type,
 )
-from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf, Struct, Variable
+from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.types import Type
 
 TYPE_KEY = "msg_type"
@@ -207,10 +207,16 @@ def _null_types(path: str, leaf: Leaf) -> Iterator[Finding]:
             )
 
 
+def lacks_type_key(node: Node) -> bool:
+    """Whether a state reads a message, and not its type."""
+    names = key_names(node.inputs, "message") if isinstance(node, Leaf) else ()
+    return bool(names) and TYPE_KEY not in [key.name for key in node.inputs]
+
+
 def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Finding]:
     """SM515 for the mappings that a state reads as messages."""
     names = key_names(leaf.inputs, "message")
-    if not names or TYPE_KEY in [key.name for key in leaf.inputs]:
+    if not lacks_type_key(leaf):
         return
     if variable(leaf, "action") in NO_MESSAGE:
         return

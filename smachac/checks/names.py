@@ -20,7 +20,7 @@ from smachac.checks.declarations import meant_presets
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
@@ -135,10 +135,22 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
         ),
         help=help or f"use a state or an outcome of `{container.name}`: {_targets(container)}",
         effect="SMACH refuses to run such a container: none of its states runs",
-        related=calls(child, step.target_span),
+        related=(*_unentered(container, step.target, fault.sure), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
     )
+
+
+def _unentered(container: Linear, target: str, name: str | None) -> Iterator[Related]:
+    """The place of a state that no transition leads to, where several have the same unknown target:
+    the name of the state is probably the misspelt one."""
+    steps = [step for child in container.children for step in child.transitions]
+    entered = {step.target for step in steps}
+    if len({step.target_span for step in steps if step.target == target}) < 2:
+        return
+    for child in container.children:
+        if child.name == name and name not in {*entered, container.initial}:
+            yield from other_place(child.span, f"no transition leads to `{name}`")
 
 
 def _through_outcome(container: Linear, step: Transition, above: str) -> str:

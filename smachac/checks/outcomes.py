@@ -19,7 +19,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.traversal import outcome_names
 
 
@@ -238,6 +238,20 @@ def unhandled(child: Node) -> list[Outcome]:
     return [outcome for outcome in child.outcomes if outcome.name not in handled]
 
 
+def _step(container: Linear, child: Node, outcome: str) -> str:
+    """The transition that is probably missing: after a success to the next state, otherwise to a
+    failure of the container."""
+    ends = outcome_names(container)
+    failed = [name for name in ends if fails(container, name)]
+    targets = [PREEMPTED, *failed] if outcome == PREEMPTED and PREEMPTED in ends else failed
+    if outcome in successes(child):
+        names = [each.name for each in container.children]
+        targets = [*names[names.index(child.name) + 1 :], *successes(container)]
+    if not targets:
+        return f"`{outcome}: TARGET`"
+    return f"`{outcome}: {targets[0]}` (or another state or outcome)"
+
+
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> Finding:
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
@@ -251,8 +265,8 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> F
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{outcome.name}: TARGET` to the transitions of `{child.name}`, or"
-        f" `{outcome.name}` to the outcomes of `{container.name}`",
+        help=f"{why}add {_step(container, child, outcome.name)} to the transitions of"
+        f" `{child.name}`, or `{outcome.name}` to the outcomes of `{container.name}`",
         related=(
             *(other_place(outcome.span, origin) if inside else ()),
             *calls(child, child.span),

@@ -113,6 +113,10 @@ def _with_preset(finding: Finding, witness: Witness, meant: MeantPreset) -> Find
     if meant.looped:
         purpose = f"must run for each item of `{preset.key}`"
         text = f"for_each: {{item: {key}, in: {preset.key}}}"
+    if not meant.looped and guesser([key]).sure(preset.key) is not None:
+        help = f"rename `{preset.key}` to `{key}`, or write `{text}` in `{name}`"
+        related = other_place(preset.span, f"nothing reads `{preset.key}`")
+        return replace(finding, help=help, related=(*related, *finding.related))
     return replace(
         finding,
         help=f"if `{name}` {purpose}, write `{text}` in `{name}`; otherwise give `{key}` an initial"
@@ -485,12 +489,14 @@ def lost_output(context: Context) -> Iterator[Finding]:
         keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
         inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
         gets = "an unset key" if lost.is_missing else "an older value"
+        wrong = lost.misspelt
+        fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
-            span=keeper.span,
+            span=wrong.span if wrong is not None else keeper.span,
             message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
             f" `{keeper.name}`: `{lost.reader.node.name}` reads {gets}",
             arguments=(lost.own,),
-            help=f"add `{lost.own}` to the `output_keys` of `{keeper.name}`",
+            help=fix or f"add `{lost.own}` to the `output_keys` of `{keeper.name}`",
             related=(
                 *other_place(written, f"`{lost.writer.name}` sets it here"),
                 *other_place(lost.reader.span, lost.reader.words),
@@ -501,5 +507,5 @@ def lost_output(context: Context) -> Iterator[Finding]:
             else f"`{lost.reader.node.name}` works with a value that was set before",
             severity=Severity.ERROR if lost.is_missing else None,
             node=lost.keeper.path,
-            edits=with_output(keeper, lost.own) if lost.is_missing else (),
+            edits=with_output(keeper, lost.own) if lost.is_missing and wrong is None else (),
         )

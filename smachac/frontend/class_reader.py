@@ -275,7 +275,12 @@ def _execute_faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[C
         if "execute" in own.assigned() or any("__getattr__" in names for names in own.names):
             return []
         methods = [name for name in own.names[0] if own.method(name) is not None]
-        return [_at_class("no execute", module, node, guesser(methods)("execute"))]
+        near = guesser(methods)("execute")
+        found = own.method(near) if near is not None else None
+        if found is not None and found[1] in node.body:
+            name = Word(found[1].name, name_span(module.text, found[1]))
+            return [ClassFault(kind="no execute", name=name, near=near)]
+        return [_at_class("no execute", module, node, near)]
     bound = own.names[0].get("execute", ())
     if bound and isinstance(bound[-1], ast.AsyncFunctionDef) and not bound[-1].decorator_list:
         return [_at_class("coroutine", module, node)]

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
-from smachac.diagnostics.source import Source, Span
+from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
+from smachac.frontend.standard_messages import STANDARD
 from smachac.ir.leaf import type_text
 from smachac.ir.message_types import (
     PARTS,
@@ -85,12 +87,28 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
     if kind == "action" and word.name.endswith("Action"):
         names.append(word.name.removesuffix("Action"))
     for name in names:
-        sources = library.definitions(f"{word.package}/{kind}/{name}.{kind}")
+        path = f"{word.package}/{kind}/{name}.{kind}"
+        sources = library.definitions(path)
+        if not sources and path in STANDARD:
+            return _standard(path, TypeName(word.package, name), kind)
         if sources:
             read = [read_definition(each, TypeName(word.package, name), kind) for each in sources]
             found = tuple(each for each in read if each is not None)
             return found if len(found) == len(read) else ()
     return ()
+
+
+def _standard(path: str, name: TypeName, kind: DefinitionKind) -> tuple[Definition, ...]:
+    """The definition of a type that every installation of ROS has. It is in no file, so its parts
+    have no places."""
+    read = read_definition(Source(path, STANDARD[path]), name, kind)
+    if read is None:
+        return ()
+    messages = [
+        replace(each, fields=tuple(replace(one, span=NOWHERE) for one in each.fields))
+        for each in read.messages
+    ]
+    return (replace(read, messages=tuple(messages), span=NOWHERE),)
 
 
 def definitions_of(base: State, library: Library) -> Definitions:

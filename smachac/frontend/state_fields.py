@@ -252,6 +252,8 @@ def _known_fields(
                 )
             )
             meant.add(guesser_of((*known, *own))(word.text))
+            if len(own) == 1:
+                meant.add(own[0])  # the message names the only variable
     if strays:
         read["transitions"] = (*read.get("transitions", ()), *strays)
     return read, meant

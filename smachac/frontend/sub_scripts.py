@@ -38,7 +38,12 @@ def sub_script_state(
         refuse(start, "shape", message, f"{help} and the rest without `name:`")
         return None
     if not isinstance(tree, Seq):
-        refuse(start, "shape", f"a sub-script must be a list with one state, not {kind_of(tree)}")
+        help = SUB_SCRIPT_HELP
+        first = tree.entries[0] if isinstance(tree, Map) and tree.entries else None
+        if first is not None and isinstance(first.value, Map):
+            help = f"write `- {first.key.value}:`, the state as the item of a list"
+        message = f"a sub-script must be a list with one state, not {kind_of(tree)}"
+        refuse(start, "shape", message, help)
         return None
     if len(tree.items) != 1:
         message = f"a sub-script must have one state; this one has {len(tree.items)}"

@@ -122,7 +122,7 @@ def test_a_correct_class() -> None:
          ["SM608 templates/FindPart.yml:9 FindPart"], "did you mean `FindParts`?"),
         (changed(("range(userdata.tries):", "range(userdata.tries)")),
          ["SM608 cell/find.py:12 "], None),
-        (changed(("def execute", "def excute")), ["SM609 cell/find.py:4 FindPart"],
+        (changed(("def execute", "def excute")), ["SM609 cell/find.py:11 excute"],
          "rename `excute` to `execute`"),
         (changed((LISTS, "")), ["SM609 cell/find.py:5 __init__"], None),
         (changed((HEAD, "class FindPart:\n")), ["SM609 cell/find.py:4 FindPart"], None),
@@ -158,7 +158,7 @@ def test_a_correct_class() -> None:
          ["SM309 cell/find.py:21 LOST"], None),
         (changed(("(smach.State)", "(Skill)"), ("import smach\n", "from smach import State\n\n\n"
          "class Skill(State):\n    def stop(self):\n        return 1\n"),
-                 ("def execute", "def exec")), ["SM609 cell/find.py:9 FindPart"], None),
+                 ("def execute", "def exec")), ["SM609 cell/find.py:16 exec"], None),
     ],
 )  # fmt: skip
 def test_a_fault(text: str, found: list[str], help: str | None) -> None:

@@ -210,7 +210,8 @@ LAMP = {"cell_msgs/msg/Lamp.msg": "bool on\n", **FILES}
         ("cell_msgs/Lamp", LAMP, ("Lamp", "`cell_msgs/Lamp` is a message, not a service")),
         ("cell_msgs/Tidy", LAMP, ("Tidy", "`cell_msgs/Tidy` is an action, not a service")),
         ("std_msgs/msg/Bool", {}, ("msg/Bool", "`std_msgs/msg/Bool` is a message, not a service")),
-        ("std_msgs/Bool", {}, None),
+        ("std_msgs/Bool", {}, ("Bool", "`std_msgs/Bool` is a message, not a service")),
+        ("std_msgs/Header", {}, None),
         ("cell_msgs/Grasp", LAMP, None),
     ],
 )

@@ -39,7 +39,7 @@ MESSAGES = (
     *("actionlib.msg", "actionlib_msgs", "actionlib_msgs.msg", "geometry_msgs"),
     *("geometry_msgs.msg", "my_msgs", "my_msgs.msg", "my_msgs.srv"),
     *("roslib.message", "sensor_msgs", "sensor_msgs.msg", "std_msgs", "std_msgs.msg"),
-    *("std_srvs", "std_srvs.srv", "tf2_geometry_msgs"),
+    *("arm_msgs", "arm_msgs.srv", "std_srvs", "std_srvs.srv", "tf2_geometry_msgs"),
 )
 
 

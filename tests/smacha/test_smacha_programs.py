@@ -440,7 +440,7 @@ def test_ros_states_bring_their_imports_once() -> None:
     assert len(names) == len(set(names))
     services = text_of("services")
     assert "from actionlib.msg import TestAction, TestGoal" in services
-    assert "from std_srvs.srv import SetBool" in services
+    assert "from arm_msgs.srv import MoveGripper" in services
 
 
 def test_services_and_actions_get_what_the_script_says() -> None:

@@ -1,0 +1,164 @@
+"""Slips around outcomes, outputs and messages: one finding at the cause, and what to write."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+from tests.trust.project_text import analysed
+
+WATCH = """\
+name: sm
+template: Base
+outcomes: [succeeded, aborted]
+states:
+  - LOOK:
+      template: ScriptedState
+      outcomes: [OUTCOMES]
+      transitions: {TRANSITIONS}
+  - SAY:
+      template: ScriptedState
+      outcomes: [said]
+      transitions: {said: succeeded}
+"""
+
+
+def look(outcomes: str, transitions: str) -> list[tuple[str, str, str | None]]:
+    script = WATCH.replace("OUTCOMES", outcomes).replace("TRANSITIONS", transitions)
+    return reported({"main.yml": script})
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "transitions", "found"),
+    [
+        # a success and a failure with other words
+        ("valid, lost", "succeeded: SAY, lost: aborted", [("succeeded", "valid")]),
+        ("valid, failed", "succeeded: SAY, aborted: aborted",
+         [("succeeded", "valid"), ("aborted", "failed")]),
+        # the only outcome that is left
+        ("seen, empty", "seen: SAY, nothing: aborted", [("nothing", "empty")]),
+        # a near name comes first
+        ("found, lost", "fuond: SAY, gone: aborted", [("fuond", "found"), ("gone", "lost")]),
+    ],
+)  # fmt: skip
+def test_an_unknown_outcome_is_the_one_without_a_transition(
+    outcomes: str, transitions: str, found: list[tuple[str, str]]
+) -> None:
+    helps = [("SM102", word, f"did you mean `{meant}`?") for word, meant in found]
+    assert look(outcomes, transitions) == helps
+
+
+def test_an_unknown_outcome_that_can_mean_several() -> None:
+    found = look("left, right, lost", "seen: SAY, lost: aborted")
+    assert {code for code, *_ in found} == {"SM102", "SM104", "SM201"}
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "transitions", "help"),
+    [
+        ("seen, lost", "seen: SAY",
+         "add `lost: aborted` (or another state or outcome) to the transitions of `LOOK`, or `lost`"
+         " to the outcomes of `sm`"),
+        ("done, failed", "failed: aborted",
+         "add `done: SAY` (or another state or outcome) to the transitions of `LOOK`, or `done`"
+         " to the outcomes of `sm`"),
+    ],
+)  # fmt: skip
+def test_a_missing_transition_has_a_target(outcomes: str, transitions: str, help: str) -> None:
+    assert ("SM104", "LOOK", help) in look(outcomes, transitions)
+
+
+OUTPUTS = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - FIND:
+      template: StateMachine
+      outcomes: [found]
+      output_keys: [psoe]
+      states:
+        - LOOK:
+            template: ScriptedState
+            outcomes: [seen]
+            output_keys: [pose]
+            steps: [{outcome: seen, set: {pose: 0.5}}]
+            transitions: {seen: found}
+      transitions: {found: GRASP}
+  - GRASP: {template: PrintUserdataState, input_keys: [pose], transitions: {succeeded: done}}
+"""
+
+
+def test_a_misspelt_output_key_of_a_container() -> None:
+    help = "write `pose` in place of `psoe`"
+    assert reported({"main.yml": OUTPUTS}) == [("SM307", "psoe", help)]
+
+
+PUBLISH = """\
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {msg: MESSAGE, msg_type: std_msgs/Bool}
+states:
+  - SAY:
+      template: PublishMsgState
+      action: start
+      input_keys: [msg, msg_type]
+      transitions: {succeeded: done, aborted: failed}
+"""
+
+
+@pytest.mark.parametrize(
+    ("message", "found"),
+    [
+        ("{data: true}", []),
+        ("{date: true}", [("SM512", "date", "did you mean `data`?")]),
+        ("{data: 3}", [("SM512", "3", "write a value of the type `bool`, such as `true`")]),
+    ],
+)
+def test_the_messages_of_every_installation_are_known(
+    message: str, found: list[tuple[str, str, str]]
+) -> None:
+    assert reported({"main.yml": PUBLISH.replace("MESSAGE", message)}) == found
+
+
+def test_a_message_without_its_type_is_one_finding() -> None:
+    script = PUBLISH.replace("MESSAGE", "{data: true}").replace("[msg, msg_type]", "[msg]")
+    assert [code for code, *_ in reported({"main.yml": script})] == ["SM515"]
+
+
+def test_a_state_with_two_transitions_to_its_wrong_name() -> None:
+    script = WATCH.replace("OUTCOMES", "done, again, lost").replace("- SAY", "- SPAEK")
+    script = script.replace("TRANSITIONS", "done: SPEAK, again: SPEAK, lost: aborted")
+    found = analysed({"main.yml": script}).report
+    assert [item.code for item in found] == ["SM101", "SM101"]
+    places = [[each.message for each in item.related] for item in found]
+    assert places == [["no transition leads to `SPAEK`"]] * 2
+
+
+def test_the_only_variable_under_another_name() -> None:
+    script = WATCH.replace("OUTCOMES", "done, lost")
+    script = script.replace("TRANSITIONS", "done: WAIT, lost: aborted")
+    wait = "  - WAIT: {template: SleepState, duration: 1.5, transitions: {succeeded: SAY}}\n"
+    found = reported({"main.yml": script.replace("  - SAY", wait + "  - SAY")})
+    assert found == [("SM003", "duration", "its variable is `time`")]
+
+
+def test_a_userdata_key_one_slip_away_from_the_one_that_is_read() -> None:
+    script = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {word: [a, b]}
+states:
+  - SAY: {template: Say, transitions: {said: done}}
+"""
+    interface = """input_keys: {words: 'list[str]'}
+outcomes: {said: {}}
+code: {python: "cell:Say"}
+"""
+    ((code, _, help),) = reported({"main.yml": script, "templates/Say.yml": interface})
+    assert (code, help) == (
+        "SM301",
+        "rename `word` to `words`, or write `remapping: {words: word}` in `SAY`",
+    )
