@@ -88,9 +88,9 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of `code` in the
     project file, in the folder of the script and in those above it up to the root of the
     repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs smachac.
-    The common types of std_msgs, std_srvs and geometry_msgs are known without their files. Where
-    there is no definition, nothing is checked; but a type is reported if its package has other types
-    of its kind, or its name is that of another kind. Where several are found, such as those of ROS
+    The common types of std_msgs, std_srvs and geometry_msgs are known without their files. Without
+    a definition, nothing is checked; but a type is reported if its package has other types of its
+    kind, or its name is that of another kind. Where several are found, such as those of ROS
     1 and ROS 2, a finding holds for all of them.
 
     Wrong:

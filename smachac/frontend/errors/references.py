@@ -402,6 +402,8 @@ def template_error(
 
     A state whose template fails would be missing in the generated program.
 
+    Exactly: a warning for a misspelt block, whose text no program contains.
+
     Wrong:
         name: sm
         template: Base

@@ -6,8 +6,9 @@ import ast
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, identity
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity, identity
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Node, StateType
@@ -112,6 +113,7 @@ class ModuleParts:
         """Add the blocks of a template to the buffers, after those of the templates it includes."""
         for inner in page.inner:
             self.gather(inner, node)
+        self._unused_blocks(page, node)
         for name in (*APPENDED, *PREPENDED):
             if name not in page.own:
                 continue
@@ -121,6 +123,27 @@ class ModuleParts:
                 buffer[text] = None
                 if name in ("defs", "class_defs", "cb_defs"):
                     self.define(text, page, name, node)
+
+    def _unused_blocks(self, page: Page, node: Node) -> None:
+        """Report the misspelt blocks of a template of the user, whose text no program contains."""
+        if self.context.library.own_template(page.file) is None:
+            return
+        known = (*APPENDED, *PREPENDED, *KEYED, "body")
+        guess = guesser(name for name in known if name not in page.own)
+        for name in sorted(page.own.difference(known)):
+            near = guess.sure(name)
+            span = self.blocks.block_span(page.file, name)
+            if near is not None and span is not None:
+                place = Span(span.source, span.end - len(name), span.end)
+                found = template_error(
+                    place,
+                    f"the block `{name}` is not one of those that a program contains",
+                    f"did you mean `{near}`?",
+                    (page.file, name),
+                )
+                finding = replace(found.finding, effect="its text is not in the program")
+                found = replace(found, severity=Severity.WARNING, finding=finding)
+                self.fault(BlockError(found), node)
 
     def define(self, text: str, page: Page, block: str, node: Node) -> None:
         """Report a class or function with two different definitions: only the last one counts."""
