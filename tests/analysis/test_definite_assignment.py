@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
@@ -17,6 +18,7 @@ from tests.strategies.userdata_machines import Brute, data_machines, keys_of
 
 @settings(max_examples=150)
 @given(data_machines(linear=True))
+@pytest.mark.slow
 def test_the_flow_says_what_all_that_can_happen_shows(machine: Machine) -> None:
     flow = data_flow(machine)
     brute = Brute(machine)
@@ -31,6 +33,7 @@ def test_the_flow_says_what_all_that_can_happen_shows(machine: Machine) -> None:
 
 @settings(max_examples=200)
 @given(data_machines(), st.integers(0, 9), st.integers(0, 6))
+@pytest.mark.slow
 def test_runs_find_what_is_called_always_set_and_miss_what_is_called_never(
     machine: Machine, seed: int, asked: int
 ) -> None:

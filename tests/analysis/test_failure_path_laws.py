@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
@@ -56,6 +57,7 @@ def test_every_failure_of_a_run_is_told_with_its_end(machine: Machine, seed: int
 
 @settings(max_examples=150)
 @given(MACHINES, st.integers(0, 9))
+@pytest.mark.slow
 def test_what_follows_a_failure_is_told(machine: Machine, seed: int) -> None:
     if any(isinstance(node, Concurrence) for _, node in walk(machine.root)):
         return

@@ -61,6 +61,7 @@ def compare(seeds: range, *, runs: int) -> dict[str, int]:
     return counts
 
 
+@pytest.mark.slow
 def test_verdicts_agree_with_runs() -> None:
     counts = compare(range(250), runs=15)
     assert min(counts["holds"], counts["fails"], counts["vacuous"]) > 20

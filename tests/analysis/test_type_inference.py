@@ -398,6 +398,7 @@ def data_of(value: object) -> Data:
 
 @given(computations(), st.fixed_dictionaries(dict.fromkeys(NAMES_OF_VALUES, VALUES)))
 @settings(max_examples=500, deadline=None)
+@pytest.mark.slow
 def test_what_an_expression_gives_is_of_its_type(expr: Expr, values: dict[str, object]) -> None:
     try:
         value = evaluate(expr, values)

@@ -167,6 +167,7 @@ def asked(node: Concurrence, ended: Combination) -> set[str]:
 
 @settings(max_examples=200)
 @given(concurrences())
+@pytest.mark.slow
 def test_a_failure_is_masked_if_and_only_if_a_combination_hides_it(node: Concurrence) -> None:
     assume(node.default_outcome)
     good = GOOD | always_good(node)

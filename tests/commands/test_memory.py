@@ -46,6 +46,7 @@ WORDS = [
 
 
 @pytest.mark.parametrize("words", WORDS)
+@pytest.mark.slow
 def test_a_long_list_takes_little_memory(words: list[str], long_list: Path) -> None:
     """An interpreter with the compiler alone takes 100 MB of address space."""
     ended = run(*words, "main.yml", "--memory-limit", "200", folder=long_list)
@@ -105,6 +106,7 @@ def test_the_limit_of_the_process_is_restored_and_never_raised() -> None:
 
 
 @pytest.mark.parametrize("words", WORDS)
+@pytest.mark.slow
 def test_beyond_the_limit_of_cpu_time_the_command_ends(words: list[str], tmp_path: Path) -> None:
     states = "".join(
         f"  - S{n}: {{template: SleepState, time: 1, transitions: {{succeeded: S{n + 1}}}}}\n"

@@ -210,6 +210,7 @@ def migrated(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]
     return code, capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_folder_that_works(capsys: pytest.CaptureFixture[str]) -> None:
     code, text = migrated(capsys, str(SMACHA))
     assert code == 0
@@ -218,6 +219,7 @@ def test_a_folder_that_works(capsys: pytest.CaptureFixture[str]) -> None:
     assert "0 have to be edited; " in text
 
 
+@pytest.mark.slow
 def test_json_has_every_file_and_place(capsys: pytest.CaptureFixture[str]) -> None:
     code, text = migrated(capsys, str(SMACHA), "--format", "json")
     data = json.loads(text)

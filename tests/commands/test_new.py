@@ -154,6 +154,7 @@ def test_names_of_files_and_keys() -> None:
 # --- states
 
 
+@pytest.mark.slow
 def test_every_state_type_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -83,6 +83,7 @@ def test_seeds_decide_and_not_the_number_of_processes(
     assert one == swept(capsys, "--runs", "30", "--jobs", "2")
 
 
+@pytest.mark.slow
 def test_the_prediction_is_within_the_interval_of_the_sweep(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -113,6 +113,7 @@ def test_a_pipe_gets_plain_text(folder: Path) -> None:
     assert "\x1b" not in plain
 
 
+@pytest.mark.slow
 def test_verify_shows_progress_on_a_terminal_and_erases_it(folder: Path) -> None:
     text = on_terminal(folder, "verify", "right.yml", width=80, changes={})
     before, _, after = text.rpartition(ERASE)

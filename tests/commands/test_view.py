@@ -202,6 +202,7 @@ def test_a_database_of_a_sweep_is_no_trace(script: Path, tmp_path: Path) -> None
     assert "is the database of a sweep, which has no events: use `smachac stats`" in found.stderr
 
 
+@pytest.mark.slow
 def test_view_opens_the_page_of_a_run(script: Path, start: Callable[..., Viewed]) -> None:
     view = start("run", script, "--view", "--view-paused", "-q")
     words = ["view", "--attach", str(view.port), "--no-browser"]

@@ -59,6 +59,7 @@ def visited(events: list[Mapping[str, object]]) -> list[str]:
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_both_arms_are_driven_alike(compiler: Compiler, header: Path, tmp_path: Path) -> None:
     program = made(MAIN, compiler, header)
     simulated = run(*PICK_AND_PLACE, 0)
@@ -73,6 +74,7 @@ def test_both_arms_are_driven_alike(compiler: Compiler, header: Path, tmp_path: 
 
 
 @pytest.mark.parametrize("flags", [BARE, SANITIZED], ids=["bare", "sanitized"])
+@pytest.mark.slow
 def test_other_ways_to_compile_it(flags: tuple[str, ...], header: Path) -> None:
     program = made(MAIN, last_with(*flags), header, *flags)
     ended = subprocess.run([str(program)], capture_output=True, text=True, timeout=60, check=False)
@@ -88,6 +90,7 @@ def test_other_ways_to_compile_it(flags: tuple[str, ...], header: Path) -> None:
         ("nudged", "PLACE_BLOCK/CHECK_PLACED"),
     ],
 )
+@pytest.mark.slow
 def test_what_goes_wrong_ends_in_the_recovery(fault: str, path: str, header: Path) -> None:
     events = faulty(fault, header)
     assert events[-1]["outcome"] == "aborted"

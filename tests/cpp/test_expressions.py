@@ -280,6 +280,7 @@ SEEDS_AND_CASES = [(1, 50), *(pytest.param(n, 130, marks=pytest.mark.slow) for n
 
 @COMPILERS
 @pytest.mark.parametrize(("seed", "count"), SEEDS_AND_CASES)
+@pytest.mark.slow
 def test_random_expressions_have_the_value_of_python(
     compiler: Compiler, seed: int, count: int, folder: Path
 ) -> None:
@@ -315,6 +316,7 @@ EDGES = [
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_edges_have_the_value_of_python(compiler: Compiler, folder: Path) -> None:
     batch = []
     for text in EDGES:
@@ -327,6 +329,7 @@ def test_edges_have_the_value_of_python(compiler: Compiler, folder: Path) -> Non
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_programs_without_exceptions_end_with_the_message(compiler: Compiler, folder: Path) -> None:
     text = """\
 #include <smachac/values.hpp>
@@ -344,6 +347,7 @@ int main(int argc, char **) {
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_expressions_compile_optimised_and_bare_without_a_warning(
     compiler: Compiler, folder: Path
 ) -> None:
@@ -421,6 +425,7 @@ int main() {
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_floats_are_those_of_python_to_the_last_bit(compiler: Compiler, folder: Path) -> None:
     pairs = numbers()
     table = ", ".join(f"{{{{{cpp_float(a)}, {cpp_float(b)}}}}}" for a, b in pairs)
@@ -449,6 +454,7 @@ TEXTS = [
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_texts_are_read_as_numbers_and_written_as_json(compiler: Compiler, folder: Path) -> None:
     odd = ["", "\0a", "ä€\N{GRINNING FACE}", "\"'\\\b\f\n\r\t\x01\x7f", "??=", "\\u0041", "\x85"]
     shows = [f"show([] {{ return py::whole({cpp_string(text)}); }});" for text in TEXTS]

@@ -99,6 +99,7 @@ def test_a_key_named_stop_is_no_request_to_stop() -> None:
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_the_class_of_the_documentation_is_one(compiler: Compiler, tmp_path: Path) -> None:
     interface, class_ = blocks("yaml")[0], blocks("cpp")[0]
     report, header = made({"main.yml": GRASP, "templates/Grasp.yml": interface})
@@ -114,6 +115,7 @@ def test_the_class_of_the_documentation_is_one(compiler: Compiler, tmp_path: Pat
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_the_program_of_the_documentation_runs(compiler: Compiler, tmp_path: Path) -> None:
     page = (ROOT / "docs" / "targets.md").read_text("utf-8")
     program = re.findall(r"^```cpp\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)[0]

@@ -33,6 +33,7 @@ def test_the_headers_compile(bare: tuple[str, ...], tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("example", ["05_userdata", "06_callbacks", "07_iterator"])
+@pytest.mark.slow
 def test_machines_compile(example: str, tmp_path: Path) -> None:
     folder = ROOT / "tests" / "cases" / "examples" / example / "expected" / "cpp"
     (header,) = folder.glob("*.hpp")
@@ -54,6 +55,7 @@ states:
 """
 
 
+@pytest.mark.slow
 def test_a_concurrence_is_refused_with_the_reason(tmp_path: Path) -> None:
     report, header = made({"main.yml": CONCURRENCE})
     assert report == []

@@ -30,6 +30,7 @@ def differing(seed: int, start: int, stop: int, compiler: Compiler, folder: Path
     ]
 
 
+@pytest.mark.slow
 def test_requests_reach_the_same_states(tmp_path: Path) -> None:
     assert differing(1, 0, MACHINES, last_with(), tmp_path) == []
 

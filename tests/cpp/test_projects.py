@@ -73,6 +73,7 @@ def uses(folder: Path, package: str, main: Path, installed: Path) -> Path:
 
 
 @needs_cmake
+@pytest.mark.slow
 def test_a_cmake_project_builds_installs_and_is_found(tmp_path: Path) -> None:
     folder = built(tmp_path / "a project", PATROL, "main=true", "cmake=true")
     installed = tmp_path / "installed"
@@ -174,6 +175,7 @@ def waiting(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return program
 
 
+@pytest.mark.slow
 def test_ctrl_c_asks_the_machine_to_stop(waiting: Path, tmp_path: Path) -> None:
     trace = tmp_path / "trace.jsonl"
     started = subprocess.Popen(

@@ -148,6 +148,7 @@ def listed(robot: robots.Robot) -> list[str | float]:
         ("cell.yml", "cell"),
     ],
 )
+@pytest.mark.slow
 def test_the_constants_are_those_of_the_simulation(
     name: str, file: str, compiler: Compiler, tmp_path: Path
 ) -> None:
@@ -184,6 +185,7 @@ int main() {
 """
 
 
+@pytest.mark.slow
 def test_arms_are_found_and_limits_checked(tmp_path: Path) -> None:
     assert build(project(tmp_path, "own.yml")) == 0
     last_with(*BARE).run(USED, tmp_path, *STRICT, *BARE, f"-I{tmp_path / 'out'}")

@@ -51,6 +51,7 @@ int main() {
 
 
 @pytest.mark.parametrize("flags", [SANITIZED, THREADED], ids=["address", "thread"])
+@pytest.mark.slow
 def test_a_request_uses_no_observer_of_a_run_that_has_ended(
     flags: tuple[str, ...], tmp_path: Path
 ) -> None:
@@ -84,6 +85,7 @@ int main() {
 """
 
 
+@pytest.mark.slow
 def test_a_copy_into_a_key_that_has_a_value_allocates_nothing(tmp_path: Path) -> None:
     assert last_with("-O1").run(KEYS, tmp_path, "-O1", "-pthread") == ""
 
@@ -112,6 +114,7 @@ int main() {
 """
 
 
+@pytest.mark.slow
 def test_an_observer_that_wants_no_writes_gets_none(tmp_path: Path) -> None:
     assert last_with("-O0").run(WRITES, tmp_path, "-pthread") == "1 1\n0 1\n"
 
@@ -128,6 +131,7 @@ int main() {
 """
 
 
+@pytest.mark.slow
 def test_a_value_that_is_changed_in_place_is_set_and_written(tmp_path: Path) -> None:
     assert last_with("-O0").run(EDITS, tmp_path, "-pthread") == "2 window\n1 0\n"
 
@@ -152,6 +156,7 @@ int main() {
 """
 
 
+@pytest.mark.slow
 def test_an_unset_key_and_a_sleep_without_a_length_are_errors(tmp_path: Path) -> None:
     unset = "reads a key that holds nothing\n"
     told = last_with("-O0").run(FAULTS, tmp_path, "-pthread")
@@ -169,6 +174,7 @@ int main() {
 
 
 @pytest.mark.parametrize("call", ["key.get()", "key.set()", "stop.requested()"])
+@pytest.mark.slow
 def test_a_result_that_is_not_used_is_a_warning(call: str, tmp_path: Path) -> None:
     text = UNUSED.replace("CALL", call)
     with pytest.raises(AssertionError, match=r"nodiscard|unused-result"):
@@ -187,6 +193,7 @@ int main() {}
 """
 
 
+@pytest.mark.slow
 def test_the_names_of_the_runtime_have_its_version(tmp_path: Path) -> None:
     """Objects of two versions in one program do not link as if they were one."""
     text = VERSION.replace("NAME", f"v{__version__.replace('.', '_')}")

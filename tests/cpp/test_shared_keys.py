@@ -73,6 +73,7 @@ CAUGHT = [("(ud.zero + 1)", "ud.zero"), ("{done: CHECK}", "{done: CHECK, error: 
         pytest.param(CAUGHT, {"zero"}, id="caught"),
     ],
 )
+@pytest.mark.slow
 def test_keys_are_shared_where_a_copy_makes_no_difference(
     changes: list[tuple[str, str]], shared: set[str], tmp_path: Path
 ) -> None:

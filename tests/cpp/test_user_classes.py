@@ -114,6 +114,7 @@ def prepared(folder: Path, header: str, hit: str = HIT) -> list[str]:
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_a_class_is_made_and_called(compiler: Compiler, tmp_path: Path) -> None:
     flags = prepared(tmp_path, HEADER.replace("HASH", number(HIT)))
     told = compiler.run(MAIN, tmp_path, *flags)
@@ -122,6 +123,7 @@ def test_a_class_is_made_and_called(compiler: Compiler, tmp_path: Path) -> None:
 
 
 @COMPILERS
+@pytest.mark.slow
 def test_a_class_that_returns_no_outcome_fails(compiler: Compiler, tmp_path: Path) -> None:
     header = HEADER.replace("Outcome::again : ", "Outcome{7} : ").replace("HASH", number(HIT))
     told = compiler.run(CAUGHT, tmp_path, *prepared(tmp_path, header))
@@ -138,6 +140,7 @@ def test_a_class_that_returns_no_outcome_fails(compiler: Compiler, tmp_path: Pat
         (("again, done }", "again, done, lost }"), "enumeration value .lost. not handled"),
     ],
 )
+@pytest.mark.slow
 def test_a_class_for_another_interface_does_not_compile(
     compiler: Compiler, wrong: tuple[str, str], message: str, tmp_path: Path
 ) -> None:
@@ -199,6 +202,7 @@ int main() { return 0; }
         ("Out", 0, 1),
     ],
 )
+@pytest.mark.slow
 def test_the_order_of_fields_is_that_of_the_interface(
     compiler: Compiler, part: str, one: int, other: int, tmp_path: Path
 ) -> None:
@@ -350,6 +354,7 @@ int main() {
 """
 
 
+@pytest.mark.slow
 def test_classes_take_several_objects_and_objects_of_one_name(tmp_path: Path) -> None:
     """Two objects of one name and different types had one parameter."""
     files = {"main.yml": TWO, "templates/Left.yml": LEFT, "templates/Right.yml": RIGHT}

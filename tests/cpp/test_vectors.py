@@ -122,6 +122,7 @@ def agree(names: Iterable[str], compiler: Compiler, folder: Path, *flags: str) -
 
 
 @pytest.mark.parametrize(("compiler", "names"), shares())
+@pytest.mark.slow
 def test_machines_do_what_smach_did(compiler: Compiler, names: list[str], tmp_path: Path) -> None:
     agree(names, compiler, tmp_path)
 

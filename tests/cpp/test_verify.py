@@ -59,6 +59,7 @@ HERE = pytest.mark.skipif(not compilers(), reason="no C++ compiler")
 
 @HERE
 @pytest.mark.parametrize("folder", [*EXAMPLES, *CASES], ids=lambda folder: folder.name)
+@pytest.mark.slow
 def test_cpp_does_what_the_interpreter_does(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -92,6 +93,7 @@ def crashing(text: str) -> str:
 
 @HERE
 @pytest.mark.parametrize("break_", [astray, mistaken, crossed, deaf, crashing])
+@pytest.mark.slow
 def test_a_wrong_header_is_found(
     break_: Callable[[str], str],
     tmp_path: Path,

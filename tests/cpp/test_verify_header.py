@@ -57,6 +57,7 @@ def swapped_outcomes(text: str) -> str:
 
 @HERE
 @pytest.mark.parametrize("folder", [COUNTING, ON_ERROR], ids=lambda folder: folder.name)
+@pytest.mark.slow
 def test_a_header_that_nobody_edited_agrees(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -82,6 +83,7 @@ def test_a_header_that_nobody_edited_agrees(
         ),
     ],
 )
+@pytest.mark.slow
 def test_a_fault_made_by_hand_is_found(
     edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -96,6 +98,7 @@ def test_a_fault_made_by_hand_is_found(
 
 
 @HERE
+@pytest.mark.slow
 def test_a_difference_names_the_line_in_the_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -108,6 +111,7 @@ def test_a_difference_names_the_line_in_the_file(
 
 
 @HERE
+@pytest.mark.slow
 def test_classes_are_replaced_by_stand_ins(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -207,6 +211,7 @@ def test_a_header_that_cannot_be_compared_is_reported_with_its_place(
         (with_a_derived_class, "the state sm/BOTH/RIGHT is not of the type", "case State::RIGHT:"),
     ],
 )
+@pytest.mark.slow
 def test_an_error_of_the_compiler_has_its_place_in_the_file(
     edit: Edit, message: str, place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -221,6 +226,7 @@ def test_an_error_of_the_compiler_has_its_place_in_the_file(
     assert f"--> {header}:{number}\n" in err
 
 
+@pytest.mark.slow
 def test_the_parts_of_a_header_are_read_in_linear_time() -> None:
     """Repeated beginnings of what is searched for; a quadratic search would take minutes."""
     for piece in ("namespace a", "enum class A ", "struct A ", "execute(", "case ", "State::", "{"):
@@ -228,6 +234,7 @@ def test_the_parts_of_a_header_are_read_in_linear_time() -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a shell script stands for the compiler")
+@pytest.mark.slow
 def test_ctrl_c_leaves_no_compiler_behind(tmp_path: Path) -> None:
     """The compiler here starts another process, as g++ does; both hold the pipe `alive`."""
     main_yml, header = built(tmp_path, ROUNDS)

@@ -76,6 +76,7 @@ def _mission(tmp_path: Path) -> Path:
 
 
 @pytest.mark.skipif(not compilers(), reason="no C++ compiler")
+@pytest.mark.slow
 def test_a_mission_with_stops_agrees(mission: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(mission), "--targets", "python,cpp"]) == 0
     assert "python: agrees\ncpp: agrees" in capsys.readouterr().out

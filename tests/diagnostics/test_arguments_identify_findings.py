@@ -98,6 +98,7 @@ def test_arguments_in_scripts(path: Path) -> None:
         for number, code in enumerate(sorted(CODES))
     ],
 )
+@pytest.mark.slow
 def test_arguments_in_the_examples_of_a_code(code: str) -> None:
     for files in (explanation(CODES[code]).wrong, explanation(CODES[code]).right):
         library = memory_library(files, BUILT_IN)
@@ -108,6 +109,7 @@ SEEDS = [*range(QUICK), *(pytest.param(n, marks=pytest.mark.slow) for n in range
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.slow
 def test_arguments_in_random_projects_with_one_fault(seed: int) -> None:
     subject = Subject.of(correct_project(seed))
     assert subject is not None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -59,6 +60,7 @@ def test_a_machine_equals_itself(whole: Machine) -> None:
 
 
 @given(valid_machines(), valid_machines())
+@pytest.mark.slow
 def test_the_other_direction_is_the_mirror(one: Machine, other: Machine) -> None:
     there, back = compared(one, other), compared(other, one)
     assert Counter(map(mirrored, there.changes)) == Counter(back.changes)

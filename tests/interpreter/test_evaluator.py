@@ -68,6 +68,7 @@ def test_lambdas_close_over_parameters() -> None:
     assert add(3) == 2
 
 
+@pytest.mark.slow
 def test_a_lambda_works_for_ever() -> None:
     count = function_of("lambda x: len(range(100000)) + len(list(range(90000)))")
     assert {count(0) for _ in range(50)} == {190_000}

@@ -184,6 +184,7 @@ def test_a_misspelt_field_of_a_similar_state_is_not_offered(tmp_path: Path) -> N
     assert "model_nmae" not in found
 
 
+@pytest.mark.slow
 def test_the_word_that_was_deleted_is_first() -> None:
     chosen = random.Random(0).sample(places(), 100)
     first = 0

@@ -80,6 +80,7 @@ def start_of(path: Path) -> list[str]:
 @settings(max_examples=15, deadline=None, derandomize=True,
           suppress_health_check=[HealthCheck.function_scoped_fixture])  # fmt: skip
 @given(st.sampled_from(SCRIPTS), st.lists(edits(), min_size=1, max_size=5))
+@pytest.mark.slow
 def test_random_edits_in_a_server(client: Client, path: Path, steps: list[Edit]) -> None:
     uri = client.open(path)
     history = start_of(path)

@@ -77,6 +77,7 @@ def here(text: str, word: str) -> dict[str, Any]:
             "end": {"line": line, "character": column + len(word)}}  # fmt: skip
 
 
+@pytest.mark.slow
 def test_findings_as_one_types(client: Client, folder: Path) -> None:
     main = folder / "main.yml"
     text = main.read_text("utf-8")

@@ -70,6 +70,7 @@ def test_ruff_finds_nothing(tool: list[str], built: Path) -> None:
     assert ended.returncode == 0, ended.stdout
 
 
+@pytest.mark.slow
 def test_mypy_finds_nothing(built: Path) -> None:
     for path in sorted(built.glob("*/*.py")):
         ended = subprocess.run(
@@ -92,6 +93,7 @@ for script in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_output_does_not_depend_on_the_hash_seed() -> None:
     """The output of each example for each target, by `script target`, with two hash seeds."""
     found = []

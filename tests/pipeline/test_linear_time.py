@@ -105,6 +105,7 @@ def write(folder: Path, name: str, text: str) -> None:
 
 
 @pytest.mark.parametrize("text", first_quick(TEMPLATES))
+@pytest.mark.slow
 def test_templates(text: str, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", MAIN)
     write(tmp_path, "templates/Own.tpl.py", f"{{% extends 'State.tpl.py' %}}\n{TEMPLATES[text]}")
@@ -113,6 +114,7 @@ def test_templates(text: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("pure", [False, pytest.param(True, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("text", SCRIPTS)
+@pytest.mark.slow
 def test_scripts(text: str, pure: bool, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", SCRIPTS[text])
     write(tmp_path, "templates/Own.tpl.py", "{% extends 'State.tpl.py' %}\n" + STATE)

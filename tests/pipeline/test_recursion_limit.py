@@ -39,6 +39,7 @@ HEAD = "name: sm\noutcomes: [done]\nstates:\n  - X: "
 
 
 @pytest.mark.parametrize("target", target_names())
+@pytest.mark.slow
 def test_deep_machines_are_built(target: str) -> None:
     analysis = analyse(Source("main.yml", HEAD + nested(998)), library({}), [])
     assert analysis.checked is not None

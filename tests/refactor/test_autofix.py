@@ -404,6 +404,7 @@ LETTERS = st.sampled_from("abdefgilnoprstuPLACEKX_:{, ")
 
 @settings(max_examples=60)
 @given(st.lists(st.tuples(st.integers(0, 400), LETTERS, st.integers(0, 1)), max_size=4))
+@pytest.mark.slow
 def test_fixes_never_make_it_worse(damage: list[tuple[int, str, int]]) -> None:
     text = (
         "name: sm\ntemplate: Base\noutcomes: [placed, aborted]\nstates:\n"

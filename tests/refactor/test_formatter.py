@@ -116,6 +116,7 @@ DAMAGE = st.tuples(st.floats(0, 1), st.integers(0, 20), PIECES)
 
 @settings(max_examples=400)
 @given(st.sampled_from(SCRIPTS), st.lists(DAMAGE, min_size=1, max_size=4), st.booleans())
+@pytest.mark.slow
 def test_whatever_is_yaml_can_be_laid_out_once_for_all(
     text: str, damage: list[tuple[float, int, str]], crlf: bool
 ) -> None:

@@ -260,6 +260,7 @@ def outcome_of(text: str, end: str) -> str | None:
 
 @settings(max_examples=80)
 @given(st.integers(0, 10**9))
+@pytest.mark.slow
 def test_keys_are_seen_in_a_container_as_without_it(seed: int) -> None:
     draw = random.Random(seed)
     names = [f"S{at}" for at in range(draw.randint(3, 6))]
@@ -365,6 +366,7 @@ PIECES = ("{", "}", "[[x]]", ": ", "- ", "\n", "&a ", "*a", "#", "  ", "'", "|\n
 
 @settings(max_examples=150)
 @given(st.integers(0, 10**9))
+@pytest.mark.slow
 def test_nothing_escapes(seed: int) -> None:
     draw = random.Random(seed)
     source = draw.choice(SCRIPTS)

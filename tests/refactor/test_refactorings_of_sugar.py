@@ -70,6 +70,7 @@ def _states(draw: random.Random, names: list[str], last: str, pad: str, depth: i
 
 
 @pytest.mark.parametrize("scripts", [10, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_sugar_survives_refactoring(scripts: int) -> None:
     """Contained states run as before; a container that is extracted can be inlined again; a state
     that is renamed twice has its old name."""

@@ -121,6 +121,7 @@ def test_the_step_of_the_action(
         assert ("file=main.yml,line=" in done.stdout) == bool(ended)
 
 
+@pytest.mark.slow
 def test_the_action_writes_the_differences(tmp_path: Path) -> None:
     script = tmp_path / "main.yml"
     script.write_text(RIGHT)
@@ -231,6 +232,7 @@ def test_the_script_of_gitlab(tmp_path: Path) -> None:
     assert "SM101" in (tmp_path / "smachac.xml").read_text()
 
 
+@pytest.mark.slow
 def test_the_hook_runs_when_it_has_to(tmp_path: Path) -> None:
     hook, _ = load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
     home = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "HOME": str(tmp_path)}

@@ -160,10 +160,12 @@ def ours() -> Tree:
     return {path.relative_to(root).as_posix(): path.read_text("utf-8") for path in modules}
 
 
+@pytest.mark.slow
 def test_our_imports_keep_the_order_of_the_layers(ours: Tree) -> None:
     assert list(layer_faults(ours)) == []
 
 
+@pytest.mark.slow
 def test_our_modules_do_not_import_each_other_in_a_circle(ours: Tree) -> None:
     assert import_circles(ours) == []
 

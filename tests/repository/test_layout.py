@@ -145,6 +145,7 @@ def test_package_says_that_it_is_typed() -> None:
     assert (ROOT / "smachac" / "py.typed").is_file()
 
 
+@pytest.mark.slow
 def test_functions_fit_a_screen() -> None:
     faults = []
     for path in modules():
@@ -169,6 +170,7 @@ def test_only_the_listed_modules_touch_files_and_streams() -> None:
     assert {p: found for p, found in faults.items() if found and p not in TOUCHES} == {}
 
 
+@pytest.mark.slow
 def test_every_test_can_fail() -> None:
     paths = sorted((ROOT / "tests").rglob("test_*.py"))
     shared = asserting((ROOT / "tests" / "support" / "golden.py").read_text("utf-8"))

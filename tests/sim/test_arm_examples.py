@@ -98,6 +98,7 @@ def test_baxter_stacks_within_1_mm(example: tuple[str, dict[str, str]], seed: in
     assert max(found.errors.values()) < 0.001
 
 
+@pytest.mark.slow
 def test_both_arms_move_at_once_and_always_the_same_way() -> None:
     first, second = (run(*DUAL_ARM, 3) for _ in range(2))
     assert first.events == second.events
@@ -123,6 +124,7 @@ LOCK = Fault(kind="lock_joint", target="left_e1", at=0.5)
 @pytest.mark.parametrize(
     ("fault", "tries"), [(SLIP, 2), (HANG, 2), (LOCK, 4)], ids=["slip", "hang", "lock"]
 )
+@pytest.mark.slow
 def test_the_machine_recovers(fault: Fault, tries: int) -> None:
     found = run(*RECOVERY, 1, faults=(fault,))
     assert found.outcome == "succeeded"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given, settings
 
 from smachac.checks import check_machine
@@ -53,6 +54,7 @@ def test_valid_machines_have_all_there_is() -> None:
     assert any(node.rules for node in nodes if isinstance(node, Concurrence))
 
 
+@pytest.mark.slow
 def test_busy_machines_have_all_there_is() -> None:
     found: set[str] = set()
 

@@ -40,6 +40,7 @@ def test_a_run_that_always_ends_its_process_has_failed(tmp_path: Path) -> None:
     assert len((tmp_path / "begun").read_text().split()) == 9
 
 
+@pytest.mark.slow
 def test_a_run_that_does_not_end_has_failed(tmp_path: Path) -> None:
     found = runs(work_folder(tmp_path, "threading.Event().wait()"), 6, limit=5)
     assert found.pop(3).error == "the run did not end within 5 s"

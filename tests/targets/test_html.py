@@ -131,6 +131,7 @@ def test_what_runs_is_drawn(script: Path) -> None:
 
 @settings(max_examples=150)
 @given(valid_machines())
+@pytest.mark.slow
 def test_what_runs_is_drawn_for_random_machines(machine: Machine) -> None:
     assert undrawn(machine, 6) == set()
 

@@ -302,6 +302,7 @@ def test_any_number_is_read_or_left_alone(number: str) -> None:
 
 @settings(max_examples=200)
 @given(st.data())
+@pytest.mark.slow
 def test_damaged_code_is_judged_without_a_crash(data: st.DataObject) -> None:
     """Pieces of a class taken out, doubled or exchanged for others."""
     text = data.draw(st.sampled_from([PYTHON, CPP]))

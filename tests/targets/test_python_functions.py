@@ -157,6 +157,7 @@ def test_random_scripts_build_the_same_machine(seed: int, monkeypatch: pytest.Mo
     assert outline_of(text) == outline_of(in_one_function(analysis, monkeypatch))
 
 
+@pytest.mark.slow
 def test_random_scripts_share_functions() -> None:
     """The test above would not fail if there were none."""
     texts = [program(analysis_of(random_files(seed))) for seed in range(25)]

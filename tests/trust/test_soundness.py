@@ -150,6 +150,7 @@ def test_many_graphs_without_an_error_run_without_a_fault(machine: Machine) -> N
 
 @settings(max_examples=150, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
 @given(busy_machines())
+@pytest.mark.slow
 def test_what_is_said_holds_where_states_fail_and_catch(drawn: tuple[Machine, object]) -> None:
     """States that raise, with and without somebody who catches it (`Node.catches`)."""
     machine, _ = drawn

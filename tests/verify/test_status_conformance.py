@@ -208,6 +208,7 @@ def of_program(machine: Machine, asked: tuple[str, int]) -> list[Status]:
 @seed(0)
 @settings(max_examples=60, database=None, suppress_health_check=list(HealthCheck))
 @given(busy_machines())
+@pytest.mark.slow
 def test_runs_of_generated_programs_are_allowed(drawn: tuple[Machine, tuple[str, int]]) -> None:
     machine, asked = drawn
     found = of_program(machine, asked)

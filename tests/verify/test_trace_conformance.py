@@ -37,6 +37,7 @@ def test_runs_of_the_interpreter_are_allowed(drawn: tuple[Machine, tuple[str, in
 @seed(0)
 @settings(max_examples=40, database=None, suppress_health_check=SLOW)
 @given(busy_machines())
+@pytest.mark.slow
 def test_runs_of_generated_programs_are_allowed(drawn: tuple[Machine, tuple[str, int]]) -> None:
     machine, asked = drawn
     if of_interpreter(machine, asked) is not None:
@@ -70,6 +71,7 @@ def test_a_trace_without_one_of_its_events_is_refused(kind: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["outcome", "to", "path"])
+@pytest.mark.slow
 def test_a_trace_with_another_outcome_or_path_is_refused(name: str) -> None:
     found: list[str] = []
 

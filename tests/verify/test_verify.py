@@ -211,6 +211,7 @@ def test_examples_agree_and_are_covered(script: Path, capsys: pytest.CaptureFixt
     assert told["coverage"]["taken"] == told["coverage"]["total"] > 0
 
 
+@pytest.mark.slow
 def test_what_cannot_be_taken_has_its_reason() -> None:
     verdict = judged(ROOT / "tests" / "cases" / "sugar" / "main.yml")
     assert verdict.disagreements == []
@@ -223,6 +224,7 @@ def test_what_cannot_be_taken_has_its_reason() -> None:
     }
 
 
+@pytest.mark.slow
 def test_exceptions_that_are_caught_are_covered() -> None:
     verdict = judged(ROOT / "tests" / "cases" / "on_error" / "main.yml")
     assert verdict.disagreements == []
@@ -237,6 +239,7 @@ def test_exceptions_that_are_caught_are_covered() -> None:
     assert len(judged(ROOT / "tests/cases/on_error/main.yml", uncaught).disagreements) == 1
 
 
+@pytest.mark.slow
 def test_combinations_of_branches_and_time_limits_are_covered(rounds: Path) -> None:
     verdict = judged(rounds)
     assert verdict.disagreements == []

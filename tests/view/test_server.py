@@ -117,6 +117,7 @@ def test_a_name_that_is_not_loopback_is_refused(server: Server, host: str) -> No
 
 
 @pytest.mark.parametrize("host", ["localhost:{}", "127.0.0.1:{}", "[::1]:{}", "localhost:9999"])
+@pytest.mark.slow
 def test_the_names_of_loopback_are_accepted(server: Server, host: str) -> None:
     name = host.format(server.port)
     assert answer(server, headers={"Host": name})[0] == 200
@@ -155,6 +156,7 @@ def test_another_site_may_only_open_the_page(server: Server) -> None:
         ({}, b'{"action": "impossible"}', 409),
     ],
 )
+@pytest.mark.slow
 def test_bodies_that_are_no_action(
     server: Server, headers: dict[str, str], body: bytes, status: int
 ) -> None:
