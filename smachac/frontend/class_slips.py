@@ -22,6 +22,12 @@ SMACH_MODULES = frozenset(
 """The modules of the package `smach` with the names of its classes in lower case."""
 
 
+METHODS = frozenset(
+    name for kind in (list, dict, set, str) for name in dir(kind) if not name.startswith("_")
+)
+"""The methods of the collections and of texts."""
+
+
 def slips(own: OwnClass) -> Iterator[ClassFault]:
     """The slips in the code of a class and of its base classes."""
     methods = _methods(own)
@@ -60,10 +66,10 @@ def _uncalled(
                     yield _without_call("not called", text, part)
         elif isinstance(each, ast.Expr) and each not in tried:
             value = each.value
-            if isinstance(value, ast.Attribute):
-                inner = not isinstance(value.value, ast.Name)
-                if _is_method(value, methods) or inner:
-                    yield _without_call("no effect", text, value)
+            if isinstance(value, ast.Attribute) and (
+                _is_method(value, methods) or _is_method_of_key(value)
+            ):
+                yield _without_call("no effect", text, value)
 
 
 def _operands(test: ast.expr) -> Iterator[ast.expr]:
@@ -83,6 +89,15 @@ def _operands(test: ast.expr) -> Iterator[ast.expr]:
 def _is_method(node: ast.Attribute, methods: set[str]) -> bool:
     owner = node.value
     return isinstance(owner, ast.Name) and owner.id == "self" and node.attr in methods
+
+
+def _is_method_of_key(node: ast.Attribute) -> bool:
+    """Whether an expression is a method of a list, a dictionary or a text in the userdata. Other
+    attributes alone in a line can be properties with an effect."""
+    match node.value:
+        case ast.Attribute(value=ast.Name(id="userdata" | "ud")):
+            return node.attr in METHODS
+    return False
 
 
 def _without_call(kind: FaultKind, text: PythonText, node: ast.Attribute) -> ClassFault:

@@ -196,8 +196,8 @@ SLIPS = [
      "write `self.preempt_requested()`"),
     ("while self.search == 3: pass", "self.search", "write `self.search()`"),
     ("self.search", "self.search", "write `self.search()`, or remove the line"),
-    ("self.looks.bit_length", "self.looks.bit_length",
-     "write `self.looks.bit_length()`, or remove the line"),
+    ("userdata.part.clear", "userdata.part.clear",
+     "write `userdata.part.clear()`, or remove the line"),
     # comparisons
     ("if userdata.part is 'x': print()", "is", "write `userdata.part == 'x'`"),
     ("print(userdata.part is not 3)", "is not", "write `userdata.part != 3`"),
@@ -266,6 +266,7 @@ def test_a_slip_in_the_class(old: str, new: str, name: str, help: str) -> None:
         "if userdata.part is None or userdata.part is True: print()",
         "try:\n            userdata.part.position\n        except AttributeError: pass",
         "userdata.part",
+        "self.camera = arm; self.camera.ready",  # perhaps a property with an effect
         "looks = 3; print(looks)",
         "global HEIGHT; HEIGHT = 3",
         "class Inner:\n            x = 1\n        print(Inner.x)",
