@@ -1,4 +1,5 @@
-"""Values that the Python class of a state type writes, against the types in its interface."""
+"""Values that the Python class of a state type writes, and parts of values that it reads, against
+the types in its interface."""
 
 from __future__ import annotations
 
@@ -7,11 +8,20 @@ from collections.abc import Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_types import type_of_data
-from smachac.analysis.type_lattice import BOOL, FLOAT, STR, is_open, misfit, present, widened
+from smachac.analysis.type_lattice import (
+    BOOL,
+    FLOAT,
+    STR,
+    is_open,
+    length_of,
+    misfit,
+    present,
+    widened,
+)
 from smachac.checks.class_code import leaves_by_type
 from smachac.checks.messages import other_place
 from smachac.checks.type_words import HELP, example, in_words
-from smachac.diagnostics.diagnostic import Finding
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir.nodes import Data, Struct
 from smachac.ir.types import Type
 
@@ -48,6 +58,60 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 ),
                 node=path,
             )
+
+
+COORDINATES = {"x": 0, "y": 1, "z": 2, "w": 3}
+"""The index in a list for the fields of a message with coordinates."""
+
+FIELDS = frozenset([*COORDINATES, "position", "orientation", "pose", "data"])
+"""Fields of messages that neither lists nor numbers have, whatever library they are from."""
+
+
+def wrong_parts(context: Context) -> Iterator[Finding]:
+    """The attributes and indexes of an input key that its type does not have (SM311)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or type_.open:
+            continue
+        keys = {key.name: key for key in type_.input_keys}
+        for name, part, read in facts.parts:
+            key = keys.get(name)
+            fault = _wrong_part(key.type, part, read.text) if key is not None else None
+            if key is None or fault is None:
+                continue
+            what, help = fault
+            yield Finding(
+                span=read.span,
+                message=f"`{leaf.type}` reads `{read.text}`, but its interface declares `{name}` as"
+                f" `{key.type}`, {what}",
+                arguments=(name, str(part), str(key.type), "class"),
+                help=help,
+                related=(
+                    *other_place(key.span, f"the interface declares `{name}`"),
+                    *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                ),
+                severity=Severity.WARNING,
+                node=path,
+            )
+
+
+def _wrong_part(type_: Type, part: str | int, text: str) -> tuple[str, str] | None:
+    """What is wrong with a part of a value of a type, and what to write."""
+    if isinstance(part, str):
+        if type_.name not in ("list", "array", "int", "float", "bool", "str") or part not in FIELDS:
+            return None
+        owner = text.removesuffix(f".{part}")
+        help = f"correct the type of the key in the interface, or write `{owner}`"
+        if type_.name in ("list", "array") and part in COORDINATES:
+            help = f"write `{owner}[{COORDINATES[part]}]`, or correct the type in the interface"
+        return f"which has no attribute `{part}`", help
+    size = length_of(type_)
+    if size is None or -size <= part < size:
+        return None
+    return (
+        f"whose last index is {size - 1}",
+        f"use an index from 0 to {size - 1}, or correct the type in the interface",
+    )
 
 
 def type_of_code(text: str) -> Type | None:

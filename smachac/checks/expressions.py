@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
+from smachac.checks.class_values import wrong_parts
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types import written
@@ -262,7 +263,8 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     Exactly: a warning if only some runs evaluate that part of the code. Values of the type `any` or
     of a type `T?` are not checked. An index is too large if a declaration fixes the length of the
     list, or if the list is an initial value and only built-in states whose code reads items of it
-    can reach it: others can make it longer.
+    can reach it: others can make it longer. In the Python class of a state type, the types are
+    those of its interface; an index and the fields of messages (`.x`, `.position`) are checked.
 
     Wrong:
         name: sm
@@ -294,6 +296,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         does = "fails" if fault.always else "can fail"
         severity = None if fault.always else Severity.WARNING
         yield _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
+    yield from wrong_parts(context)
 
 
 @rule(

@@ -133,6 +133,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
         values=_values(own, execute) if execute is not None and flow.writes else (),
         unused=_unused(own, execute) if execute is not None else (),
+        parts=_parts(own, execute) if execute is not None and flow.reads else (),
     )
 
 
@@ -155,6 +156,42 @@ def _values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word],
         span = text.span(value)
         if name == userdata and not text.is_filled(span):
             found.append((key, Word(span.text, span)))
+    return tuple(found)
+
+
+def _parts(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, str | int, Word], ...]:
+    """The attributes and constant indexes of userdata keys that `execute` reads, without those of
+    keys that it writes, and without code in `try`."""
+    text = next(module.text for module, node in own.classes if function in node.body)
+    userdata = function.args.args[1].arg
+    every = [*ast.walk(function)]
+    tried = {inner for each in every if isinstance(each, ast.Try)
+             for line in each.body for inner in ast.walk(line)}  # fmt: skip
+    written = {
+        each.attr
+        for each in every
+        if isinstance(each, ast.Attribute) and not isinstance(each.ctx, ast.Load)
+        and isinstance(each.value, ast.Name) and each.value.id == userdata
+    }  # fmt: skip
+    found: list[tuple[str, str | int, Word]] = []
+    for each in every:
+        part: str | int
+        match each:
+            case ast.Attribute(
+                value=ast.Attribute(value=ast.Name(id=name), attr=key), attr=str(part)
+            ):
+                pass
+            case ast.Subscript(
+                value=ast.Attribute(value=ast.Name(id=name), attr=key),
+                slice=ast.Constant(value=int(part)),
+            ):
+                pass
+            case _:
+                continue
+        span = text.span(each)
+        judged = name == userdata and key not in written and each not in tried
+        if judged and not text.is_filled(span):
+            found.append((key, part, Word(span.text, span)))
     return tuple(found)
 
 

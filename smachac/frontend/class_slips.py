@@ -64,6 +64,9 @@ def _uncalled(
             for part in _operands(each.test):
                 if isinstance(part, ast.Attribute) and _is_method(part, methods):
                     yield _without_call("not called", text, part)
+        elif isinstance(each, ast.Assign):
+            if isinstance(each.value, ast.Attribute) and _is_method_of_key(each.value):
+                yield _without_call("not called", text, each.value)
         elif isinstance(each, ast.Expr) and each not in tried:
             value = each.value
             if isinstance(value, ast.Attribute) and (

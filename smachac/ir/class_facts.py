@@ -111,6 +111,8 @@ class ClassFacts:
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
     `values` are the expressions that `execute` itself writes, each with its key. `unused` are the
     local variables that it assigns and does not use, each with the userdata key of that name.
+    `parts` are the attributes and constant indexes of userdata keys that it reads itself, each with
+    the key and its place: `userdata.pose.x`, `userdata.pose[9]`.
     """
 
     name: Word | None = None
@@ -131,6 +133,7 @@ class ClassFacts:
     checks_stop: bool = False
     values: tuple[tuple[str, Word], ...] = ()
     unused: tuple[tuple[str, Word], ...] = ()
+    parts: tuple[tuple[str, str | int, Word], ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

@@ -219,7 +219,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "lost userdata": "",
     "no self parameter": "",
     "wrong import": "",
-    "not called": "a method without `()` is true in every condition",
+    "not called": "the value is the method itself, which is true in every condition",
     "no effect": "",
     "identity": "the comparison can be false for equal values",
     "comparison": "the line has no effect: the old value stays, or there is none",

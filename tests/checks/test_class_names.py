@@ -198,6 +198,7 @@ SLIPS = [
     ("self.search", "self.search", "write `self.search()`, or remove the line"),
     ("userdata.part.clear", "userdata.part.clear",
      "write `userdata.part.clear()`, or remove the line"),
+    ("x = userdata.part.copy; print(x)", "userdata.part.copy", "write `userdata.part.copy()`"),
     # comparisons
     ("if userdata.part is 'x': print()", "is", "write `userdata.part == 'x'`"),
     ("print(userdata.part is not 3)", "is not", "write `userdata.part != 3`"),
@@ -298,3 +299,52 @@ def test_a_fault_of_a_module_is_found_once_for_all_its_classes() -> None:
     }
     found = [item.span.text for item in analysed(files).report if item.code == "SM609"]
     assert found == ["smach"]
+
+
+PARTS = """\
+input_keys: {at: 'float[3]', name: str, poses: 'list[Pose]', where: Pose}
+outcomes: {done: {}}
+code: {python: "look:Look"}
+"""
+READER = """\
+import smach
+
+
+class Look(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["done"], input_keys=["at", "name", "poses", "where"])
+
+    def execute(self, userdata):
+        BODY
+        return "done"
+"""
+LOOK = """\
+name: sm
+template: Base
+outcomes: [done]
+input_keys: [at, name, poses, where]
+states:
+  - LOOK: {template: Look, transitions: {done: done}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "found", "help"),
+    [
+        ("print(userdata.at.y)", "userdata.at.y",
+         "write `userdata.at[1]`, or correct the type in the interface"),
+        ("print(userdata.at[3])", "userdata.at[3]",
+         "use an index from 0 to 2, or correct the type in the interface"),
+        ("print(userdata.name.data)", "userdata.name.data",
+         "correct the type of the key in the interface, or write `userdata.name`"),
+        ("print(userdata.at[2], userdata.at[-3], userdata.at.copy(), userdata.at.shape)", "", ""),
+        ("print(userdata.poses[7], userdata.where.position.x, userdata.name.upper())", "", ""),
+        ("userdata.at = make(); print(userdata.at.x)", "", ""),
+        ("try:\n            print(userdata.at.x)\n        except AttributeError: pass", "", ""),
+    ],
+)  # fmt: skip
+def test_parts_that_the_type_of_a_key_does_not_have(body: str, found: str, help: str) -> None:
+    text = READER.replace("BODY", body)
+    files = {"main.yml": LOOK, "templates/Look.yml": PARTS, "look.py": text}
+    report = [item for item in analysed(files).report if item.code == "SM311"]
+    assert [(item.span.text, item.help) for item in report] == ([(found, help)] if found else [])
