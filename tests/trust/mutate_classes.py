@@ -156,7 +156,7 @@ def make_no_state(subject: Subject) -> Mutant | None:
 @mutation
 def misspell_execute(subject: Subject) -> Mutant | None:
     new = f"def {swap_letters('execute')}(self, userdata):"
-    return changed(subject, "def execute", new, "SM609", "class")
+    return changed(subject, "def execute", new, "SM609")
 
 
 @mutation
