@@ -252,14 +252,25 @@ def _step(container: Linear, child: Node, outcome: str) -> str:
     return f"`{outcome}: {targets[0]}` (or another state or outcome)"
 
 
+def _field_that_adds(node: Node, outcome: str) -> str:
+    """The field `timeout`, `retry` or `for_each` of a state that adds an outcome; empty if the
+    state itself has it."""
+    if not isinstance(node, Concurrence | nodes.Iterator) or not node.sugar:
+        return ""
+    inner = node.children[0]
+    return _field_that_adds(inner, outcome) if outcome in outcome_names(inner) else node.sugar
+
+
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> Finding:
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
-    why, origin = "", "declared here"
-    if outcome.name == PREEMPTED and isinstance(child, Concurrence | nodes.Iterator):
-        if child.sugar:
-            origin = f"`{child.sugar}` adds the outcome `{outcome.name}`"
-        why = f"after a stop request `{child.sugar}` ends with it: " if child.sugar else ""
+    field = _field_that_adds(child, outcome.name)
+    origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
+    why = ""
+    if field and outcome.name == PREEMPTED:
+        why = f"after a stop request `{field}` ends with it: "
+    elif field == "timeout" and isinstance(child, nodes.Iterator) and child.sugar == "retry":
+        why = f"add `{outcome.name}` to `on` of `retry` if the state must be tried again, or "
     return Finding(
         span=child.span,
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"

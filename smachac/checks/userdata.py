@@ -157,6 +157,17 @@ def _item_name_help(loop: nodes.Iterator, key: str) -> str | None:
     return f"write `item: {key}` in `for_each`, or read `{item}`, as the loop calls its item"
 
 
+def _item_place(container: Container, reader: Node) -> tuple[Related, ...]:
+    """The place of the name of the item, where the loop around the reader or the reader itself has
+    one that the script names."""
+    loop = reader if isinstance(reader, nodes.Iterator) else container
+    if not isinstance(loop, nodes.Iterator) or loop.sugar == "retry" or not loop.item_key:
+        return ()
+    if loop is reader and loop.sugar != "for_each":
+        return ()
+    return other_place(loop.item_span, f"the loop calls its item `{loop.item_key}`")
+
+
 class _Guesses:
     """The guessers for the keys of containers, by the path of the container."""
 
@@ -186,6 +197,7 @@ def _unset(
         f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
     )
     help += f" `{name}`: {value}"
+    related: tuple[Related, ...] = ()
     if not witness.always and len(witness.path) > 2 and witness.path[-2].is_outcome:
         before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
         if any(use.path == before.node for use in users if use.kind not in ("reads", "copies in")):
@@ -202,6 +214,7 @@ def _unset(
             help = _item_name_help(node, missing.key) or help
         if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
             help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
+        related = _item_place(scope.container, node)
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",
@@ -210,6 +223,7 @@ def _unset(
         related=(
             *_readers(missing, witness),
             *_writers(users),
+            *related,
             *calls(reader.node, reader.span),
         ),
         path=witness.path if len(witness.path) > 1 else (),

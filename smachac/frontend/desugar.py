@@ -227,6 +227,7 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
         items_key=items_key,
         items_span=items.span,
         item_key=item,
+        item_span=loop.item_span,
         exhausted_outcome=exhausted,
         loop_outcomes=on,
         loop_spans=tuple(word.span for word in loop.on),

@@ -443,6 +443,7 @@ def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) 
         items_key=items_key,
         items_span=state.it.span if state.it is not None else NOWHERE,
         item_key=_text(state.it_label, "it_data"),
+        item_span=state.it_label.span if state.it_label is not None else NOWHERE,
         exhausted_outcome=exhausted.text,
         loop_outcomes=tuple(loops),
         loop_spans=() if breaks else tuple(word.span for word in state.loop_outcomes),

@@ -68,6 +68,7 @@ class ForEach:
     """
 
     item: str
+    item_span: Span
     items: Value
     on: tuple[Word, ...]
     span: Span

@@ -66,9 +66,13 @@ _BASE_VARIABLES = ("node_name", "function_name", "manifest")
 def meant_container(
     name: Word, word: Word, kind: ContainerKind, entries: Mapping[str, Entry], report: Report
 ) -> ContainerKind:
-    """The kind of container that a state of the template `word` is meant to be (SM004): another one
-    if two or more of its fields belong to no other kind than that; a StateMachine if its states
-    have transitions to each other, and every field is missing that only its kind requires."""
+    """The kind of container that a state of the template `word` is meant to be (SM004).
+
+    It is another one if two or more of its fields belong to no other kind than that, or if one
+    does that the other kind requires and its states have no transitions to each other. It is a
+    StateMachine if its states have transitions to each other, and every field is missing that only
+    its kind requires.
+    """
     rows = [schema.VARIABLES[key] for key in entries if key in schema.VARIABLES]
     others = [row for row in rows if row.owners and kind not in row.owners]
     shared: list[ContainerKind] = []
@@ -78,10 +82,14 @@ def meant_container(
     own = {row.name for row in schema.VARIABLES.values() if row.owners == {kind}}
     meant: ContainerKind = kind
     why = ""
-    if len(others) > 1 and len(shared) == 1:
-        meant = shared[0]
-        why = " and ".join(f"`{row.name}`" for row in others) + f" are fields of `{meant}`"
-    elif own and entries.keys().isdisjoint(own) and _leads_inside(entries.get("states")):
+    leads_inside = _leads_inside(entries.get("states"))
+    only = shared[0] if len(shared) == 1 and others else kind
+    required = not leads_inside and any(row.name in schema.REQUIRED[only] for row in others)
+    if only != kind and (len(others) > 1 or required):
+        meant = only
+        names = " and ".join(f"`{row.name}`" for row in others)
+        why = f"{names} {'is a field' if len(others) == 1 else 'are fields'} of `{meant}`"
+    elif own and entries.keys().isdisjoint(own) and leads_inside:
         meant = "StateMachine"
         why = "its states have transitions to each other"
     if meant != kind:

@@ -191,6 +191,11 @@ def _parts(
     if not isinstance(entry.value, Map):
         wrong(entry.value, "map", report, _mapping_for(entry, required))
         return None
+    pair = _pair_for(entry)
+    if pair is not None:
+        message = "`for_each` has two parts, the name of its item and its list"
+        report.append(wrong_shape(entry.value.span, message, pair, arguments=("pair",)))
+        return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
     parts: dict[str, Tree] = {}
     written = {str(each.key.value) for each in entry.value.entries}
@@ -223,6 +228,17 @@ def _part_meant(word: str, parts: tuple[str, ...]) -> str | None:
         words = [other for other, part in MEANT_PARTS.items() if part in parts]
         near = MEANT_PARTS.get(guesser(words)(word) or "")
     return near
+
+
+def _pair_for(entry: Entry) -> str | None:
+    """How a loop is written whose mapping is `{wp: waypoints}`; None for other mappings."""
+    entries = entry.value.entries if isinstance(entry.value, Map) else ()
+    if entry.key.value != "for_each" or len(entries) != 1:
+        return None
+    word, items = str(entries[0].key.value), entries[0].value.span.text
+    if word in ("in", "item", "on") or _part_meant(word, ("in", "item", "on")) or "\n" in items:
+        return None
+    return f"write `for_each: {{item: {word}, in: {items}}}`"
 
 
 def _mapping_for(entry: Entry, required: Mapping[str, str]) -> str:
@@ -280,4 +296,10 @@ def _for_each(entry: Entry, inputs: tuple[str, ...], report: Report) -> ForEach:
     items = as_items(parts["in"], report) if "in" in parts else unknown
     item = name.text if name is not None and len(report) == before else ""
     on = as_names(parts["on"], report) if "on" in parts else ()
-    return ForEach(item=item, items=items if item else unknown, on=on, span=entry.key.span)
+    return ForEach(
+        item=item,
+        item_span=name.span if name is not None else entry.key.span,
+        items=items if item else unknown,
+        on=on,
+        span=entry.key.span,
+    )

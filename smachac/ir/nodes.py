@@ -340,10 +340,11 @@ class Iterator(_Container):
     is empty where the script does not name it.
 
     The items are the value `items`, or the userdata of the container in `items_key`; `items_span`
-    is their place. Outcomes in `loop_outcomes` continue with the next item; other outcomes end the
-    iteration. The last outcome, or `exhausted_outcome`, is mapped by `final_map` (pairs from, to).
-    `loop_spans` and `final_spans` are the places of `loop_outcomes` and of the entries of
-    `final_map` in the script; empty if it does not name them.
+    is their place, and `item_span` that of the name `item_key`. Outcomes in `loop_outcomes`
+    continue with the next item; other outcomes end the iteration. The last outcome, or
+    `exhausted_outcome`, is mapped by `final_map` (pairs from, to). `loop_spans` and `final_spans`
+    are the places of `loop_outcomes` and of the entries of `final_map` in the script; empty if it
+    does not name them.
     """
 
     keyword: ClassVar[str] = "iterator"
@@ -351,6 +352,7 @@ class Iterator(_Container):
     items_key: str = ""
     items_span: Span = field(default=NOWHERE, compare=False, repr=False)
     item_key: str = "it_data"
+    item_span: Span = field(default=NOWHERE, compare=False, repr=False)
     exhausted_outcome: str = "exhausted"
     loop_outcomes: tuple[str, ...] = ()
     loop_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)

@@ -154,6 +154,15 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " provide",
         'add `with: "{near}"` to `cpp` in the `code` of `{type}.yml`',
     ),
+    "parameter order": (
+        "the constructor of `{name}` takes its parameters in another order than the interface"
+        " `{type}` has its variables",
+        "write `{near}`",
+    ),
+    "no number": (
+        "the class `{name}` does not contain the number of its interface, `smachac_interface`",
+        "write in the class: `static constexpr std::uint32_t smachac_interface = {near};`",
+    ),
     "unused outcome": (
         "`execute` of `{name}` never returns `Outcome::{word}`",
         "return it where it is meant, or remove it from `Outcome`, from the interface, and from the"
@@ -167,6 +176,12 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     "unset output": (
         "`execute` of `{name}` never sets its output key `{word}`",
         "write `out.{word} = ...`, or remove the key from the interface and from `Out`",
+    ),
+    "skipped output": (
+        "`execute` of `{name}` can return `Outcome::{near}` without setting its output key"
+        " `{word}`",
+        "write `out.{word} = ...` before this `return`, or remove `{word}` from `{near}` in the"
+        " `writes:` of `{type}.yml`",
     ),
     "no parameter": (
         "`__init__` of `{name}` does not accept `{word}`, a variable of the interface `{type}`",
@@ -199,6 +214,8 @@ CHECKED_ONLY = frozenset[FaultKind](
         "unused outcome",
         "no answer to stops",
         "unset output",
+        "skipped output",
+        "parameter order",
         "not called",
         "no effect",
         "identity",
@@ -225,6 +242,9 @@ EFFECTS: Mapping[FaultKind, str] = {
     "comparison": "the line has no effect: the old value stays, or there is none",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
+    "skipped output": "a state that reads the key afterwards gets an old value, or fails",
+    "parameter order": "the program passes the variables in the order of the interface: a value"
+    " gets to another parameter than the one of its name",
     "unset output": "a state that reads the key afterwards gets an old value, or fails",
 }
 """What happens, where it differs from most faults; empty if the message contains it."""
@@ -257,6 +277,9 @@ WRITTEN = frozenset[FaultKind](
         "wrong parameters",
         "wrong constructor",
         "no first argument",
+        "parameter order",
+        "no number",
+        "skipped output",
         "other parameter",
         "other class",
         "other userdata",

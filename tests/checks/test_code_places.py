@@ -52,6 +52,7 @@ class Grasp {
  public:
   enum class Outcome { held };
   Outcome execute() { return Outcome::held; }
+  static constexpr std::uint32_t smachac_interface = 0x96ec0dfdU;
 };
 }  // namespace cell
 """,
@@ -162,6 +163,7 @@ def test_a_misspelt_outcome_in_a_header_is_one_finding() -> None:
         "held, slipped, lost };\n  Outcome execute() {\n    if (closed()) return Outcome::held;\n"
         "    if (open()) return Outcome::slipped;\n    return Outcome::lst;\n  }",
     )
+    header = header.replace("0x96ec0dfdU", "0xe985d29aU")
     assert "lst" in header
     files = FILES | {
         "cell/grasp.hpp": header,

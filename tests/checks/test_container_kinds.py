@@ -39,6 +39,15 @@ def test_the_fields_of_another_container() -> None:
     assert reported({"main.yml": BOTH}) == [("SM004", "StateMachine", help)]
 
 
+def test_a_sequence_written_as_another_container() -> None:
+    text = BOTH.replace("      default_outcome: aborted\n", "      connector_outcome: done\n")
+    text = text.replace("      outcome_map: {succeeded: {A: done, B: done}}\n", "").replace(
+        "outcomes: [done]}", "outcomes: [done, aborted]}"
+    )
+    found = reported({"main.yml": text.replace("[succeeded, aborted]", "[done, aborted]")})
+    assert found == [("SM004", "StateMachine", "write `template: Sequence`")]
+
+
 @pytest.mark.parametrize("kind", ["Concurrence", "Sequence", "Iterator"])
 def test_a_container_whose_states_follow_one_another(kind: str) -> None:
     help = (

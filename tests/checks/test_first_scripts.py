@@ -361,15 +361,43 @@ def test_a_look_up_in_the_braces_of_jinja() -> None:
     ]
 
 
-def test_a_loop_in_words() -> None:
+@pytest.mark.parametrize("loop", ["block in blocks", "{block: blocks}"])
+def test_a_loop_in_another_form(loop: str) -> None:
     main = PATROL.replace(
         "      transitions: {held: BOTH, slipped: LET_GO}",
-        "      for_each: block in blocks\n      input_keys: [block]\n"
+        f"      for_each: {loop}\n      input_keys: [block]\n"
         "      transitions: {held: BOTH, slipped: LET_GO, preempted: aborted}",
     )
-    assert reported({"main.yml": main})[-1:] == [
-        ("SM004", "block in blocks", "write `for_each: {item: block, in: blocks}`")
+    assert reported({"main.yml": main}) == [
+        ("SM004", loop, "write `for_each: {item: block, in: blocks}`")
     ]
+
+
+def test_the_item_of_a_loop_under_another_name_is_marked() -> None:
+    main = PATROL.replace(
+        "      transitions: {held: BOTH, slipped: LET_GO}",
+        "      for_each: {item: blok, in: blocks, on: [held]}\n      input_keys: [block]\n"
+        "      transitions: {held: BOTH, slipped: LET_GO, preempted: aborted}",
+    )
+    (found,) = (item for item in analysed({"main.yml": main}).report if item.code == "SM301")
+    marked = [(each.span.text, each.message) for each in found.finding.related]
+    assert ("blok", "the loop calls its item `blok`") in marked
+
+
+def test_outcomes_that_fields_of_a_state_add() -> None:
+    main = PATROL.replace(
+        "      transitions: {held: BOTH, slipped: LET_GO}",
+        "      timeout: 5s\n      retry: {on: [slipped], max: 3}\n"
+        "      transitions: {held: BOTH, exhausted: LET_GO}",
+    )
+    found = [item.finding for item in analysed({"main.yml": main}).report if item.code == "SM104"]
+    marked = [(each.span.text, each.message) for one in found for each in one.related]
+    assert marked == [
+        ("timeout", "`timeout` adds the outcome `preempted`"),
+        ("timeout", "`timeout` adds the outcome `timeout`"),
+    ]
+    assert (found[0].help or "").startswith("after a stop request `timeout` ends with it: add")
+    assert (found[1].help or "").startswith("add `timeout` to `on` of `retry` if the state must")
 
 
 GRAB = """\

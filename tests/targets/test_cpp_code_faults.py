@@ -32,6 +32,7 @@ public:
   enum class Outcome { held, missed };
   // Outcome::dropped was removed
   Outcome execute() { return closed() ? Outcome::held : Outcome::missed; }
+  static constexpr std::uint32_t smachac_interface = 0x81314e29U;
 };
 }
 """
@@ -137,6 +138,7 @@ private:
   Arm &arm_;
   double speed_;
   std::string name_;
+  static constexpr std::uint32_t smachac_interface = 0xc15e9c14U;
 };
 }
 """
@@ -226,3 +228,53 @@ def test_a_build_accepts_an_outcome_that_no_code_names() -> None:
 )  # fmt: skip
 def test_members_that_cannot_be_judged(pairs: list[tuple[str, str]]) -> None:
     assert push_findings(*pairs) == []
+
+
+def test_a_class_without_the_number_of_its_interface() -> None:
+    line = "  static constexpr std::uint32_t smachac_interface = 0x81314e29U;\n"
+    assert line in CLASS
+    (finding,) = found(grasp=CLASS.replace(line, ""))
+    assert finding.startswith("SM609 arm/grasp.hpp:3:7 the class `arm::Grasp` does not contain")
+    assert finding.endswith(
+        "write in the class: `static constexpr std::uint32_t smachac_interface = 0x81314e29U;`"
+    )
+    assert found(grasp=CLASS.replace(line, "  SMACHAC_NUMBER(grasp)\n")) == []
+    assert found(grasp=CLASS.replace(line, "").replace("class Grasp {", "class Grasp : B {")) == []
+
+
+def test_parameters_of_a_constructor_in_another_order() -> None:
+    (line,) = push_findings(
+        ("Arm &arm, double speed, const std::string &name)",
+         "Arm &arm, const std::string &name, double speed)")
+    )  # fmt: skip
+    wanted = "Push(arm::Arm &arm, double speed, const std::string &name_)"
+    assert line == f"SM609 9 Push: write `{wanted}`"
+
+
+SETS = "    out.force = arm_.force();\n"
+IN_LOOP = PUSH_CLASS[PUSH_CLASS.index("    while (") : PUSH_CLASS.index(SETS)]
+
+
+@pytest.mark.parametrize(
+    ("code", "marked"),
+    [
+        (SETS, []),
+        (f"    if (arm_.full()) {{\n  {SETS}    }}\n", [15]),
+        (f"    if (arm_.full()) return Outcome::done;\n{SETS}", [12]),
+        (f"    if (arm_.full()) {{\n  {SETS}    }} else {{\n  {SETS}    }}\n", []),
+        (f"    if (arm_.full()) {{\n  {SETS}    }} else {{\n      return give_up();\n    }}\n", []),
+        (f"    if (arm_.full()) {{\n  {SETS}    }}\n    if (!arm_.full()) return give_up();\n", []),
+        (f"    {{\n  {SETS}    }}\n", []),
+        (f"    for (;;) {{\n      if (arm_.full()) return Outcome::done;\n{SETS}    }}\n", []),
+        (f"    const auto set = [&] {{\n  {SETS}    }};\n    set();\n", []),
+        ("    arm_.measure(out);\n    if (out.force.set()) return Outcome::done;\n", []),
+    ],
+)
+def test_an_output_that_a_path_skips(code: str, marked: list[int]) -> None:
+    text = PUSH_CLASS.replace(IN_LOOP, "").replace(SETS, code)
+    interface = PUSH.replace("code:", "writes: {done: [force]}\ncode:")
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": text}
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    found = [each for each in report if "without setting its output key" in each.message]
+    assert [each.span.line for each in found] == marked
+    assert all(each.span.text == "return Outcome::done" for each in found)

@@ -36,6 +36,8 @@ _NUMBER = (
 )
 _ENUMERATOR = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*(?:=[^,]*)?")
 _LAST_WORD = re.compile(r"\b[A-Za-z_]\w*$")
+_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\(")
+"""A call of what is probably a macro."""
 _ARGUMENTS = re.compile(r"<[^<>]*>")
 _ODD = re.compile(r"[#(){}\[\]=]|\b(?:using|static|template|typedef|mutable)\b")
 """Tokens that a simple list of fields does not contain."""
@@ -89,7 +91,11 @@ def declared(type_: StateType, library: Library) -> Declared | None:
             *_other_fields("Out", outputs, type_.output_keys),
         ),
         stale=stale,
-        faults=(*_faults(body, place, outcomes, derived=derived), *others),
+        faults=(
+            *_faults(body, place, outcomes, derived=derived),
+            *_without_number(whole, body, place, interface_hash(type_), derived=derived),
+            *others,
+        ),
     )
 
 
@@ -138,6 +144,15 @@ def _faults(
         if found[1] not in known:
             word = body.word(found[1], *found.span(1))
             yield ClassFault(kind="no outcome", name=word, near=guess(found[1]))
+
+
+def _without_number(
+    whole: Part, body: Part, name: Word, number: str, *, derived: bool
+) -> Iterator[ClassFault]:
+    """The fault that a class lacks the interface hash; a base class and a macro can contain it."""
+    if derived or "smachac_interface" in whole.text or _MACRO.search(body.text):
+        return
+    yield ClassFault(kind="no number", name=name, near=number)
 
 
 def _stale(body: Part, wanted: str) -> Word | None:

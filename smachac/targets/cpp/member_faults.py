@@ -29,6 +29,10 @@ _ELSEWHERE = re.compile(
 )
 """Text after which an outcome can be returned without its name: conversions, aliases, variables."""
 _RETURN = re.compile(r"\breturn\b([^;]*);")
+_JUMP = re.compile(r"\b(?:for|while|do|goto|try|switch)\b|#|\[[&=\w, ]*\]\s*[({]")
+"""Code whose paths are not read: loops, jumps, exceptions, and functions inside."""
+_BRANCH = re.compile(r"\b(?:if|else)\b")
+_IF = re.compile(r"\bif\s*\([^{};]*\)\s*$")
 
 Words = tuple[Word, ...]
 
@@ -60,6 +64,7 @@ def member_faults(
     if run is not None and outcomes is not None:
         yield from _unused(whole, body, run, outcomes)
         yield from _unset(code, body, run, head[1])
+        yield from _skipped(code, run, head[1])
 
 
 def _members(body: Part, pattern: re.Pattern[str]) -> Iterator[re.Match[str]]:
@@ -118,7 +123,15 @@ def _constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
     for head in heads:
         found = re.compile(r"([^()]*)\)").match(body.text, head.end())
         count = _count(found[1]) if found is not None else None
-        if found is None or count is None or count == len(wanted):
+        if found is None or count is None:
+            return
+        if count == len(wanted):
+            names = [_parameter_name(each) for each in found[1].split(",")]
+            own = [_parameter_name(each) for each in wanted]
+            if len(heads) == 1 and names != own and sorted(names) == sorted(own):
+                word = body.word(name, head.start(), head.start() + len(name))
+                near = f"{name}({', '.join(wanted)})"
+                yield ClassFault(kind="parameter order", name=word, near=near)
             return
     first = _first_argument(code, heads, body, len(wanted)) if not code.parameters else None
     if first is not None:
@@ -151,6 +164,12 @@ def _qualified(parameter: str, name: str) -> str:
     space = name.removeprefix("::").rpartition("::")[0]
     plain = "::" not in parameter and bool(space)
     return f"{space}::{parameter}" if plain else parameter
+
+
+def _parameter_name(parameter: str) -> str:
+    """The last word of a parameter, without the underscore that keeps it apart from a member."""
+    words: list[str] = re.findall(r"\w+", parameter)
+    return words[-1].rstrip("_") if words else ""
 
 
 def _is_plain(parameter: str) -> bool:
@@ -211,3 +230,50 @@ def _unset(code: ClassCode, body: Part, run: Part, parameters: str) -> Iterator[
         used = re.search(rf"\b{re.escape(named[1])}\s*\.\s*{re.escape(name)}\b", run.text)
         if inside is not None and used is None:
             yield ClassFault(kind="unset output", name=fields.word(key.name, *inside.span()))
+
+
+def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault]:
+    """The returns of an outcome that promises an output key in `writes:`, where the key is set
+    nowhere before them, or only in one `if` that ends before them and has no branch after it."""
+    named = re.search(r"\bOut\s*&?\s*(\w+)", parameters)
+    if named is None or _JUMP.search(run.text):
+        return
+    out = re.escape(named[1])
+    if re.search(rf"\b{out}\b(?!\s*\.)", run.text):
+        return  # other code gets it
+    for outcome, keys in code.type.writes:
+        returned = rf"\breturn\s+Outcome\s*::\s*{re.escape(identifier(outcome))}\s*;"
+        for end in re.finditer(returned, run.text):
+            for key in keys:
+                set_ = [
+                    each.start()
+                    for each in re.finditer(rf"\b{out}\s*\.\s*{identifier(key)}\b", run.text)
+                ]
+                before = [at for at in set_ if at < end.start()]
+                if set_ and (not before or (len(before) == 1 and _only_if(run, before[0], end))):
+                    place = run.word(key, end.start(), end.end() - 1)
+                    yield ClassFault(kind="skipped output", name=place, near=outcome)
+
+
+def _only_if(run: Part, at: int, end: re.Match[str]) -> bool:
+    """Whether the code at `at` is in the block of an `if`, after which no branch is before
+    `end`."""
+    inside = run.text[at : end.start()]
+    depth = 0
+    for found in re.finditer(r"[{}]", inside):
+        depth += 1 if found.group() == "{" else -1
+        if depth < 0:
+            head = _enclosing(run.text[:at])
+            # An `if` that follows can end `execute` where the first one was not entered.
+            return bool(_IF.search(head)) and not _BRANCH.search(inside[found.end() :])
+    return False
+
+
+def _enclosing(text: str) -> str:
+    """The text before the brace that is open at the end of a text, from the last statement on."""
+    depth = 0
+    for at in range(len(text) - 1, -1, -1):
+        depth += {"}": 1, "{": -1}.get(text[at], 0)
+        if depth < 0:
+            return re.split(r"[;{}]", text[:at])[-1]
+    return ""
