@@ -6,7 +6,8 @@ of a class is reported once, with the first state of its type as a related place
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
@@ -43,6 +44,39 @@ def _own_types(
         type_ = context.machine.state_types.get(leaf.type)
         if type_ is not None and not type_.built_in and not type_.open:
             yield path, leaf, type_, facts
+
+
+class TypeNames(NamedTuple):
+    """The names of outcomes, input keys and output keys that some state of a type declares, or a
+    default value of its constructor."""
+
+    outcomes: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+
+def _names_by_type(context: Context) -> Mapping[str, TypeNames]:
+    """The names of the types whose constructors get lists from the script. States of one type can
+    declare different names, so a name is wrong only if none of them declares it."""
+    found: dict[str, TypeNames] = {}
+    for _, leaf, facts, _ in context.leaves_with_class:
+        if facts.passed:
+            given = dict(facts.passed)
+            known = found.get(leaf.type) or TypeNames(
+                given.get("outcomes", ()), given.get("input_keys", ()), given.get("output_keys", ())
+            )
+            pairs = zip(_own_names(leaf), known, strict=True)
+            joined = (tuple(dict.fromkeys((*own, *others))) for own, others in pairs)
+            found[leaf.type] = TypeNames(*joined)
+    return found
+
+
+def _own_names(leaf: Leaf) -> TypeNames:
+    return TypeNames(
+        outcome_names(leaf),
+        tuple(key.name for key in leaf.inputs),
+        tuple(key.name for key in leaf.outputs),
+    )
 
 
 def _used_here(leaf: Leaf) -> tuple[Related, ...]:
@@ -109,12 +143,15 @@ def undeclared_return(context: Context) -> Iterator[Finding]:
                 return "pressed" if button.wait(10) else "timed_out"
         {% endblock %}
     """
+    names = _names_by_type(context)
     for path, leaf, facts in leaves_by_type(context, declared=False):
-        yield from _wrong_returns(path, leaf, facts)
+        outcomes = names.get(leaf.type, _own_names(leaf)).outcomes
+        yield from _wrong_returns(path, leaf, facts, outcomes)
 
 
-def _wrong_returns(path: str, leaf: Leaf, facts: ClassFacts) -> Iterator[Finding]:
-    outcomes = outcome_names(leaf)
+def _wrong_returns(
+    path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]
+) -> Iterator[Finding]:
     guess = guesser(outcomes)
     own = [name for name in outcomes if name != leaf.catches]
     known = f"return one of its outcomes: {listed(own)}"
@@ -232,10 +269,11 @@ def _owner(word: Word) -> str:
 def unknown_reads(context: Context) -> Iterator[Finding]:
     """The keys that the code of a type reads without an input in its interface (SM310)."""
     containers = dict(context.containers)
+    names = _names_by_type(context)
     for path, leaf, facts in leaves_by_type(context, declared=True):
-        inputs = [key.name for key in leaf.inputs]
+        inputs = names.get(leaf.type, _own_names(leaf)).inputs
         around = containers[path.rpartition("/")[0]]
-        known = [*inputs, around.item_key] if isinstance(around, nodes.Iterator) else inputs
+        known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
         for word in _first_of_each(facts.reads, known):
             message = (
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
@@ -264,10 +302,10 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
 def dropped_writes(context: Context) -> Iterator[Finding]:
     """The keys that the code of a type sets without an output in its interface (SM308). Unknown
     keys that the code also reads are left to SM310."""
+    names = _names_by_type(context)
     for path, leaf, facts in leaves_by_type(context, declared=True):
-        inputs = {key.name for key in leaf.inputs}
-        outputs = [key.name for key in leaf.outputs]
-        unknown = {word.text for word in facts.reads} - inputs
+        inputs, outputs = names.get(leaf.type, _own_names(leaf))[1:]
+        unknown = {word.text for word in facts.reads}.difference(inputs)
         for word in _first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
             what = "only an input key" if only else "not an output key of its interface"

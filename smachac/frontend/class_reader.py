@@ -121,6 +121,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         outcomes=lists.get("outcomes", ()) if lists is not None else None,
         inputs=_together(lists, "input_keys"),
         outputs=_together(lists, "output_keys"),
+        passed=tuple(_passed(module.text, node)) if own.root == "state" else (),
         endings=flow.endings,
         complete=flow.complete and not flow.passed,
         execute=place,
@@ -516,6 +517,42 @@ def _place(text: PythonText, node: ast.arg) -> Span:
 def _declared(text: PythonText, node: ast.ClassDef) -> dict[str, Words | None] | None:
     """The lists that a class passes to `smach.State`; None if it is more than one `__init__` of a
     plain `smach.State`."""
+    found = _base_call(text, node)
+    return {key: _words(text, value) for key, value in found[1].items()} if found else None
+
+
+def _passed(text: PythonText, node: ast.ClassDef) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The lists that a constructor passes to `smach.State` as it gets them, by parameter, each with
+    the names in the default value."""
+    found = _base_call(text, node)
+    if found is None or "io_keys" in found[1]:
+        return
+    maker, given = found
+    arguments = maker.args.args
+    pairs = zip(reversed(arguments), reversed(maker.args.defaults), strict=False)
+    defaults = {each.arg: default for each, default in pairs}
+    changed = {
+        each.id if isinstance(each, ast.Name) else ast.unparse(each.value)
+        for each in ast.walk(maker)
+        if (isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load))
+        or isinstance(each, ast.Attribute)
+    }
+    for key in ("outcomes", "input_keys", "output_keys"):
+        value = given.get(key)
+        if not isinstance(value, ast.Name) or value.id in changed:
+            continue
+        default = defaults.get(value.id)
+        none = default is None or (isinstance(default, ast.Constant) and default.value is None)
+        words = () if none else _words(text, default) if default is not None else ()
+        if words is not None and value.id in {each.arg for each in arguments}:
+            yield key, tuple(word.text for word in words)
+
+
+def _base_call(
+    text: PythonText, node: ast.ClassDef
+) -> tuple[ast.FunctionDef, dict[str, ast.expr]] | None:
+    """The constructor of a class and the arguments by name that it passes to `smach.State`; None if
+    it is more than one `__init__` of a plain `smach.State`."""
     bases = [ast.unparse(base) for base in node.bases]
     makers = [each for each in node.body if getattr(each, "name", "") == "__init__"]
     plain = bases in (["smach.State"], ["State"]) and not node.keywords and not node.decorator_list
@@ -531,7 +568,7 @@ def _declared(text: PythonText, node: ast.ClassDef) -> dict[str, Words | None] |
     if len(calls) != 1 or calls[0] not in alone:
         return None
     given = _given(calls[0])
-    return {key: _words(text, value) for key, value in given.items()} if given is not None else None
+    return (maker, given) if given is not None else None
 
 
 def _is_super(call: ast.Call) -> bool:

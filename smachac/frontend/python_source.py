@@ -12,7 +12,7 @@ import warnings
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.frontend.jinja_tags import replaced, tags
+from smachac.frontend.jinja_tags import meta_block, replaced, tags
 
 ASSIGNED = "Maybe you meant '==' instead of '='?"
 """The end of the message of Python for `=` in a comparison."""
@@ -65,6 +65,7 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
         if _RAW.search(text):
             return None
         filled = tuple(tags(text))
+        text = _without_meta(text)
         text = replaced(text, iter(filled), {"{{": "_"})  # a name in place of an expression
         text = _with_statements(text, source.text, filled)
     try:
@@ -76,6 +77,15 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
             return PythonText(source=source, tree=tree, filled=filled)
     except (SyntaxError, ValueError):
         return None
+
+
+def _without_meta(template: str) -> str:
+    """A template in which the text of its meta block, which is YAML, is blank."""
+    found = meta_block(template)
+    if found is None:
+        return template
+    blank = re.sub(r"[^\n]", " ", template[found[1] : found[2]])
+    return template[: found[1]] + blank + template[found[2] :]
 
 
 def _with_statements(text: str, template: str, filled: tuple[tuple[int, int], ...]) -> str:

@@ -16,6 +16,7 @@ from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Key, Outcome, StateKind, Value
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
+_BODY_TEXT = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)
 _AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
 _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
 _OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
@@ -155,6 +156,19 @@ def keys_in_code(template: Source) -> tuple[tuple[str, ...], tuple[str, ...]]:
         for word in _QUOTED.finditer(keys.group(2)):
             found[keys.group(1)][word.group(2)] = None
     return tuple(found["input"]), tuple(found["output"])
+
+
+def body_words(file: str, find: Callable[[str], Source | None]) -> Iterator[str]:
+    """The names in quotes in the block `body` of a template and of those that it extends."""
+    seen: set[str] = set()
+    while file and file not in seen:
+        seen.add(file)
+        template = find(file)
+        if template is None:
+            return
+        for body in _BODY_TEXT.findall(template.text):
+            yield from (word for _, word in _QUOTED.findall(body))
+        file = extended(template)
 
 
 def words_used(file: str, find: Callable[[str], Source | None]) -> frozenset[str] | None:

@@ -296,31 +296,41 @@ def _class_facts(
             facts = replace(facts, parameters=None)
     if facts is None:
         return None
-    free = bool({"outcomes", "optional"} & given)
+    return _with_script(facts, given)
+
+
+def _with_script(facts: ClassFacts, given: frozenset[str]) -> ClassFacts:
+    """The facts about a class for which a script gives some parts of the interface. Outcomes and
+    keys can be judged if the constructor passes on what the script gives."""
+    passed = {part for part, _ in facts.passed}
+    free = not given.isdisjoint(["outcomes", "optional"])
+    judged = not free or ("outcomes" in passed and "optional" not in given)
+    unknown = given - passed
     return replace(
         facts,
-        endings=() if free else facts.endings,
+        endings=facts.endings if judged else (),
         complete=facts.complete and not free,
-        reads=() if "input_keys" in given else facts.reads,
-        writes=() if {"input_keys", "output_keys"} & given else facts.writes,
+        reads=() if "input_keys" in unknown else facts.reads,
+        writes=() if {"input_keys", "output_keys"} & unknown else facts.writes,
     )
 
 
 def _facts_without_interface(name: str, file: str, library: Library) -> ClassFacts | None:
-    """The facts about the class of a template without an interface: nothing declares its keys."""
+    """The facts about the class of a template without an interface: nothing but the script declares
+    its keys, and their names in the template's own block `body` count as declared."""
     facts = _class_facts(name, Word(file, NOWHERE), frozenset(), library)
     if facts is None or facts.name is None or facts.name.text != re.sub(r"\W+", "_", name):
         return None
-    known = facts.outcomes is not None
+    written = tuple(smacha_meta.body_words(file, library.template))
+    fixed = facts.outcomes is not None
+    facts = _with_script(facts, _ALL_GIVEN - {"outcomes"} if fixed else _ALL_GIVEN)
     return replace(
         facts,
         outcomes=None,
         inputs=None,
         outputs=None,
-        endings=tuple(replace(each, written=None) for each in facts.endings) if known else (),
-        complete=facts.complete and known,
-        reads=(),
-        writes=(),
+        passed=tuple((part, (*names, *written)) for part, names in facts.passed),
+        endings=tuple(replace(each, written=None) for each in facts.endings),
         values=(),
     )
 
@@ -615,7 +625,9 @@ def _read_template(
     outcomes = outcomes or smacha_meta.outcomes_in_code(template)
     if found is None:
         known = _without_facts(known) if known else StateType(name=name, open=True)
-        facts = None if extended else _facts_without_interface(name, file, library)
+        facts = _facts_without_interface(name, file, library)
+        if facts is not None and extended:
+            facts = replace(facts, parameters=None)
         return replace(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
             variables=_parameters(facts) or known.variables, class_facts=facts,
@@ -639,6 +651,9 @@ def _read_template(
         prints_itself=whole,
         used=smacha_meta.words_used(file, library.template),
         default_keys=smacha_meta.default_keys(template),
+        class_facts=_facts_without_interface(name, file, library)
+        if found.kind == "state"
+        else None,
         open=found.kind == "state" and not outcomes,
         simulation=found.simulation or (known is not None and known.simulation),
     )

@@ -105,6 +105,8 @@ class ClassFacts:
     `name` is the class name in its file, `faults` are certain faults of its structure.
     `parameters` are those of its constructor; None: not known, or it accepts any.
     `outcomes`, `inputs` and `outputs` are the names that the constructor declares; None: not known.
+    `passed` are the lists of these that are its parameters, `outcomes`, `input_keys` and
+    `output_keys`, each with the names of its default value: a script gives them.
 
     `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
     `execute` is the place of its name. `silent`: some path through it returns nothing,
@@ -124,6 +126,7 @@ class ClassFacts:
     outcomes: tuple[Word, ...] | None = None
     inputs: tuple[Word, ...] | None = None
     outputs: tuple[Word, ...] | None = None
+    passed: tuple[tuple[str, tuple[str, ...]], ...] = ()
     endings: tuple[Ending, ...] = ()
     complete: bool = False
     execute: Span | None = None

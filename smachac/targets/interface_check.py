@@ -160,7 +160,7 @@ def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateT
             if type_ is None:
                 continue
             declared = not type_.open and library.own_template(f"{node.type}.yml") is not None
-            if declared or (type_.open and type_.class_facts is not None):
+            if declared or type_.class_facts is not None:
                 yield node, type_
 
 

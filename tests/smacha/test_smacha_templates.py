@@ -729,6 +729,9 @@ class T(smach.State):
     def __init__(self, interfaces=None, input_keys=['limb', 'pose'], output_keys=['seen']):
         smach.State.__init__(self, outcomes=['succeeded', 'preempted'], input_keys=input_keys,
                              output_keys=output_keys)
+
+    def execute(self, userdata):
+        return 'preempted' if self.preempt_requested() else 'succeeded'
 {% endblock %}
 {% block body %}
 smach.{{ parent_type }}.add('{{ name }}', T({% if input_keys is defined %}input_keys={{ input_keys }}{% endif %}))

@@ -4,6 +4,9 @@ class Own(smach.State):
     def __init__(self):
         smach.State.__init__(self, outcomes=['done'])
         self.word = '{{ word }}'
+
+    def execute(self, userdata):
+        return 'done'
 {% endblock %}
 {% block body %}
 smach.StateMachine.add('{{ name }}', Own(), transitions={{ transitions }})
