@@ -57,6 +57,12 @@ def extended(template: Source) -> str:
     return found.group(1) if found else ""
 
 
+def extended_span(template: Source) -> Span:
+    """The place of the name of the file that a template extends."""
+    found = _EXTENDS.search(template.text)
+    return Span(template, *found.span(1)) if found else Span(template, 0, 0)
+
+
 def read_meta(template: Source) -> Meta | None:
     """The meta block of a template; None if there is none or it is no YAML."""
     found = meta_block(template.text)

@@ -31,7 +31,7 @@ from smachac.frontend.value_facts import (
 )
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
-from smachac.ir.class_facts import ClassFacts
+from smachac.ir.class_facts import ClassFacts, ClassFault
 from smachac.ir.nodes import (
     FunctionResult,
     Key,
@@ -292,8 +292,9 @@ def _class_facts(
     else:
         template = library.template(word.text)
         facts = read_template(template, name, library) if template is not None else None
-        if facts is not None and _prints_itself(word.text, library):
-            facts = replace(facts, parameters=None)
+        if facts is not None and (body := _file_with_body(word.text, library)):
+            faults = _call_faults(facts, word.text, body, library)
+            facts = replace(facts, parameters=None, faults=(*facts.faults, *faults))
     if facts is None:
         return None
     return _with_script(facts, given)
@@ -596,16 +597,45 @@ def _check_declared(
 
 def _prints_itself(file: str, library: Library) -> bool:
     """Whether a template, or one that it extends, has a block `body`."""
+    return bool(_file_with_body(file, library))
+
+
+def _file_with_body(file: str, library: Library) -> str:
+    """The first one of a template and those that it extends that has a block `body`; empty if none
+    has one."""
     seen: set[str] = set()
     while file and ":" not in file and file not in seen:
         seen.add(file)
         source = library.template(file) or library.template(f"{file}.py")
         if source is None:
-            return False
+            return ""
         if smacha_meta.has_body(source):
-            return True
+            return file
         file = smacha_meta.extended(source)
-    return False
+    return ""
+
+
+_STATE_TEMPLATE = "State.tpl.py"
+_STATE_ARGUMENTS = frozenset(["input_keys", "output_keys", "callbacks", "outcomes"])
+"""The arguments with which the block `body` of the built-in `State.tpl.py` makes a state."""
+
+
+def _call_faults(
+    facts: ClassFacts, file: str, body: str, library: Library
+) -> Iterator[ClassFault]:
+    """The constructor does not fit the call in the block `body` of the built-in `State.tpl.py`."""
+    template = library.template(file)
+    own = library.own_template(_STATE_TEMPLATE) is not None
+    if facts.parameters is None or template is None or body != _STATE_TEMPLATE or own:
+        return
+    place = smacha_meta.extended_span(template)
+    names = {each.word.text for each in facts.parameters}
+    required = [each.word.text for each in facts.parameters
+                if each.required and each.word.text not in _STATE_ARGUMENTS]  # fmt: skip
+    if required:
+        yield ClassFault(kind="not passed", name=Word(required[0], place))
+    elif "outcomes" not in names:
+        yield ClassFault(kind="not accepted", name=Word("outcomes", place))
 
 
 def _read_template(

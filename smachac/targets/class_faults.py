@@ -206,6 +206,20 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`__init__` of `{name}` requires `{word}`, which this state does not set",
         "add `{word}: ...` to the state, or give `{word}` a default value in `__init__`",
     ),
+    "not passed": (
+        "`State.tpl.py` does not pass `{word}`, which `__init__` of `{name}` requires",
+        "remove the line `{{% extends ... %}}`: the program then passes the variables of the state;"
+        " or write a block `body`",
+    ),
+    "other guard": (
+        "the program does not contain the class `{name}`: its template uses the name `{word}` of"
+        " another class",
+        "write `{near}` here, and where the template adds the name to `defined_headers`",
+    ),
+    "not accepted": (
+        "`State.tpl.py` passes `{word}`, which `__init__` of `{name}` does not accept",
+        "remove the line `{{% extends ... %}}`, or add the parameter `{word}=None` to `__init__`",
+    ),
 }
 """The message and the help for each kind of fault."""
 
@@ -268,6 +282,9 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "other parameter": _PASSED,
     "required parameter": _CALLED,
     "missing argument": _CALLED,
+    "not passed": _CALLED,
+    "other guard": "the program stops with a NameError when it makes the state",
+    "not accepted": "the call raises a TypeError when the program makes the state",
 }
 """What happens in a program in Python, where it is certain."""
 
@@ -287,6 +304,7 @@ WRITTEN = frozenset[FaultKind](
         "no self parameter",
         "wrong import",
         "no comma",
+        "other guard",
         "no state class",
         "not called",
         "no effect",

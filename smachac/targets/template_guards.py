@@ -1,0 +1,80 @@
+"""Guards of classes in templates: `{% if 'class_Move' not in defined_headers %}`.
+
+SMACHA's templates print a class once, under a name that they add to `defined_headers`. Where two
+templates use one name for two classes, the program contains only the first class.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from smachac.diagnostics.diagnostic import Diagnostic, Related
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.frontend.loader import Library
+from smachac.ir.class_facts import ClassFault
+from smachac.ir.nodes import Leaf, Machine, StateType
+from smachac.ir.traversal import walk
+from smachac.targets.errors import bad_class
+
+_GUARD = re.compile(
+    r"\{%[-+]?\s*if\s+(['\"])(?P<guard>\w+)\1\s+not\s+in\s+defined_headers\s*[-+]?%\}"
+    r"(?P<inside>[^{]*)"
+)
+_CLASS = re.compile(r"^\s*class\s+(\w+)", re.M)
+
+
+class _Guard(NamedTuple):
+    """The name under which a template prints a class once, and that class."""
+
+    word: Word
+    class_name: str
+    leaf: Leaf
+    type: StateType
+
+
+def guard_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
+    """The classes that a program lacks because another template has printed its class under the
+    same name. The fault is in the template whose class has another name than the guard."""
+    first: dict[str, _Guard] = {}
+    for guard in _guards(machine, library):
+        name = guard.word.text
+        other = first.setdefault(name, guard)
+        if other.class_name == guard.class_name:
+            continue
+        wrong, right = (other, guard) if name.endswith(guard.class_name) else (guard, other)
+        first[name] = right
+        near = name.replace(right.class_name, wrong.class_name)
+        fault = ClassFault(
+            kind="other guard",
+            name=wrong.word,
+            near=near if near != name else f"class_{wrong.class_name}",
+        )
+        places = (
+            Related(span=right.word.span, message=f"`{right.class_name}` has this name too"),
+            Related(span=wrong.leaf.span, message=f"`{wrong.leaf.name}` is of this type"),
+        )
+        yield bad_class(fault, "python", wrong.type.name, wrong.class_name, places)
+
+
+def _guards(machine: Machine, library: Library) -> Iterator[_Guard]:
+    """The guards of classes in the user's templates, at the first state of each type."""
+    left: dict[str, tuple[StateType, Source]] = {}
+    for name, type_ in machine.state_types.items():
+        file = type_.code.get("python", "")
+        template = library.own_template(file) if file and ":" not in file else None
+        if template is not None:
+            left[name] = type_, template
+    for _, leaf in walk(machine.root) if len(left) > 1 else ():
+        found = left.pop(leaf.type, None) if isinstance(leaf, Leaf) else None
+        if found is not None and isinstance(leaf, Leaf):
+            yield from _in_template(found[1], leaf, found[0])
+
+
+def _in_template(template: Source, leaf: Leaf, type_: StateType) -> Iterator[_Guard]:
+    for found in _GUARD.finditer(template.text):
+        inside = _CLASS.search(found["inside"])
+        if inside is not None:
+            word = Word(found["guard"], Span(template, *found.span("guard")))
+            yield _Guard(word, inside[1], leaf, type_)

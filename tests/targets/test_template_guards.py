@@ -1,0 +1,85 @@
+"""Templates of SMACHA's kind: guards of classes, and calls of `State.tpl.py`."""
+
+from __future__ import annotations
+
+import pytest
+
+from smachac.diagnostics.diagnostic import Diagnostic
+from tests.trust.project_text import analysed
+
+MAIN = """\
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - GRIP: {template: Grip, outcomes: [done], transitions: {done: TURN}}
+  - TURN: {template: Turn, outcomes: [done], transitions: {done: done}}
+"""
+TEMPLATE = """\
+{% extends "State.tpl.py" %}
+{% block class_defs %}
+{{ super() }}
+{% if 'class_GUARD' not in defined_headers %}
+class NAME(smach.State):
+    def __init__(self, outcomes=['done']):
+        smach.State.__init__(self, outcomes=outcomes)
+
+    def execute(self, userdata):
+        return 'done'
+{% do defined_headers.append('class_GUARD') %}
+{% endif %}
+{% endblock class_defs %}
+"""
+
+
+def template(name: str, guard: str = "") -> str:
+    return TEMPLATE.replace("GUARD", guard or name).replace("NAME", name)
+
+
+def found(grip: str, turn: str) -> list[Diagnostic]:
+    files = {"main.yml": MAIN, "templates/Grip.tpl.py": grip, "templates/Turn.tpl.py": turn}
+    return [each for each in analysed(files).report if each.severity.value != "info"]
+
+
+@pytest.mark.parametrize(
+    ("grip", "turn", "file"), [("", "Grip", "Turn"), ("Turn", "", "Grip"), ("arm", "arm", "Turn")]
+)
+def test_a_guard_of_another_class(grip: str, turn: str, file: str) -> None:
+    (item,) = found(template("Grip", grip), template("Turn", turn))
+    guard = f"class_{grip or turn}"
+    assert str(item.span) == f"templates/{file}.tpl.py:4:8"
+    assert item.span.text == guard
+    assert item.message.startswith(f"the program does not contain the class `{file}`: its template")
+    assert (item.help or "").startswith(f"write `class_{file}` here, and where the template adds")
+    assert len(item.finding.related) == 2
+
+
+def test_guards_that_are_right() -> None:
+    assert found(template("Grip"), template("Turn")) == []
+    both = template("Grip", "arm").replace("class Grip", "class Arm")
+    assert found(both, both) == []  # one class for both, printed once
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ("amount, outcomes=['done']", "`State.tpl.py` does not pass `amount`, which `__init__` of"),
+        (
+            "amount=1",
+            "`State.tpl.py` passes `outcomes`, which `__init__` of `Turn` does not accept",
+        ),
+        ("amount=1, outcomes=['done'], callbacks={}", None),
+        ("outcomes, input_keys=[], **more", None),
+    ],
+)
+def test_a_constructor_that_the_call_does_not_fit(parameters: str, message: str | None) -> None:
+    turn = template("Turn").replace("outcomes=['done']):", f"{parameters}):")
+    lines = found(template("Grip"), turn)
+    assert [each.span.text for each in lines] == ["State.tpl.py"] * (message is not None)
+    assert all(each.message.startswith(message or "") for each in lines)
+
+
+def test_a_template_that_makes_the_state_itself() -> None:
+    turn = template("Turn").replace("outcomes=['done']):", "amount, outcomes=['done']):")
+    body = "{% block body %}{{ add('Turn', 2) }}{% endblock %}\n"
+    assert found(template("Grip"), turn + body) == []
