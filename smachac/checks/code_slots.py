@@ -34,10 +34,21 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser, in_quotes
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
+from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.message_types import TEXTS, FieldType
 from smachac.ir.nodes import Expression, Leaf, Node, VariableRole
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
+
+
+def _functions(context: Context) -> Iterator[tuple[str, Node, CodeSlot, FunctionFacts]]:
+    """The code slots of a machine that name a function of the user, with the facts about it."""
+    machine = context.machine
+    for path, node in context.states if machine.functions else ():
+        for slot in code_slots(node, machine.state_types):
+            facts = machine.functions.get(slot.code.text)
+            if facts is not None and slot.arguments is not None and not slot.quoted:
+                yield path, node, slot, facts
 
 
 def _slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
@@ -202,8 +213,9 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
 
     The call fails at the first visit of the state, with the robot in the middle of its task.
 
-    Exactly: the interface of the state type lists the arguments; only lambdas are checked.
-    Arguments in another order are found by their names.
+    Exactly: the interface of the state type lists the arguments. Lambdas are checked, and functions
+    that a template of the script defines or imports from a module of the project. Arguments in
+    another order are found by their names.
 
     Wrong:
         name: sm
@@ -259,6 +271,22 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             related=calls(node, slot.code.span),
             node=path,
         )
+
+    for path, node, slot, facts in _functions(context):
+        if slot.arguments is not None and not facts.accepts(len(slot.arguments)):
+            due, own = slot.arguments, len(facts.parameters)
+            names = ", ".join(map(_short, due))
+            yield Finding(
+                span=facts.word.span,
+                message=f"`{facts.word.text}`, the function of {_owner(slot, node)}, has"
+                f" {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
+                f" argument{'s' * (len(due) != 1)}: {_names(due)}",
+                arguments=(slot.name, slot.code.text),
+                help=f"write `def {facts.word.text}({names}):`",
+                related=(*other_place(slot.code.span, "it is called here"),
+                         *calls(node, slot.code.span)),
+                node=path,
+            )  # fmt: skip
 
 
 def _head_help(node: Node, tree: ast.Lambda, due: tuple[str, ...]) -> str:
@@ -330,10 +358,10 @@ def wrong_result(context: Context) -> Iterator[Finding]:
     callback replaces the value of its key by None.
 
     Exactly: a result that is None in conditions, durations and callbacks (there only that of a
-    method that changes a value); text as a duration; a text that is not an outcome of the state in
-    a function that returns its outcome, or there a field of the message that is no text by its
-    definition (SM512). A warning if only some runs give this result, or if the
-    type of the value is not known.
+    method that changes a value, and that of a function of the project without `return`); text as a
+    duration; a text that is not an outcome of the state in a function that returns its outcome, or
+    there a field of the message that is no text by its definition (SM512). A warning if only some
+    runs give this result, or if the type of the value is not known.
 
     Wrong:
         name: sm
@@ -391,6 +419,31 @@ def wrong_result(context: Context) -> Iterator[Finding]:
                 node=path,
                 severity=None if sure and len(found) == 1 else Severity.WARNING,
             )
+
+    yield from _silent_functions(context)
+
+
+def _silent_functions(context: Context) -> Iterator[Finding]:
+    """The functions of the user that return no value, although the state uses their result. A
+    callback that sets keys itself may return nothing."""
+    for path, node, slot, facts in _functions(context):
+        used = slot.role != "callbacks" or (
+            not facts.writes
+            and isinstance(node, Leaf)
+            and slot.name in {key.name for key in node.outputs}
+        )
+        if facts.silent and slot.returns == "value" and used:
+            yield Finding(
+                span=facts.word.span,
+                message=f"`{facts.word.text}`, the function of {_owner(slot, node)}, never returns"
+                " a value",
+                arguments=(slot.name, slot.code.text),
+                help=f"end `{facts.word.text}` with `return ...`",
+                effect=NONE_EFFECTS.get(slot.role, ""),
+                related=(*other_place(slot.code.span, "its result is used here"),
+                         *calls(node, slot.code.span)),
+                node=path,
+            )  # fmt: skip
 
 
 SECONDS = Type("float", ("s",))
@@ -546,3 +599,28 @@ def _field_type(context: Context, leaf: Leaf, slot: CodeSlot, result: ast.expr) 
 
 def _is_text(field: FieldType) -> bool:
     return field.name in TEXTS and not field.array
+
+
+def unknown_function_reads(context: Context) -> Iterator[Finding]:
+    """The keys that a function of the user reads, and that no state which calls it has as an input
+    (SM310)."""
+    calls_of: dict[str, list[tuple[str, Node, CodeSlot, FunctionFacts]]] = {}
+    for call in _functions(context):
+        _, node, slot, facts = call
+        if slot.arguments is not None and slot.arguments[:1] == ("userdata",) and facts.reads:
+            calls_of.setdefault(slot.code.text, []).append(call)
+    for used in calls_of.values():
+        known = {key.name for _, node, _, _ in used for key in (*node.inputs, *node.outputs)}
+        path, node, slot, facts = used[0]
+        for word in {each.text: each for each in reversed(facts.reads)}.values():
+            if word.text not in known:
+                yield Finding(
+                    span=word.span,
+                    message=f"`{facts.word.text}` reads `{word.text}`, which is not an input key of"
+                    f" `{node.name}`",
+                    arguments=(word.text,),
+                    help=did_you_mean(guesser(key.name for key in node.inputs)(word.text))
+                    or f"add `{word.text}` to the `input_keys` of `{node.name}`",
+                    related=other_place(slot.code.span, f"`{node.name}` calls it here"),
+                    node=path,
+                )

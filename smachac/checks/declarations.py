@@ -17,6 +17,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name, reader_at
 from smachac.checks.class_code import dropped_writes, unknown_reads
+from smachac.checks.code_slots import unknown_function_reads
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key
@@ -570,6 +571,7 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
     yield from unknown_reads(context)
+    yield from unknown_function_reads(context)
 
 
 def _undeclared_accesses(

@@ -74,6 +74,7 @@ def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
         robot=script.robot,
         definitions=script.definitions,
         missing_definitions=script.missing_definitions,
+        functions=script.functions,
         unused=script.unused,
         properties=script.properties,
         params=script.params,

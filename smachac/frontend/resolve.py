@@ -52,6 +52,7 @@ from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
+from smachac.frontend.script_functions import functions_of
 from smachac.frontend.state_fields import (
     FIELDS_OF_STATES,
     TEMPLATE_WORDS,
@@ -202,6 +203,7 @@ class _Resolver:
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=params_of(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
+            functions=functions_of(base, self.types, self.library),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
         )
 

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
+from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.message_types import Definitions, MissingDefinitions
 from smachac.ir.nodes import FixedParam, Outcome, Param, Preset, StateType, Unused, Value, Variable
 from smachac.ir.properties import Property
@@ -146,4 +147,5 @@ class Script:
     properties: tuple[Property, ...] = ()
     params: tuple[Param, ...] = ()
     fixed_params: tuple[FixedParam, ...] = ()
+    functions: Mapping[str, FunctionFacts] = field(default_factory=dict)
     state_types: Mapping[str, StateType] = field(default_factory=dict)

@@ -7,7 +7,7 @@ template without either is an open type: any field is accepted, and nothing is k
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TypeAlias, TypeVar, get_args
 
@@ -620,9 +620,7 @@ _STATE_ARGUMENTS = frozenset(["input_keys", "output_keys", "callbacks", "outcome
 """The arguments with which the block `body` of the built-in `State.tpl.py` makes a state."""
 
 
-def _call_faults(
-    facts: ClassFacts, file: str, body: str, library: Library
-) -> Iterator[ClassFault]:
+def _call_faults(facts: ClassFacts, file: str, body: str, library: Library) -> Iterator[ClassFault]:
     """The constructor does not fit the call in the block `body` of the built-in `State.tpl.py`."""
     template = library.template(file)
     own = library.own_template(_STATE_TEMPLATE) is not None

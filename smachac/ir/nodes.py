@@ -14,6 +14,7 @@ from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias, TypeGuard
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.ir.class_facts import ClassFacts
+from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.message_types import DefinitionKind, Definitions, MissingDefinitions
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
@@ -498,7 +499,8 @@ class Machine:
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
     `properties`, `definitions`, those of messages of ROS, and `missing_definitions` are for rules;
     of the targets only `dot` uses properties. `params` are those of the main script, `fixed_params`
-    the look-ups of params in time limits and retries. `state_types` are the interfaces of its
+    the look-ups of params in time limits and retries. `functions` are those of the user that the
+    script names, by the text in the script. `state_types` are the interfaces of its
     states and of its base, by name.
     """
 
@@ -514,6 +516,7 @@ class Machine:
     missing_definitions: MissingDefinitions = field(default_factory=dict, compare=False, repr=False)
     params: tuple[Param, ...] = field(default=(), compare=False, repr=False)
     fixed_params: tuple[FixedParam, ...] = field(default=(), compare=False, repr=False)
+    functions: Mapping[str, FunctionFacts] = field(default_factory=dict, compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
 
 

@@ -1,0 +1,30 @@
+"""Facts about functions of the user that a script names as code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from smachac.diagnostics.source import Word
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FunctionFacts:
+    """A function in a module or template of the user.
+
+    `word` is its name at the definition. It accepts from `least` to `most` positional arguments;
+    `most` is None if it accepts any number. `parameters` are the names of these. `silent`: no path
+    returns a value. `reads` and `writes` are the userdata keys that it accesses if its first
+    argument is the userdata.
+    """
+
+    word: Word
+    parameters: tuple[str, ...]
+    least: int
+    most: int | None
+    silent: bool
+    reads: tuple[Word, ...] = ()
+    writes: tuple[Word, ...] = ()
+
+    def accepts(self, count: int) -> bool:
+        """Whether a call can pass that number of positional arguments."""
+        return self.least <= count and (self.most is None or count <= self.most)

@@ -1,0 +1,130 @@
+"""Functions of the user that a script names as code: their arguments, results and reads."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.trust.project_text import analysed
+
+MAIN = """\
+name: sm
+template: BinBase
+outcomes: [done, none]
+userdata: {parts: [{name: bolt, score: 0.5}]}
+states:
+  - CHOOSE:
+      template: CallbacksState
+      input_keys: [parts]
+      output_keys: [best]
+      callbacks: {best: best_part}
+      transitions: {succeeded: SURE}
+  - SURE:
+      template: ConditionalOutcomeState
+      input_keys: [best]
+      outcomes: [sure]
+      callbacks: {sure: rules.is_sure}
+      default_outcome: none
+      transitions: {sure: done, none: none}
+"""
+BASE = """\
+{% extends "Base.tpl.py" %}
+{% block imports %}
+{{ super() }}
+from bin import rules
+from bin.rules import best_part
+{% endblock imports %}
+"""
+RULES = """\
+def best_part(userdata):
+    return max(userdata.parts, key=lambda part: part["score"])
+
+
+def is_sure(userdata, limit=0.3):
+    return userdata.best["score"] > limit
+"""
+
+
+def findings(rules: str, main: str = MAIN, base: str = BASE) -> list[tuple[str, str, str]]:
+    """Code, marked place and help of each finding above an info."""
+    files = {
+        "main.yml": main,
+        "bin/__init__.py": "",
+        "bin/rules.py": rules,
+        "templates/BinBase.tpl.py": base,
+    }
+    found = analysed(files).report
+    return [
+        (each.code, f"{each.span.source.name}:{each.span.line} {each.span.text}", each.help or "")
+        for each in found
+        if each.severity.value != "info"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("    return max", "    max",
+         ("SM318", "bin/rules.py:1 best_part", "end `best_part` with `return ...`")),
+        ("    return userdata.best", "    userdata.best",
+         ("SM318", "bin/rules.py:5 is_sure", "end `is_sure` with `return ...`")),
+        ("best_part(userdata)", "best_part(userdata, parts)",
+         ("SM317", "bin/rules.py:1 best_part", "write `def best_part(ud):`")),
+        ("is_sure(userdata, limit=0.3)", "is_sure()",
+         ("SM317", "bin/rules.py:5 is_sure", "write `def is_sure(ud):`")),
+        ("userdata.parts", "userdata.partz",
+         ("SM310", "bin/rules.py:2 partz", "did you mean `parts`?")),
+        ("userdata.best[", "userdata.choice[",
+         ("SM310", "bin/rules.py:6 choice", "add `choice` to the `input_keys` of `SURE`")),
+    ],
+)  # fmt: skip
+def test_a_fault_in_a_function(old: str, new: str, expected: tuple[str, str, str]) -> None:
+    assert old in RULES
+    assert findings(RULES.replace(old, new)) == [expected]
+
+
+RETURN = '    return max(userdata.parts, key=lambda part: part["score"])\n'
+TESTED = "    if 'other' in userdata:\n        return userdata.other\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("", ""),
+        (RETURN, '    raise ValueError("not written yet")\n'),
+        (RETURN, '    """Not written yet."""\n'),
+        (RETURN, TESTED + RETURN),
+        (RETURN, "    userdata.best = max(userdata.parts)\n"),
+        (RETURN, "    yield max(userdata.parts)\n"),
+        ("def best_part", "@cached\ndef best_part"),
+        ("(userdata):\n    return max(userdata.", "(*given, **more):\n    return max(given[0]."),
+    ],
+)
+def test_functions_that_are_right_or_cannot_be_judged(old: str, new: str) -> None:
+    assert old in RULES
+    assert findings(RULES.replace(old, new, 1)) == []
+
+
+def test_a_function_for_two_states_with_different_keys() -> None:
+    main = (
+        MAIN.replace("transitions: {succeeded: SURE}", "transitions: {succeeded: AGAIN}")
+        .replace(
+            "  - SURE:",
+            "  - AGAIN:\n      template: CallbacksState\n      input_keys: [parts, other]\n"
+            "      output_keys: [best]\n      callbacks: {best: best_part}\n"
+            "      transitions: {succeeded: SURE}\n  - SURE:",
+        )
+        .replace("userdata: {", "userdata: {other: 1, ")
+    )
+    rules = RULES.replace("userdata.parts, key", "[userdata.parts, userdata.other], key")
+    assert "SM310" not in [each[0] for each in findings(rules, main)]
+
+
+def test_a_function_in_the_template_itself() -> None:
+    base = BASE.replace("from bin.rules import best_part\n", "").replace(
+        "{% endblock imports %}\n",
+        "{% endblock imports %}\n{% block defs %}\ndef best_part(ud):\n    max(ud.parts)\n"
+        "{% endblock defs %}\n",
+    )
+    assert findings(RULES, base=base) == [
+        ("SM318", "templates/BinBase.tpl.py:7 best_part", "end `best_part` with `return ...`")
+    ]
