@@ -507,7 +507,8 @@ def never_returned(context: Context) -> Iterator[Finding]:
     time limit nor a stop of the machine can end the state: the robot continues.
 
     Exactly: the class is read, never run. There is no finding if `execute` returns a value that is
-    not a constant, or if it only returns one constant, because then it is not written yet.
+    not a constant, or if it only returns one constant, because then it is not written yet. Of a
+    template of SMACHA's kind, which has a block `body`, only `preempted` is checked.
 
     Wrong:
         name: sm
@@ -575,8 +576,10 @@ def never_returned(context: Context) -> Iterator[Finding]:
         names = [each.name for each in type_.outcomes]
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant
+        only_stops = type_.prints_itself or wrong
         for name in names:
-            if name in declared and name not in returned and not (wrong and name != PREEMPTED):
+            checked = name == PREEMPTED or not only_stops
+            if checked and name in declared and name not in returned:
                 yield _never(path, leaf, facts, name)
 
 

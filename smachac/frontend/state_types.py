@@ -7,7 +7,7 @@ template without either is an open type: any field is accepted, and nothing is k
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeAlias, TypeVar, get_args
 
@@ -31,7 +31,7 @@ from smachac.frontend.value_facts import (
 )
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
-from smachac.ir.class_facts import ClassFacts, ClassFault
+from smachac.ir.class_facts import ClassFacts, StateCall
 from smachac.ir.nodes import (
     FunctionResult,
     Key,
@@ -293,8 +293,8 @@ def _class_facts(
         template = library.template(word.text)
         facts = read_template(template, name, library) if template is not None else None
         if facts is not None and (body := _file_with_body(word.text, library)):
-            faults = _call_faults(facts, word.text, body, library)
-            facts = replace(facts, parameters=None, faults=(*facts.faults, *faults))
+            call = _state_call(facts, word.text, body, library)
+            facts = replace(facts, parameters=None, state_call=call)
     if facts is None:
         return None
     return _with_script(facts, given)
@@ -616,24 +616,16 @@ def _file_with_body(file: str, library: Library) -> str:
 
 
 _STATE_TEMPLATE = "State.tpl.py"
-_STATE_ARGUMENTS = frozenset(["input_keys", "output_keys", "callbacks", "outcomes"])
-"""The arguments with which the block `body` of the built-in `State.tpl.py` makes a state."""
 
 
-def _call_faults(facts: ClassFacts, file: str, body: str, library: Library) -> Iterator[ClassFault]:
-    """The constructor does not fit the call in the block `body` of the built-in `State.tpl.py`."""
+def _state_call(facts: ClassFacts, file: str, body: str, library: Library) -> StateCall | None:
+    """The call of the constructor in the block `body` of the built-in `State.tpl.py`; None where
+    another template makes the state."""
     template = library.template(file)
     own = library.own_template(_STATE_TEMPLATE) is not None
     if facts.parameters is None or template is None or body != _STATE_TEMPLATE or own:
-        return
-    place = smacha_meta.extended_span(template)
-    names = {each.word.text for each in facts.parameters}
-    required = [each.word.text for each in facts.parameters
-                if each.required and each.word.text not in _STATE_ARGUMENTS]  # fmt: skip
-    if required:
-        yield ClassFault(kind="not passed", name=Word(required[0], place))
-    elif "outcomes" not in names:
-        yield ClassFault(kind="not accepted", name=Word("outcomes", place))
+        return None
+    return StateCall(place=smacha_meta.extended_span(template), parameters=facts.parameters)
 
 
 def _read_template(

@@ -86,6 +86,15 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class StateCall:
+    """The call of a constructor in the built-in `State.tpl.py`, with the lists and callbacks of the
+    script: the place where a template extends it, and the parameters of the constructor."""
+
+    place: Span
+    parameters: tuple[Parameter, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Ending:
     """A constant that `execute` returns, and the userdata keys that the code before it can set;
     None: not known. `possible`: an entry of a table, which may be one that is never used, or a path
@@ -120,7 +129,8 @@ class ClassFacts:
     `values` are the expressions that `execute` itself writes, each with its key. `unused` are the
     local variables that it assigns and does not use, each with the userdata key of that name.
     `parts` are the attributes and constant indexes of userdata keys that it reads itself, each with
-    the key and its place: `userdata.pose.x`, `userdata.pose[9]`.
+    the key and its place: `userdata.pose.x`, `userdata.pose[9]`. `state_call`: the built-in
+    `State.tpl.py` makes the state.
     """
 
     name: Word | None = None
@@ -143,6 +153,7 @@ class ClassFacts:
     values: tuple[tuple[str, Word], ...] = ()
     unused: tuple[tuple[str, Word], ...] = ()
     parts: tuple[tuple[str, str | int, Word], ...] = ()
+    state_call: StateCall | None = None
 
     @property
     def returns(self) -> tuple[Word, ...]:

@@ -26,7 +26,7 @@ from smachac.targets.errors import (
     interfaces_differ,
     stale_code,
 )
-from smachac.targets.template_guards import guard_faults
+from smachac.targets.smacha_templates import call_faults, guard_faults
 
 NOT_FOUND = ("no module", "no class", "syntax")
 """The kinds of faults for which there is no class (SM608)."""
@@ -80,7 +80,7 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
                 found.extend(type_faults(leaf, type_, target, library, checked=True))
     for item in _once(found):
         yield replace(item, severity=Severity.WARNING)
-    for item in (*argument_faults(machine, library), *guard_faults(machine, library)):
+    for item in (*argument_faults(machine, library), *_smacha_faults(machine, library)):
         yield replace(item, severity=Severity.WARNING)
 
 
@@ -94,7 +94,13 @@ def target_faults(machine: Machine, library: Library, target: Language) -> Itera
     yield from _once(found)
     if target.name == "python":
         yield from argument_faults(machine, library)
-        yield from guard_faults(machine, library)
+        yield from _smacha_faults(machine, library)
+
+
+def _smacha_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
+    """The faults of templates of SMACHA's kind."""
+    yield from guard_faults(machine, library)
+    yield from call_faults(machine)
 
 
 def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:

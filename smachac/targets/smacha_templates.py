@@ -1,7 +1,9 @@
-"""Guards of classes in templates: `{% if 'class_Move' not in defined_headers %}`.
+"""Faults of templates of SMACHA's kind: guards of classes, and the call of the constructor.
 
-SMACHA's templates print a class once, under a name that they add to `defined_headers`. Where two
-templates use one name for two classes, the program contains only the first class.
+SMACHA's templates print a class once, under a name that they add to `defined_headers`
+(`{% if 'class_Move' not in defined_headers %}`). Where two templates use one name for two classes,
+the program contains only the first class. A template that extends `State.tpl.py` and has no block
+`body` makes the state with the call in that template.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import Diagnostic, Related
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, StateCall
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
 from smachac.targets.errors import bad_class
@@ -78,3 +80,41 @@ def _in_template(template: Source, leaf: Leaf, type_: StateType) -> Iterator[_Gu
         if inside is not None:
             word = Word(found["guard"], Span(template, *found.span("guard")))
             yield _Guard(word, inside[1], leaf, type_)
+
+
+CALL_ARGUMENTS = ("outcomes", "input_keys", "output_keys", "callbacks")
+"""The fields of a state that `State.tpl.py` passes to its class, if the script has them."""
+
+
+def call_faults(machine: Machine) -> Iterator[Diagnostic]:
+    """The constructors that the call in `State.tpl.py` does not fit, at the first state of a type
+    for which it does not."""
+    left = {
+        name: type_
+        for name, type_ in machine.state_types.items()
+        if type_.class_facts is not None and type_.class_facts.state_call is not None
+    }
+    for _, leaf in walk(machine.root) if left else ():
+        type_ = left.get(leaf.type) if isinstance(leaf, Leaf) else None
+        facts = type_.class_facts if type_ is not None else None
+        if facts is None or facts.state_call is None or not isinstance(leaf, Leaf):
+            continue
+        given = {each.name for each in leaf.written}.intersection(CALL_ARGUMENTS)
+        fault = _call_fault(facts.state_call, given)
+        if fault is not None:
+            del left[leaf.type]
+            used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")
+            name = facts.name.text if facts.name is not None else leaf.type
+            yield bad_class(fault, "python", leaf.type, name, (used,))
+
+
+def _call_fault(call: StateCall, given: set[str]) -> ClassFault | None:
+    """What is wrong with a call that passes these arguments by their names."""
+    known = {each.word.text for each in call.parameters}
+    for each in call.parameters:
+        if each.required and each.word.text not in given:
+            return ClassFault(kind="not passed", name=Word(each.word.text, call.place))
+    for name in CALL_ARGUMENTS:
+        if name in given and name not in known:
+            return ClassFault(kind="not accepted", name=Word(name, call.place))
+    return None
