@@ -237,8 +237,8 @@ class Searches:
     def _inside(
         self, scope: UserdataScope, vertex: Vertex, key: str
     ) -> tuple[Reader | None, list[PathStep], bool]:
-        """What reads the key inside a container, the way to it there, and whether it never finds
-        the key."""
+        """What reads the key inside a container, the way to it there through states of the script,
+        and whether it never finds the key."""
         way: list[PathStep] = []
         always, outermost = True, scope
         while vertex in scope.inner and self.left > 0:
@@ -251,7 +251,8 @@ class Searches:
                 if each.state == "unset" and key in scope.reads.get(each.vertex, ())
             )
             always = always and Reached(vertex, "set") not in found
-            way += way_to(scope.path, found, Reached(vertex, "unset"))
+            if not scope.container.sugar:  # its states are not in the script
+                way += way_to(scope.path, found, Reached(vertex, "unset"))
         inner = reader_at(scope, vertex, key) if scope is not outermost else None
         return inner, way, always
 

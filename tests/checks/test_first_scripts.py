@@ -612,3 +612,15 @@ def test_a_function_without_quotes_in_braces() -> None:
     assert [each[0::2] for each in reported({"main.yml": main})] == [
         ("SM001", "put the code in quotes: `'lambda ud: ...'`")
     ]
+
+
+def test_the_path_of_an_unset_key_has_no_state_that_a_field_adds() -> None:
+    main = PATROL.replace("transitions: {held: BOTH, slipped: LET_GO}", "input_keys: [pose]\n"
+        "      retry: {on: [slipped], max: 3, delay: 1s}\n"
+        "      transitions: {held: BOTH, exhausted: LET_GO, preempted: LET_GO}")  # fmt: skip
+    (found,) = (item for item in analysed({"main.yml": main}).report if item.code == "SM301")
+    labels = [step.label for step in found.finding.path]
+    assert labels[0] == "LOOK"
+    assert labels[-1] == "GRAB"
+    assert labels.count("GRAB") == 1
+    assert "PAUSE" not in labels
