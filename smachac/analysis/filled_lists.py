@@ -102,7 +102,8 @@ def _can_empty(leaf: Leaf, key: str, *, declared: bool) -> bool:
         if facts is None and declared:
             return True
         parts = facts.parts if facts is not None else ()
-        if any(name == key and step in EMPTYING for name, step, _ in parts):
+        methods = [part.steps for part in parts if part.key == key]
+        if any(steps == (("attribute", name),) for steps in methods for name in EMPTYING):
             return True
     return not all(_only_reads(code.text, key) for code in expressions(leaf))
 
