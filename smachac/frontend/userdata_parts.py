@@ -28,15 +28,16 @@ def parts_read(text: PythonText, function: ast.FunctionDef) -> tuple[Part, ...]:
     found: list[Part] = []
     for each in every:
         way = _way(each, names, userdata)
-        if way is None or each in tried:
+        if way is None or each in tried or not isinstance(each, ast.expr):
             continue
         key, steps = way
         if not steps or steps[-1] in known or key in written:
             continue
         span = text.span(each)
         if not text.is_filled(span):
-            is_field = isinstance(each, ast.Subscript) and isinstance(steps[-1][1], str)
-            place = text.span(each.slice) if is_field else span
+            place = span
+            if isinstance(each, ast.Subscript) and isinstance(steps[-1][1], str):
+                place = text.span(each.slice)
             found.append(Part(key, steps, span.text, place))
     return tuple(found)
 
