@@ -105,12 +105,39 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 span=span,
                 message=f"`{key}` is set, but nothing in {where} reads it",
                 arguments=(key,),
-                help=f"remove `{key}`; or add it to the `input_keys` of the state that must read"
+                help=_reader_help(scope, key, node)
+                or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
                 f" it, or to the `output_keys` of {where}",
                 related=calls(node, span),
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
             )
+
+
+def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
+    """The help for a preset that one state can read as its only optional key of that kind, which
+    nothing sets."""
+    container = scope.container
+    data = next((each.value.data for each in container.userdata if each.key == key), None)
+    if node is not container or data is None:
+        return None
+    known = _written_in(scope)
+    given = type_of_data(data)
+    last = key.removesuffix("_id").rpartition("_")[2]
+    found = [
+        (child.name, each.name)
+        for child in container.children
+        for each in (child.inputs if isinstance(child, Leaf) else ())
+        if each.type.name == "optional" and remapping(child).get(each.name, each.name) not in known
+        if misfit(given, each.type) is None and last in (each.role, each.name)
+    ]
+    if len(found) != 1:
+        return None
+    (state, name), *_ = found
+    return (
+        f"`{state}` can read it as `{name}`: write `remapping: {{{name}: {key}}}` in `{state}`,"
+        f" or remove `{key}`"
+    )
 
 
 class MeantPreset(NamedTuple):

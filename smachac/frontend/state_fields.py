@@ -499,6 +499,10 @@ def _check_qos(tree: Tree, report: Report) -> None:
             choice = f"write one of {listed}" if entry is not None else help
             help = did_you_mean(place.span.text.strip("\"'"), fault.known) or choice
         effect = "ROS 2 has no such quality of service: the program could not use the topic"
+        policy = next((name for name, known in POLICIES.items() if value in known), None)
+        if policy is not None:
+            help = f"`{value}` is a value of `{policy}`: write `{{{policy}: {value}}}`"
+            effect = "the program could not use the topic"
         arguments = ("qos", fault.text)
         report.append(wrong_shape(place.span, fault.text, help, arguments=arguments, effect=effect))
 

@@ -24,7 +24,7 @@ STEPS = {
     "shut": "template: GripperInterfaceState, command: close, limb: left",
     "right": "template: GripperState, command: close, limb: right",
     "open_right": "template: GripperState, command: open, limb: right",
-    "any": "template: GripperState, command: close, limb: '`str("left")`'",
+    "any": "template: GripperState, command: close, limb: '`str(7)`'",
     "to": "template: MoveAlongState, grasp: true, limb: left, remapping: {pose: a}",
     "check": "template: CheckGraspState, limb: left",
     "wait": "template: SleepState, time: 1",
