@@ -453,11 +453,20 @@ def _doubtful(
         help = f"if it is in degrees, write {_radians(flow.value, value)}"
     else:
         value, unit, meant = _millimetres(flow, simulated)[0], "metres", "millimetres"
-        help = f"if it is in millimetres, write {value / 1000:g}"
+        help = f"if it is in millimetres, write {_metres(flow.value, value)}"
     held = "is" if value == flow.value else "contains"
     message = f"`{flow.origin.cell.key}` {held} {value}, which is read in {unit}"
     part = steps_to_number(flow.value, value)
     yield at(flow, f"{message}: is it in {meant}?", help, (str(value), unit), part=part)
+
+
+def _metres(data: Data, value: float) -> str:
+    """A coordinate in millimetres in metres; the whole point if all its numbers are so large."""
+    point = data[0] if isinstance(data, tuple) and data and isinstance(data[0], tuple) else data
+    every = [each for each in point if is_number(each)] if isinstance(point, tuple) else []
+    if len(every) != 3 or not all(each == 0 or 1 <= abs(each) < math.inf for each in every):
+        return f"{value / 1000:g}"
+    return f"the point as `[{', '.join(f'{each / 1000:g}' for each in every)}]`"
 
 
 def _radians(data: Data, angle: float) -> str:
