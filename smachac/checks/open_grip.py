@@ -16,9 +16,6 @@ from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Concurrence, Leaf
 from smachac.ir.outcome_names import GOOD_OUTCOMES, fails, is_failure, successes
 
-CHECKS = frozenset(["CheckGraspState"])
-"""The built-in state types that succeed only if a gripper holds a body."""
-
 
 @rule(
     "SM516",
@@ -31,12 +28,13 @@ def open_gripper(context: Context) -> Iterator[Finding]:
 
     The check never succeeds: the task ends with a failure in every run.
 
-    Exactly: in the simulation, on every path to a CheckGraspState the gripper of its limb was
-    opened, or the machine begins, and nothing closed it since then. Reported are two slips: a
-    second state opens the gripper again after a motion of the arm, and a state closes the gripper
-    of another limb. A path with a state that may do something else to the gripper decides nothing:
-    a stand-in, a type without an interface, one of the user without `role: grip`. A check that
-    leads to a failure if it succeeds is not reported: it makes sure that the gripper is empty.
+    Exactly: in the simulation, on every path to a state whose type has `checks_grasp: true` the
+    gripper of its limb was opened, or the machine begins, and nothing closed it since then.
+    Reported are two slips: a second state opens the gripper again after a motion of the arm, and a
+    state closes the gripper of another limb. A path with a state that may do something else to the
+    gripper decides nothing: a stand-in, a type without an interface, one of the user without
+    `role: grip`. A check that leads to a failure if it succeeds is not reported: it makes sure that
+    the gripper is empty.
 
     Wrong:
         name: sm
@@ -85,7 +83,9 @@ def open_gripper(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: succeeded, aborted: aborted}
     """
     leaves = {path: node for path, node in context.states if isinstance(node, Leaf)}
-    checks = [path for path, leaf in leaves.items() if leaf.built_in in CHECKS]
+    types = context.machine.state_types
+    checking = {name for name, type_ in types.items() if type_.checks_grasp}
+    checks = [path for path, leaf in leaves.items() if leaf.type in checking]
     if not checks or not is_simulated(context):
         return
     visits, reported = 0, set()
@@ -200,11 +200,11 @@ def _limb(leaf: Leaf) -> object:
     return held.value.data if held is not None else None
 
 
-def _is_used(leaves: Mapping[str, Leaf], path: str, limb: object) -> bool:
+def _is_used(leaves: Mapping[str, Leaf], path: str, limb: object, check: Leaf) -> bool:
     """Whether another state than the one at a path opens, closes or checks the gripper of a
     limb."""
     return any(
-        _limb(leaf) == limb and (grip_of(leaf) is not None or leaf.built_in in CHECKS)
+        _limb(leaf) == limb and (grip_of(leaf) is not None or leaf.type == check.type)
         for where, leaf in leaves.items()
         if where != path
     )
@@ -219,7 +219,7 @@ def _finding(
     if len(found.others) == 1:
         leaf = leaves[found.others[0]]
         limb, wanted = variable_of(leaf, "limb"), _limb(leaves[check])
-        if limb is None or _is_used(leaves, found.others[0], limb.value.data):
+        if limb is None or _is_used(leaves, found.others[0], limb.value.data, leaves[check]):
             return None
         return Finding(
             span=limb.value.span,

@@ -1,4 +1,4 @@
-"""Output keys that the code of a built-in state type never writes."""
+"""Output keys that the functions of a script, or the code of a built-in state type, never write."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from smachac.checks.messages import calls
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Key, Leaf, Node, StateType
+from smachac.ir.nodes import Container, Key, Leaf, Node, StateType
 from smachac.ir.traversal import remapping
 
 
@@ -28,13 +29,22 @@ class Unwritten(NamedTuple):
 
 
 def unwritten_keys(context: Context) -> tuple[Unwritten, ...]:
-    """The output keys that the built-in states of a machine never write: they are neither keys of
-    the state type nor those of a function of the script."""
-    return context.at_states(_unwritten, context.machine.state_types)
+    """The output keys that states of a machine never write: they are neither keys of the state type
+    nor those of a function of the script."""
+    return context.at_containers(_unwritten_in, context.machine.state_types)
+
+
+def _unwritten_in(
+    path: str, container: Container, types: Mapping[str, StateType]
+) -> Iterator[Unwritten]:
+    if isinstance(container, nodes.Iterator) and not container.sugar:
+        return  # its child can use keys that it does not declare
+    for child in container.children:
+        yield from _unwritten(f"{path}/{child.name}", child, types)
 
 
 def _unwritten(path: str, leaf: Node, types: Mapping[str, StateType]) -> Iterator[Unwritten]:
-    if not isinstance(leaf, Leaf) or not leaf.built_in or leaf.stand_in or not leaf.outputs:
+    if not isinstance(leaf, Leaf) or leaf.open or leaf.stand_in or not leaf.outputs:
         return
     results = [key for key in leaf.outputs if key.role == "result"]
     type_ = types.get(leaf.type)
@@ -46,13 +56,16 @@ def _unwritten(path: str, leaf: Node, types: Mapping[str, StateType]) -> Iterato
     unmade = [key for key in results if key.name not in made]
     if len(unmade) == 1 and len(undeclared) == 1:
         return  # SM308 names both
-    names = _names(type_)
+    names = _names(type_) if leaf.built_in else ()
     yield from (Unwritten(path, leaf, key, names) for key in unmade)
 
 
 def _writes_only_known(leaf: Leaf, type_: StateType) -> bool:
-    """Whether a state writes nothing but keys of its type and those of its callbacks."""
+    """Whether a state writes nothing but keys of its type and those of its callbacks. In a type of
+    the user, keys with the role of results are those of callbacks."""
     roles = {each.role for each in type_.variables.values()}
+    if not leaf.built_in:
+        return bool(functions(leaf, "callbacks"))
     if "output_function" in roles:
         held = variable_of(leaf, "output_function")
         return held is None or held.value.data is None
@@ -76,8 +89,9 @@ def read_unwritten(
     flow = context.corrected_flow
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     found: dict[tuple[str, str], tuple[str, str]] = {}
-    never = {(each.path, each.key.name) for each in unwritten}
-    for path, leaf, key, _ in unwritten:
+    certain = [each for each in unwritten if each.leaf.built_in]
+    never = {(each.path, each.key.name) for each in certain}
+    for path, leaf, key, _ in certain:
         outer = path.rpartition("/")[0], remapping(leaf).get(key.name, key.name)
         if outer not in missing or outer[0] not in flow.scopes:
             continue
