@@ -13,6 +13,7 @@ from smachac.analysis.error_recovery import corrected_machine, with_meant_keys
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
+from smachac.analysis.filled_lists import filled_loops
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
@@ -196,15 +197,23 @@ class Context:
         return [(site, fault) for site in sites for fault in site.faults()]
 
     @cached_property
+    def _filled_loops(self) -> frozenset[str]:
+        return filled_loops(self.containers, self.accesses)
+
+    @cached_property
     def flow(self) -> DataFlow:
         """The data flow of the machine as written."""
-        return data_flow(self.machine, self._scopes)
+        return data_flow(self.machine, self._scopes, self._filled_loops)
 
     @cached_property
     def corrected_flow(self) -> DataFlow:
         """The data flow of the machine with misspelt names corrected."""
         machine = corrected_machine(self.machine, self.containers, self._corrected_container)
-        return self.flow if machine is self.machine else data_flow(machine, self._scopes)
+        return (
+            self.flow
+            if machine is self.machine
+            else data_flow(machine, self._scopes, self._filled_loops)
+        )
 
     def _corrected_container(self, path: str, container: Container) -> Container:
         whole = self.of_container(with_meant_keys, path, container)

@@ -52,7 +52,7 @@ class UserdataScope:
     needs. `unset`: those of them that can be unset if no input is set. `needed`: the inputs that
     are read inside before they are written. `endings`: for each outcome, the keys of the container
     around it that are set then. `inner`: the names of the containers inside. `again`: those of
-    them that a path can enter more than once.
+    them that a path can enter more than once. `filled`: it is an iterator that surely has items.
     """
 
     path: str
@@ -70,6 +70,7 @@ class UserdataScope:
     endings: Mapping[str, Writes]
     inner: frozenset[str]
     again: frozenset[Vertex]
+    filled: bool = False
 
 
 class FactOf(Protocol):
@@ -96,14 +97,20 @@ class DataFlow:
     repeated: frozenset[str]
 
 
-def data_flow(machine: Machine, known: Mapping[str, UserdataScope] = {}) -> DataFlow:
+def data_flow(
+    machine: Machine,
+    known: Mapping[str, UserdataScope] = {},
+    filled: AbstractSet[str] = frozenset(),
+) -> DataFlow:
     """The data flow of userdata in a machine. `known` are the scopes of the machine before a
-    change: those of containers that have not changed, nor any inside, hold for this machine."""
+    change: those of containers that have not changed, nor any inside, hold for this machine.
+    `filled` are the paths of the iterators that surely have items (filled_lists.py)."""
     found: dict[str, UserdataScope] = {}
     for path, container in reversed(list(containers(machine.root))):
         scope = known.get(path)
-        if scope is None or not _is_unchanged(scope, container, found, known):
-            scope = _scope(path, container, found, machine.root)
+        same = scope is not None and scope.filled is (path in filled)
+        if scope is None or not same or not _is_unchanged(scope, container, found, known):
+            scope = _scope(path, container, found, machine.root, filled=path in filled)
         found[path] = scope
     entered = {machine.root.name}
     repeated: set[str] = set()
@@ -136,9 +143,15 @@ def _is_unchanged(
 
 
 def _scope(
-    path: str, container: Container, inner: Mapping[str, UserdataScope], root: Container
+    path: str,
+    container: Container,
+    inner: Mapping[str, UserdataScope],
+    root: Container,
+    *,
+    filled: bool,
 ) -> UserdataScope:
-    """The scope of a container; `inner` are those of the containers inside."""
+    """The scope of a container; `inner` are those of the containers inside. `filled`: it is an
+    iterator that surely has items."""
     names = remapping(container)
     inputs = {key.name: names.get(key.name, key.name) for key in container.inputs}
     held = {preset.key for preset in container.userdata}
@@ -154,7 +167,7 @@ def _scope(
     inner_containers = frozenset(name for name, c in children.items() if not isinstance(c, Leaf))
     for child in reversed(children.values()):
         reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
-    steps = _steps(path, container, inner)
+    steps = _steps(path, container, inner, filled=filled)
     order = flow_order(steps)
     reads = {vertex: keys for vertex, keys in reads.items() if keys}
     queried: dict[Vertex, list[str]] = {
@@ -184,6 +197,7 @@ def _scope(
         endings=_with_caught(container, _endings(outputs, at_end, found, steps, order)),
         inner=inner_containers,
         again=looping(steps, order) & inner_containers if inner_containers else frozenset(),
+        filled=filled,
     )
 
 
@@ -271,9 +285,11 @@ def child_writes(
     return Writes(sure, trusted, perhaps, writes.anything)
 
 
-def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) -> KeySteps:
+def _steps(
+    path: str, container: Container, inner: Mapping[str, UserdataScope], *, filled: bool
+) -> KeySteps:
     """The steps of a container; those of a concurrence lead from its start to each child and to
-    each of its outcomes."""
+    each of its outcomes. One that is `filled` has none from its start past its child."""
     children = {child.name: child for child in reversed(container.children)}
     raw = isinstance(container, nodes.Iterator)
     scopes = {name: inner.get(f"{path}/{name}") for name in children}
@@ -295,6 +311,8 @@ def _steps(path: str, container: Container, inner: Mapping[str, UserdataScope]) 
                     found.setdefault(child.name, []).append(step)
     for edge in edges(container):
         given: Writes | None = NOTHING
+        if filled and edge.source == START and not isinstance(edge.target, str):
+            continue
         if isinstance(edge.source, str):
             given = writes(edge.source, edge.outcome)
         if given is None:

@@ -92,11 +92,14 @@ class _Part:
 
 
 def expression_faults(
-    expr: Expr, userdata: Type = EMPTY, parameters: tuple[str, ...] = ()
+    expr: Expr,
+    userdata: Type = EMPTY,
+    parameters: tuple[str, ...] = (),
+    others: Mapping[str, Type] = {},
 ) -> tuple[Fault, ...]:
     """The faults of an expression, outer parts first. `parameters` are the names of userdata,
-    whose type is a record of its keys. Total."""
-    judge = _Judge(dict.fromkeys(parameters, userdata), parameters)
+    whose type is a record of its keys, `others` other names, which count as keys. Total."""
+    judge = _Judge({**dict.fromkeys(parameters, userdata), **others}, parameters)
     found: list[Fault] = []
     todo = [_Part(expr=expr)]
     while todo:
@@ -129,6 +132,16 @@ def always_fails(expression: Expression, userdata: Names) -> bool:
     return any(each.kind == "operation" and each.always and not each.length for each in found)
 
 
+def _names(expr: Expr) -> Iterator[str]:
+    """The names in an expression."""
+    todo = [expr]
+    while todo:
+        expr = todo.pop()
+        if isinstance(expr, Name):
+            yield expr.name
+        todo.extend(reversed(parts(expr)))
+
+
 def _seldom(fault: Fault) -> Fault:
     return replace(fault, always=False)
 
@@ -139,12 +152,15 @@ class _Judge:
     def __init__(self, names: Names, parameters: tuple[str, ...]) -> None:
         self.names = names
         self.parameters = parameters
+        self.others = names.keys() - set(parameters)
 
     def type(self, expr: Expr) -> Type:
         return type_of(expr, self.names)
 
     def keys(self, *exprs: Expr) -> tuple[str, ...]:
-        found = (key for expr in exprs for key in keys_named(expr, self.parameters))
+        found = [key for expr in exprs for key in keys_named(expr, self.parameters)]
+        if self.others:
+            found += [name for expr in exprs for name in _names(expr) if name in self.others]
         return tuple(dict.fromkeys(found))
 
     def inside(self, part: _Part) -> Iterator[_Part]:

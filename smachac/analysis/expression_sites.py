@@ -9,6 +9,7 @@ from smachac.analysis.code_slots import code_of
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
 from smachac.analysis.expression_types import body_of, keys_read, parsed
 from smachac.analysis.fixed_lists import has_fixed_length, key_of
+from smachac.analysis.item_errors import has_item_code, item_faults, item_keys
 from smachac.analysis.type_inference import Cell, Types
 from smachac.analysis.type_lattice import join, mapping
 from smachac.ir import nodes
@@ -35,7 +36,10 @@ class ExpressionSite:
     def faults(self) -> tuple[Fault, ...]:
         text = self.expression.text
         if self.types is not None:
-            found = function_faults(text, mapping(self.types.items()))
+            userdata = mapping(self.types.items())
+            found = function_faults(text, userdata)
+            if has_item_code(text):
+                found += item_faults(text, userdata)
         else:
             tree = parsed(text)
             found = () if tree is None else expression_faults(tree)
@@ -133,7 +137,7 @@ def _over(
     names = remapping(node) if isinstance(node, Leaf) else {}
     cells = {
         key: types.cells[path, key]
-        for key in sorted(keys_read(expression))
+        for key in sorted({*keys_read(expression), *item_keys(expression.text)})
         if (path, key) in types.cells
     }
     held: dict[str, Type] = {}

@@ -23,6 +23,7 @@ from typing import Literal, TypeAlias
 
 from smachac.analysis.expression_errors import always_fails
 from smachac.analysis.expression_types import keys_read, type_of_call, type_of_data
+from smachac.analysis.received_types import received_types
 from smachac.analysis.type_lattice import (
     NONE,
     Misfit,
@@ -38,6 +39,7 @@ from smachac.analysis.type_lattice import (
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, key_names, variable_of
+from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Data, Expression, Key, Leaf, Machine, Node, Struct, Variable
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
@@ -111,8 +113,10 @@ class _Inference:
         self.clashes: dict[tuple[object, ...], Clash] = {}
         self.constants: list[TypeFlow] = []
         self.literals: set[tuple[Cell, Span, Type, Data]] = set()
+        self.definitions: Definitions = {}
 
     def read(self, machine: Machine) -> None:
+        self.definitions = machine.definitions
         for held in machine.variables:
             self.variable(held, machine.root.name, None)
         stack: list[tuple[str, Node, _ContainerCells | None]] = [
@@ -168,6 +172,7 @@ class _Inference:
             around.at(names.get(key.name, key.name)).links.append(cell)
             inputs[key.name] = cell
         written = _written(leaf)
+        received = received_types(leaf, self.definitions) if self.definitions else {}
         if isinstance(around.node, nodes.Iterator):
             # Its child writes every key as it is (docs/semantics.md, Iterator).
             for name in sorted(written.keys() - {key.name for key in leaf.outputs}):
@@ -185,6 +190,9 @@ class _Inference:
                         )
                     else:
                         self.literal(cell, data, span)
+            elif key.name in received:
+                type_ = received[key.name]
+                self.arrive(TypeFlow(type=type_, how="computed", span=cell.span, cell=cell))
             elif is_open(key.type):
                 self.arrive(TypeFlow(type=ANY, how="declared", span=cell.span, cell=cell))
         for held in leaf.variables:

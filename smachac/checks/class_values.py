@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import reduce
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_types import type_of_data
@@ -12,6 +13,8 @@ from smachac.analysis.type_lattice import (
     BOOL,
     FLOAT,
     STR,
+    fields,
+    inside,
     is_open,
     length_of,
     misfit,
@@ -19,11 +22,14 @@ from smachac.analysis.type_lattice import (
     widened,
 )
 from smachac.checks.class_code import leaves_by_type
-from smachac.checks.messages import other_place
+from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.type_words import HELP, example, in_words
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir.class_facts import Part, Step
 from smachac.ir.nodes import Data, Struct
-from smachac.ir.types import Type
+from smachac.ir.types import ANY, Type
 
 MADE = {"str": STR, "repr": STR, "float": FLOAT, "bool": BOOL, "len": Type("int")}
 """The types that functions of Python return."""
@@ -74,20 +80,25 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
         if type_ is None or type_.built_in or type_.open:
             continue
         keys = {key.name: key for key in type_.input_keys}
-        for name, part, read in facts.parts:
-            key = keys.get(name)
-            fault = _wrong_part(key.type, part, read.text) if key is not None else None
+        for part in facts.parts:
+            key = keys.get(part.key)
+            fault = _wrong_part(key.type, part) if key is not None else None
             if key is None or fault is None:
                 continue
             what, help = fault
             yield Finding(
-                span=read.span,
-                message=f"`{leaf.type}` reads `{read.text}`, but its interface declares `{name}` as"
-                f" `{key.type}`, {what}",
-                arguments=(name, str(part), str(key.type), "class"),
+                span=part.span,
+                message=f"`{leaf.type}` reads `{part.text}`, but its interface declares"
+                f" `{key.name}` as `{key.type}`, {what}",
+                arguments=(
+                    key.name,
+                    *(str(step) for _, step in part.steps),
+                    str(key.type),
+                    "class",
+                ),
                 help=help,
                 related=(
-                    *other_place(key.span, f"the interface declares `{name}`"),
+                    *other_place(key.span, f"the interface declares `{key.name}`"),
                     *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
                 ),
                 severity=Severity.WARNING,
@@ -95,23 +106,58 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
             )
 
 
-def _wrong_part(type_: Type, part: str | int, text: str) -> tuple[str, str] | None:
+def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:
     """What is wrong with a part of a value of a type, and what to write."""
-    if isinstance(part, str):
-        if type_.name not in ("list", "array", "int", "float", "bool", "str") or part not in FIELDS:
-            return None
-        owner = text.removesuffix(f".{part}")
-        help = f"correct the type of the key in the interface, or write `{owner}`"
-        if type_.name in ("list", "array") and part in COORDINATES:
-            help = f"write `{owner}[{COORDINATES[part]}]`, or correct the type in the interface"
-        return f"which has no attribute `{part}`", help
-    size = length_of(type_)
-    if size is None or -size <= part < size:
+    *first, (kind, last) = part.steps
+    owner = reduce(_at, first, type_)
+    which = "which" if not first else f"in which `{_owner_text(part)}`"
+    match kind, last:
+        case "attribute", str():
+            return _wrong_attribute(owner, last, _owner_text(part), which)
+        case "item", str() if owner.name == "record" and last not in fields(owner):
+            names = list(fields(owner))
+            meant = did_you_mean(guesser(names)(last)) or f"use one of its fields: {listed(names)}"
+            return f"{which} has no field `{last}`", meant
+        case "item", int():
+            size = length_of(owner)
+            if size is None or -size <= last < size:
+                return None
+            whose = "whose" if not first else f"{which} has `{owner}`: its"
+            return (
+                f"{whose} last index is {size - 1}",
+                f"use an index from 0 to {size - 1}, or correct the type in the interface",
+            )
+    return None
+
+
+def _wrong_attribute(type_: Type, name: str, owner: str, which: str) -> tuple[str, str] | None:
+    """What is wrong with an attribute of a value with the text `owner`, and what to write."""
+    if type_.name not in ("list", "array", "int", "float", "bool", "str") or name not in FIELDS:
         return None
-    return (
-        f"whose last index is {size - 1}",
-        f"use an index from 0 to {size - 1}, or correct the type in the interface",
-    )
+    help = f"correct the type of the key in the interface, or write `{owner}`"
+    if type_.name in ("list", "array") and name in COORDINATES:
+        help = f"write `{owner}[{COORDINATES[name]}]`, or correct the type in the interface"
+    return f"{which} has no attribute `{name}`", help
+
+
+def _owner_text(part: Part) -> str:
+    """The text of the value whose part is read."""
+    kind, _ = part.steps[-1]
+    end = part.text.rfind(".") if kind == "attribute" else part.text.rfind("[")
+    return part.text[:end].rstrip()
+
+
+def _at(type_: Type, step: Step) -> Type:
+    """The type of a part of a value; `any` if it is not known."""
+    match step:
+        case "item", int() if type_.name in ("list", "array"):
+            return inside(type_)
+        case "item", str(name):
+            known = fields(type_) if type_.name == "record" else {}
+            return known.get(name, inside(type_) if type_.name == "dict" else ANY)
+        case "each", _ if type_.name in ("list", "array"):
+            return inside(type_)
+    return ANY
 
 
 def type_of_code(text: str) -> Type | None:

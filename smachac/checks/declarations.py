@@ -23,6 +23,7 @@ from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.rule import rule
+from smachac.checks.unwritten_keys import read_unwritten, unwritten_finding, unwritten_keys
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
@@ -105,12 +106,39 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 span=span,
                 message=f"`{key}` is set, but nothing in {where} reads it",
                 arguments=(key,),
-                help=f"remove `{key}`; or add it to the `input_keys` of the state that must read"
+                help=_reader_help(scope, key, node)
+                or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
                 f" it, or to the `output_keys` of {where}",
                 related=calls(node, span),
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
             )
+
+
+def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
+    """The help for a preset that one state can read as its only optional key of that kind, which
+    nothing sets."""
+    container = scope.container
+    data = next((each.value.data for each in container.userdata if each.key == key), None)
+    if node is not container or data is None:
+        return None
+    known = _written_in(scope)
+    given = type_of_data(data)
+    last = key.removesuffix("_id").rpartition("_")[2]
+    found = [
+        (child.name, each.name)
+        for child in container.children
+        for each in (child.inputs if isinstance(child, Leaf) else ())
+        if each.type.name == "optional" and remapping(child).get(each.name, each.name) not in known
+        if misfit(given, each.type) is None and last in (each.role, each.name)
+    ]
+    if len(found) != 1:
+        return None
+    (state, name), *_ = found
+    return (
+        f"`{state}` can read it as `{name}`: write `remapping: {{{name}: {key}}}` in `{state}`,"
+        f" or remove `{key}`"
+    )
 
 
 class MeantPreset(NamedTuple):
@@ -267,6 +295,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
+    yield from _unwritten_outputs(context)
     for scope in flow.scopes.values():
         container = scope.container
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
@@ -285,6 +314,16 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     yield from _unused_by_the_script(context)
 
 
+def _unwritten_outputs(context: Context) -> Iterator[Finding]:
+    """The output keys that built-in states never write."""
+    unwritten = unwritten_keys(context)
+    read = read_unwritten(context, unwritten) if unwritten else {}
+    for each in unwritten:
+        finding = unwritten_finding(each, read=(each.path, each.key.name) in read)
+        if finding is not None:
+            yield finding
+
+
 def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:
     span = key.span if not isinstance(node, Leaf) else place_of(node, key)
     verb = "read" if role == "input" else "set"
@@ -294,8 +333,6 @@ def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -
     if isinstance(node, Leaf):
         nothing = f"none of its functions {verb}s it"
         other = f"read it in one of its functions as `ud.{key.name}`"
-        if role == "output":
-            other = f"add a callback: `callbacks: {{{key.name}: 'lambda ud: ...'}}`"
     else:
         nothing = f"no state in `{node.name}` {verb}s it"
         other = f"add it to the `{role}_keys` of the state in `{node.name}` that {verb}s it"
@@ -384,14 +421,6 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
         yield from _unused_keys(path, leaf, arguments, used, "input")
     if chooses and not [*unknown_endings(path, leaf)]:
         yield from _unused_outcomes(path, leaf, conditions)
-    results = [key for key in leaf.outputs if key.role == "result"] if callbacks else []
-    if results:
-        undeclared = undeclared_writes(leaf)
-        made = callback_names(leaf) | _meant_keys(undeclared, leaf.outputs)
-        unmade = [key for key in results if key.name not in made]
-        if len(unmade) == 1 and len(undeclared) == 1:
-            return  # SM308 names both
-        yield from _unused_keys(path, leaf, unmade, (), "output")
 
 
 def _unused_outcomes(path: str, leaf: Leaf, conditions: Iterable[str]) -> Iterator[Finding]:

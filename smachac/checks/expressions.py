@@ -264,7 +264,9 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     of a type `T?` are not checked. An index is too large if a declaration fixes the length of the
     list, or if the list is an initial value and only built-in states whose code reads items of it
     can reach it: others can make it longer. In the Python class of a state type, the types are
-    those of its interface; an index and the fields of messages (`.x`, `.position`) are checked.
+    those of its interface; an index, the fields of records (`pad["at"]`) and those of messages
+    (`.x`, `.position`) are checked. In code that runs for each item of a list, such as
+    `[p["at"] for p in ud.pads]` or `key=lambda p: p["at"]`, every finding is a warning.
 
     Wrong:
         name: sm

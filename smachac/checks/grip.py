@@ -91,7 +91,7 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: succeeded, aborted: aborted, preempted: aborted}
     """
     leaves = {path: node for path, node in context.states if isinstance(node, Leaf)}
-    closing = [path for path, leaf in leaves.items() if _grip(leaf) == "close"]
+    closing = [path for path, leaf in leaves.items() if grip_of(leaf) == "close"]
     if len(closing) < 2 or not any(map(_comes_to_body, leaves.values())):
         return
     visits = 0
@@ -150,7 +150,7 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
             if known == "close" and same and has_moved:
                 closed[where] = None
                 continue
-            if known is not None or not _keeps_gripper(leaf):
+            if known is not None or not keeps_gripper(leaf):
                 return _Closed((), (), len(seen))
             if _comes_to_body(leaf) and outcome in successes(leaf):
                 moved[where] = None
@@ -168,7 +168,7 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
 Effect = Literal["open", "close", "unknown"]
 
 
-def _grip(leaf: Leaf) -> Effect | None:
+def grip_of(leaf: Leaf) -> Effect | None:
     """What a state does to its gripper, by the value of its variable."""
     held = variable_of(leaf, "grip")
     if held is None:
@@ -184,11 +184,11 @@ def _grip(leaf: Leaf) -> Effect | None:
 
 def _effect(leaf: Leaf, outcome: str) -> Effect | None:
     """What a state has done to its gripper when it ends with an outcome."""
-    found = _grip(leaf)
+    found = grip_of(leaf)
     return found if found is None or outcome in successes(leaf) else "unknown"
 
 
-def _keeps_gripper(leaf: Leaf) -> bool:
+def keeps_gripper(leaf: Leaf) -> bool:
     """Whether a state surely leaves the gripper as it is."""
     return bool(leaf.built_in) and not leaf.stand_in and not leaf.open
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
@@ -99,7 +100,8 @@ def property_fails(context: Context) -> Iterator[Finding]:
             span=given.span,
             message=f"{_named(given)} does not hold: {_violation(given.form, example)}",
             arguments=(given.name, in_words(given.form)),
-            help=f"{_cure(given.form, example, turn)}\n{_replayed(shown, number, script)}",
+            help=f"{_cure(given.form, example, turn)}{_swap_help(context, given)}"
+            f"\n{_replayed(shown, number, script)}",
             related=_turn_place(turn),
             path=witness(example._replace(visits=_shown(context, example.visits))),
             node=example.node or context.machine.root.name,
@@ -148,7 +150,8 @@ def _violation(form: Form, example: Counterexample) -> str:
             return f"{event}{_before(earlier)}"
         case After(first=first, answer=answer, within=within) if example.node:
             if within and not example.outcome:
-                late = f"{either(answer)} does not come within {within} states after"
+                states = f"{within} state{'s' * (within != 1)}"
+                late = f"{either(answer)} does not come within {states} after"
                 return f"{late} {either(first)}: {entered} first"
             return f"{event}{_before(answer)}"
         case After(first=first, answer=answer):
@@ -161,6 +164,34 @@ def _violation(form: Form, example: Counterexample) -> str:
                 return f"`{repeated}` can be repeated without end"
             return "the run waits without end in a state that has no outcome"
     return assert_never(form)
+
+
+def _swap_help(context: Context, given: Property) -> str:
+    """The end of a help line if a property holds with two of its events swapped; else empty."""
+    from smachac.analysis.properties import judge
+
+    form = given.form
+    swapped: Form
+    match form:
+        case Never(after=after, until=until) if after and until:
+            swapped = replace(form, after=until, until=after)
+            words = f"after: {_names(until)}, until: {_names(after)}"
+        case Before(later=later, earlier=earlier):
+            swapped = Before(later=earlier, earlier=later)
+            words = f"before: {{{_names(earlier)}: {_names(later)}}}"
+        case _:
+            return ""
+    other = replace(given, form=swapped)
+    found = judge([other], context.machine.root, context.claims)
+    if not found or found[0].verdict != "holds":
+        return ""
+    return f"; with `{words}` the property holds: are the two names swapped?"
+
+
+def _names(events: Atoms) -> str:
+    """Events as a script has them."""
+    names = ", ".join(str(each) for each in events)
+    return names if len(events) == 1 else f"[{names}]"
 
 
 def _before(events: Atoms) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from smachac.analysis.accesses import Accesses, callback_names
 from smachac.analysis.context import Context
@@ -10,7 +10,7 @@ from smachac.analysis.resource_claims import Held, prefixes
 from smachac.checks.messages import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.wording import both
+from smachac.diagnostics.wording import both, either
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.traversal import remapping
@@ -220,11 +220,17 @@ def resource_clash(context: Context) -> Iterator[Finding]:
     """
     concurrences = [(path, one) for path, one in context.containers if isinstance(one, Concurrence)]
     held = context.claims if concurrences else {}
+    robot = context.machine.robot
+    limbs = robot.limb_names if robot is not None else ()
     for path, container in concurrences:
-        yield from _clashes(path, container, held)
+        yield from _clashes(path, container, held, limbs)
 
 
-def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]:
+def _clashes(
+    path: str, container: Concurrence, held: Held, limbs: Sequence[str]
+) -> Iterator[Finding]:
+    """The resources that branches of a concurrence claim together. `limbs` are those of the
+    robot."""
     branches = [(child, held[f"{path}/{child.name}"]) for child in container.children]
     named = {claim for _, claims in branches for claim in claims}
     holders: dict[str, list[tuple[Node, str, Node]]] = {}
@@ -242,6 +248,10 @@ def _clashes(path: str, container: Concurrence, held: Held) -> Iterator[Finding]
         use = "let one of them use another resource"
         if isinstance(origin, Leaf) and variable_of(origin, "limb") is not None:
             use = "give one of them another `limb`"
+            limb = variable_of(origin, "limb")
+            free = [each for each in limbs if not any(each in claim.split(".") for claim in named)]
+            if limb is not None and free:
+                use = f"write {either(f'{limb.name}: {each}' for each in free)} in `{origin.name}`"
         places = [
             place
             for one, what, inner in holding[:MOST_PLACES]

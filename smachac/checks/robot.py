@@ -142,11 +142,18 @@ def joint_limit(context: Context) -> Iterator[Finding]:
                 f"{what} of `{flow.origin.cell.key}` is {angle} rad, outside its limits {limits}",
                 f"convert the angle from degrees to radians: `{_radians(angle)}`"
                 if abs(as_float(angle)) > 2 * math.pi
-                else f"write an angle from {limits}, in radians",
+                else _angle_help(joint, as_float(angle), limits),
                 (str(number) if in_list else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
                 part=(number - 1,) if in_list else (joint.name,),
             )
+
+
+def _angle_help(joint: Joint, angle: float, limits: str) -> str:
+    """The help for an angle outside the limits of a joint: the angle with the other sign, if that
+    is within them."""
+    help = f"write an angle from {limits}, in radians"
+    return f"{help}: did you mean `{-angle:g}`?" if _within(joint, -angle) else help
 
 
 def _in_degrees(flow: TypeFlow, faults: list[tuple[int, Joint, Data]]) -> Finding:
@@ -356,6 +363,7 @@ def at(
     severity: Severity | None = None,
     part: tuple[int | str, ...] = (),
     key: bool = False,
+    effect: str | None = None,
 ) -> Finding:
     """A finding at a literal, with the place where it is read; its arguments are the key of the
     literal and `names`. `part` are the steps to a part of the literal, `key` means its key."""
@@ -373,6 +381,7 @@ def at(
         related=(*related, *more, *(calls(node, span) if node is not None else ())),
         severity=severity,
         node=origin.cell.path,
+        effect=effect,
     )
 
 
@@ -636,4 +645,5 @@ def _strangers(
             help = f"remove it: all joints of the robot are here, {listed(joints)}"
         message = f"the robot `{robot.name}` has no joint `{name}`"
         part, key = part_named(flow.value, name)
-        yield at(flow, message, help, (name,), part=part, key=key)
+        effect = "the state cannot move a joint of this name: it fails"
+        yield at(flow, message, help, (name,), part=part, key=key, effect=effect)

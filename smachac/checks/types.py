@@ -17,6 +17,7 @@ from smachac.analysis.type_lattice import (
     fields,
     fits,
     inside,
+    length_of,
     misfit,
     present,
     unit_of,
@@ -243,9 +244,10 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
         if at_origin:
             show(each.cell.span, _read(each.cell))
     first, second = _without_fields(clash) or written(origin) + _part(clash), _read(cell)
+    message = f"{first}, but {second}" if at_origin else f"{second}, but {first}"
     return Finding(
         span=span,
-        message=f"{first}, but {second}" if at_origin else f"{second}, but {first}",
+        message=(_wrong_rotation(clash) if at_origin else None) or message,
         arguments=(about.key, str(widened(clash.misfit.given)), str(clash.misfit.wanted)),
         help=_help(clash),
         effect=_effect(clash),
@@ -340,6 +342,17 @@ def _part(clash: Clash) -> str:
     if given == clash.flow.type or clash.misfit.kind == "unit":
         return ""
     return f" (in it, {in_words(given)} is in place of `{wanted}`)"
+
+
+def _wrong_rotation(clash: Clash) -> str | None:
+    """The message on a pose whose rotation has a wrong number of numbers; None for others."""
+    given, wanted, whole = clash.misfit.given, clash.misfit.wanted, present(clash.cell.declared)
+    count = length_of(given)
+    if wanted.name != "Quaternion" or count is None or whole.name not in ("Pose", "Transform"):
+        return None
+    key, numbers = clash.flow.origin.cell.key, f"{count} number{'s' if count != 1 else ''}"
+    needs = f"a `{whole.name}` needs 4 (a quaternion)"
+    return f"the rotation in `{key}` has {numbers}, but {needs}: {_read(clash.cell)}"
 
 
 def _without_fields(clash: Clash) -> str:

@@ -23,6 +23,7 @@ from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import placeholder
+from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser, respelt
@@ -93,9 +94,12 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
     presets = meant_presets(context)
+    unwritten = set(read_unwritten(context, unwritten_keys(context)).values())
     for missing in context.missing_keys("unset", "nowhere"):
         if missing.cause == "nowhere" and _is_dropped(missing):
             continue  # SM308 reports the cause
+        if (missing.scope.path, missing.key) in unwritten:
+            continue  # SM306 reports the cause
         meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])

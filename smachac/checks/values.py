@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
-from smachac.checks.messages import calls, did_you_mean
+from smachac.checks.messages import calls, did_you_mean, own_name
 from smachac.checks.robot import (
     at,
     is_simulated,
@@ -25,9 +25,9 @@ from smachac.checks.rule import rule
 from smachac.checks.value_places import steps_to_number
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import both, either, listed
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct, is_number
+from smachac.ir.nodes import Data, Leaf, Limits, StateType, Struct, VariableType, is_number
 from smachac.ir.robot import MODELS, Robot
 from smachac.ir.types import Type
 
@@ -192,7 +192,7 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
     effect="the state fails at its first visit",
 )
 def unknown_name(context: Context) -> Iterator[Finding]:
-    """A value names a limb, a model or a body that does not exist, or a limb without a gripper.
+    """A value names a limb, a model or a body that does not exist, or a necessary limb is missing.
 
     The state fails at its first visit, often after the robot has moved other parts of the task.
 
@@ -202,7 +202,8 @@ def unknown_name(context: Context) -> Iterator[Finding]:
     LoadModelState adds; there an unknown name is an error. So is a body that no path loads before a
     state of the simulation uses it, unless the state leads to the loading one when it fails. Where
     code of the user may add bodies, they are not checked. A state whose type has `role: grip` needs
-    a limb whose description has a gripper. SM505 checks names of frames and joints.
+    a limb whose description has a gripper. A variable with `names: limb` needs a value if the robot
+    has more than one limb: null is the only arm. SM505 checks names of frames and joints.
 
     Wrong:
         name: sm
@@ -247,6 +248,7 @@ def unknown_name(context: Context) -> Iterator[Finding]:
     if is_simulated(context):
         yield from _late_bodies(context)
     yield from _missing_grippers(context, severity)
+    yield from _missing_limbs(context, sorted(known.get("limb", ())), severity)
 
 
 def _late_bodies(context: Context) -> Iterator[Finding]:
@@ -292,6 +294,46 @@ def _missing_grippers(context: Context, severity: Severity | None) -> Iterator[F
                 severity=severity,
                 node=path,
             )
+
+
+def _missing_limbs(
+    context: Context, limbs: Sequence[str], severity: Severity | None
+) -> Iterator[Finding]:
+    """The states that name no limb of a robot with several: no value means the only limb."""
+    robot = context.machine.robot
+    types = context.machine.state_types
+    names = {name: variable for name, type_ in types.items() if (variable := _limb_of(type_))}
+    if robot is None or len(limbs) < 2 or not names:
+        return
+    count = {2: "two", 3: "three", 4: "four"}.get(len(limbs), str(len(limbs)))
+    for path, leaf in context.states:
+        variable = names.get(leaf.type) if isinstance(leaf, Leaf) else None
+        if not isinstance(leaf, Leaf) or variable is None:
+            continue
+        given = next((each for each in leaf.variables if each.name == variable.name), None)
+        value = given.value if given is not None else variable.default
+        if value is None or value.data is not None:
+            continue
+        span = given.value.span if given is not None else leaf.span
+        yield Finding(
+            span=span,
+            message=f"`{leaf.name}` names no limb, but `{robot.name}` has {count}: {both(limbs)}",
+            arguments=(own_name(leaf, span), variable.name),
+            help=f"write {either(f'{variable.name}: {limb}' for limb in limbs)}",
+            effect="the program stops with UnknownNameError when the state starts"
+            if leaf.built_in
+            else None,
+            related=calls(leaf, span),
+            severity=severity,
+            node=path,
+        )
+
+
+def _limb_of(type_: StateType) -> VariableType | None:
+    """The variable of a state type that names one limb."""
+    held = (each for each in type_.variables.values() if each.role == "limb")
+    several = ("list", "array", "dict")
+    return next((each for each in held if present(each.type).name not in several), None)
 
 
 def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
@@ -411,11 +453,20 @@ def _doubtful(
         help = f"if it is in degrees, write {_radians(flow.value, value)}"
     else:
         value, unit, meant = _millimetres(flow, simulated)[0], "metres", "millimetres"
-        help = f"if it is in millimetres, write {value / 1000:g}"
+        help = f"if it is in millimetres, write {_metres(flow.value, value)}"
     held = "is" if value == flow.value else "contains"
     message = f"`{flow.origin.cell.key}` {held} {value}, which is read in {unit}"
     part = steps_to_number(flow.value, value)
     yield at(flow, f"{message}: is it in {meant}?", help, (str(value), unit), part=part)
+
+
+def _metres(data: Data, value: float) -> str:
+    """A coordinate in millimetres in metres; the whole point if all its numbers are so large."""
+    point = data[0] if isinstance(data, tuple) and data and isinstance(data[0], tuple) else data
+    every = [each for each in point if is_number(each)] if isinstance(point, tuple) else []
+    if len(every) != 3 or not all(each == 0 or 1 <= abs(each) < math.inf for each in every):
+        return f"{value / 1000:g}"
+    return f"the point as `[{', '.join(f'{each / 1000:g}' for each in every)}]`"
 
 
 def _radians(data: Data, angle: float) -> str:

@@ -22,3 +22,9 @@ def both(names: Iterable[str]) -> str:
     if not 1 < len(every) <= MOST_LISTED:
         return listed(every)
     return f"{listed(every[:-1])} and `{every[-1]}`"
+
+
+def either(choices: Iterable[str]) -> str:
+    """Texts in backticks as alternatives, in their order: `a` or `b`, or `a`, `b` or `c`."""
+    *others, last = [f"`{each}`" for each in choices]
+    return f"{', '.join(others)} or {last}" if others else last

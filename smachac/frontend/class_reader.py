@@ -39,6 +39,7 @@ from smachac.frontend.python_modules import (
     with_bases,
 )
 from smachac.frontend.python_source import PythonText, name_span
+from smachac.frontend.userdata_parts import parts_read
 from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
 
 PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
@@ -134,13 +135,20 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
         values=_values(own, execute) if execute is not None and flow.writes else (),
         unused=_unused(own, execute) if execute is not None else (),
-        parts=_parts(own, execute) if execute is not None and flow.reads else (),
+        parts=parts_read(_text_of(own, execute), execute)
+        if execute is not None and flow.reads
+        else (),
     )
+
+
+def _text_of(own: OwnClass, function: ast.FunctionDef) -> PythonText:
+    """The text with a method of a class."""
+    return next(module.text for module, node in own.classes if function in node.body)
 
 
 def _values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
     """The expressions that `execute` itself writes to userdata keys: `userdata.key = value`."""
-    text = next(module.text for module, node in own.classes if function in node.body)
+    text = _text_of(own, function)
     userdata = function.args.args[1].arg
     found = []
     for node in ast.walk(function):
@@ -160,45 +168,9 @@ def _values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word],
     return tuple(found)
 
 
-def _parts(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, str | int, Word], ...]:
-    """The attributes and constant indexes of userdata keys that `execute` reads, without those of
-    keys that it writes, and without code in `try`."""
-    text = next(module.text for module, node in own.classes if function in node.body)
-    userdata = function.args.args[1].arg
-    every = [*ast.walk(function)]
-    tried = {inner for each in every if isinstance(each, ast.Try)
-             for line in each.body for inner in ast.walk(line)}  # fmt: skip
-    written = {
-        each.attr
-        for each in every
-        if isinstance(each, ast.Attribute) and not isinstance(each.ctx, ast.Load)
-        and isinstance(each.value, ast.Name) and each.value.id == userdata
-    }  # fmt: skip
-    found: list[tuple[str, str | int, Word]] = []
-    for each in every:
-        part: str | int
-        match each:
-            case ast.Attribute(
-                value=ast.Attribute(value=ast.Name(id=name), attr=key), attr=str(part)
-            ):
-                pass
-            case ast.Subscript(
-                value=ast.Attribute(value=ast.Name(id=name), attr=key),
-                slice=ast.Constant(value=int(part)),
-            ):
-                pass
-            case _:
-                continue
-        span = text.span(each)
-        judged = name == userdata and key not in written and each not in tried
-        if judged and not text.is_filled(span):
-            found.append((key, part, Word(span.text, span)))
-    return tuple(found)
-
-
 def _unused(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
     """The local variables that `execute` assigns and does not use, with the key of each."""
-    text = next(module.text for module, node in own.classes if function in node.body)
+    text = _text_of(own, function)
     userdata = function.args.args[1].arg
     names = [each for each in ast.walk(function) if isinstance(each, ast.Name)]
     used = {each.id for each in names if not isinstance(each.ctx, ast.Store)}

@@ -122,11 +122,18 @@ class _Reader:
         message: str,
         help: str | None,
         arguments: tuple[str, ...],
-        related: tuple[Related, ...] = (),
+        place: Span | None = None,
     ) -> None:
+        """Report a mistake: at `place` in the file that a word names, if there is one."""
         effect = NO_SCENE if word is self.scene_word else None
+        related: tuple[Related, ...] = ()
+        where = word
+        if place is not None:
+            where = Word(word.text, place)
+            if word.span.start < word.span.end:  # else a file is checked in itself
+                related = (Related(span=word.span, message="the script names the file here"),)
         self.report.append(
-            bad_robot(word, message, help, related, arguments=arguments, effect=effect)
+            bad_robot(where, message, help, related, arguments=arguments, effect=effect)
         )
 
     def file(self, word: Word) -> Source | None:
@@ -158,9 +165,8 @@ class _Reader:
             return self.simulated(read_urdf(text))
         except UrdfError as error:
             message = f"`{word.text}` does not describe a robot: {error.message}"
-            related = (Related(span=error.span, message="found here"),)
             arguments = ("urdf", word.text, error.span.text)
-            self.wrong(word, message, error.help, arguments, related)
+            self.wrong(word, message, error.help, arguments, error.span)
             return None
 
     def simulated(self, robot: Robot) -> Robot:
@@ -181,8 +187,7 @@ class _Reader:
         if tree is None:
             if len(self.report) == before:
                 message = f"`{word.text}` does not describe a {what}: the file is empty"
-                related = (Related(span=Span(source, 0, 0), message="found here"),)
-                self.wrong(word, message, None, (what, word.text, ""), related)
+                self.wrong(word, message, None, (what, word.text, ""), Span(source, 0, 0))
             return None
         try:
             return read(plain(tree)), tree
@@ -197,8 +202,7 @@ class _Reader:
         if span.source.name == self.source.name:  # a file checked in itself
             self.wrong(Word(word.text, span), message, error.help, arguments)
             return
-        related = (Related(span=span, message="found here"),)
-        self.wrong(word, message, error.help, arguments, related)
+        self.wrong(word, message, error.help, arguments, span)
 
     def scene(self, word: Word) -> tuple[tuple[Body, ...], Tree] | None:
         """The bodies of a scene, with the tree of its file."""
@@ -281,8 +285,8 @@ class _Reader:
                         )
         except UrdfError as error:
             message = f"`{data.urdf}` does not describe a robot: {error.message}"
-            related = (Related(span=error.span, message="found here"),)
-            self.wrong(word, message, error.help, ("urdf", data.urdf, error.span.text), related)
+            arguments = ("urdf", data.urdf, error.span.text)
+            self.wrong(word, message, error.help, arguments, error.span)
             return None
         except DataError as error:
             self.mistake(word, tree, error, "robot")

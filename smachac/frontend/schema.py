@@ -159,6 +159,7 @@ INTERFACE_FIELDS: Mapping[str, str] = {
     "blocking": "It waits for the outside world, so it needs a time limit.",
     "stand_in": "It takes the place of a state that does not exist yet.",
     "simulation": "Its Python code uses the simulated world.",
+    "checks_grasp": "It succeeds only if the gripper of its limb holds a body.",
     "adds_frames": "The variables that name a frame which it adds to the simulated world.",
     "code": "Its code, by language: {python: my_robot.states:Grasp}.",
 }

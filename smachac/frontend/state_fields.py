@@ -256,7 +256,13 @@ def _known_fields(
                 strays.append((word, target))
             report.append(
                 unknown_variable(
-                    word, whose, known, own=own, meant=sure, outcome=target is not None
+                    word,
+                    whose,
+                    known,
+                    own=own,
+                    meant=sure,
+                    outcome=target is not None,
+                    key=_as_key(word, entry, entries, type_),
                 )
             )
             meant.add(guesser_of((*known, *own))(word.text))
@@ -265,6 +271,27 @@ def _known_fields(
     if strays:
         read["transitions"] = (*read.get("transitions", ()), *strays)
     return read, meant
+
+
+def _as_key(word: Word, entry: Entry, entries: Entries, type_: StateType) -> str | None:
+    """How to set an input key of a state type that is written as a variable; None for others."""
+    names = {*(key.name for key in type_.input_keys), *type_.listed_inputs} - {"*"}
+    if word.text not in names:
+        return None
+    text = entry.value.span.text
+    given = text if "\n" not in text and len(text) <= LONGEST_VALUE else "..."
+    help = f"write `userdata: {{{word.text}: {given}}}`"
+    keys = entries.get("input_keys")
+    if keys is None and word.text not in type_.listed_inputs:
+        return help
+    listed_here = (
+        [] if keys is None else keys.value.span.text.replace(",", " ").strip("[]{}").split()
+    )
+    return help if word.text in listed_here else f"{help} and add `{word.text}` to its `input_keys`"
+
+
+LONGEST_VALUE = 60
+"""In characters; a longer value is not repeated in a help."""
 
 
 def _read(key: str, shape: str, entry: Entry, report: Report) -> object:
@@ -472,6 +499,10 @@ def _check_qos(tree: Tree, report: Report) -> None:
             choice = f"write one of {listed}" if entry is not None else help
             help = did_you_mean(place.span.text.strip("\"'"), fault.known) or choice
         effect = "ROS 2 has no such quality of service: the program could not use the topic"
+        policy = next((name for name, known in POLICIES.items() if value in known), None)
+        if policy is not None:
+            help = f"`{value}` is a value of `{policy}`: write `{{{policy}: {value}}}`"
+            effect = "the program could not use the topic"
         arguments = ("qos", fault.text)
         report.append(wrong_shape(place.span, fault.text, help, arguments=arguments, effect=effect))
 

@@ -148,6 +148,7 @@ def _read_interface(
         blocking=flag("blocking"),
         stand_in=flag("stand_in"),
         simulation=flag("simulation"),
+        checks_grasp=flag("checks_grasp"),
         adds_frames=_frame_variables(fields.get("adds_frames"), sections, report),
         listed_inputs=_listed_roles(sections["input_keys"], report),
         listed_outputs=_listed_roles(sections["output_keys"], report),

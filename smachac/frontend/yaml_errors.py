@@ -126,6 +126,20 @@ _VALUES_BESIDE = re.compile(r": [^\s,:{}\[\]]+ ([^\W\d]\w*)$")
 _LAMBDA = re.compile(r"lambda\b[^:{}]{0,100}$")
 """The beginning of a function without quotes, up to its colon."""
 
+_TYPE = re.compile(r"(?:(\w+): )?(list|dict|one_of|float|int)$")
+"""The beginning of a type with brackets that is not in quotes, with the key before it."""
+
+_TYPE_REST = re.compile(r"[^\n,{}]{0,100}?\](?=[\s,}?\]]|$)\??")
+
+
+def _quoted_type(found: re.Match[str], stop: _Stop) -> str:
+    """The help for a type in a mapping in braces, in which its brackets are those of a list."""
+    rest = _TYPE_REST.match(stop.text, stop.at)
+    whole = f'"{found[2]}{rest[0] if rest is not None else "[...]"}"'
+    key = f"{found[1]}: " if found[1] else ""
+    return f"put the type in quotes: `{key}{whole}`"
+
+
 _OPENING = {"]": "[", "}": "{"}
 _TOKENS = {"<stream end>": "the end of the text", "<scalar>": "text"}
 
@@ -147,6 +161,9 @@ def _open_or_stray(stop: _Stop) -> _Fault | None:
         code = _LAMBDA.search(stop.before)
         if code is not None and token in (":", "<value>"):
             help = f"put the code in quotes: `'{code[0]}: ...'`"
+        type_ = _TYPE.search(stop.before)
+        if type_ is not None and token == "[":
+            help = _quoted_type(type_, stop)
         if token == "<scalar>":
             help = f"write a `,` between two values, or close the {kind} with `{end}`"
         message = f"expected `,` or `{end}`, found {found}"

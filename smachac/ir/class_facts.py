@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from smachac.diagnostics.source import Span, Word
 
@@ -110,6 +110,21 @@ class Ending:
     silent: str = ""
 
 
+Step = tuple[Literal["attribute", "item", "each"], str | int]
+"""A step to a part of a value: the name of an attribute, an index or field in brackets, or, with an
+empty name, any item in a loop."""
+
+
+class Part(NamedTuple):
+    """A part of the value of a userdata key: the steps to it, and its text and place in the code:
+    `userdata.pose.x`, `userdata.pads[0]["at"]`, and `pad["at"]` in a loop over `userdata.pads`."""
+
+    key: str
+    steps: tuple[Step, ...]
+    text: str
+    span: Span
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassFacts:
     """Facts about the class of a state type; declarations of a script are not included.
@@ -128,9 +143,8 @@ class ClassFacts:
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
     `values` are the expressions that `execute` itself writes, each with its key. `unused` are the
     local variables that it assigns and does not use, each with the userdata key of that name.
-    `parts` are the attributes and constant indexes of userdata keys that it reads itself, each with
-    the key and its place: `userdata.pose.x`, `userdata.pose[9]`. `state_call`: the built-in
-    `State.tpl.py` makes the state.
+    `parts` are the parts of userdata keys that it reads itself: `userdata.pose.x`. `state_call`:
+    the built-in `State.tpl.py` makes the state.
     """
 
     name: Word | None = None
@@ -152,7 +166,7 @@ class ClassFacts:
     checks_stop: bool = False
     values: tuple[tuple[str, Word], ...] = ()
     unused: tuple[tuple[str, Word], ...] = ()
-    parts: tuple[tuple[str, str | int, Word], ...] = ()
+    parts: tuple[Part, ...] = ()
     state_call: StateCall | None = None
 
     @property

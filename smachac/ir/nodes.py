@@ -438,7 +438,9 @@ class StateType:
 
     Facts (docs/state_types.md): `built_in` is the name of a built-in type and empty for all others.
     `stand_in`: it takes the place of a state that does not exist yet. `simulation`: its code uses
-    the simulated world. `adds_frames`: the variables of which the first that has a value names a
+    the simulated world.
+    `checks_grasp`: it succeeds only if its gripper holds a body.
+    `adds_frames`: the variables of which the first that has a value names a
     frame that the state adds to that world; None: not known. `listed_inputs`
     and `listed_outputs` are the roles of keys that a script adds, by name; `"*"` is any other name.
     `secret_keys` are the names of the keys with `secret: true`, also of those that a script adds.
@@ -468,6 +470,7 @@ class StateType:
     built_in: str = ""
     stand_in: bool = False
     simulation: bool = False
+    checks_grasp: bool = False
     adds_frames: tuple[str, ...] | None = None
     listed_inputs: Mapping[str, KeyRole] = field(default_factory=dict)
     listed_outputs: Mapping[str, KeyRole] = field(default_factory=dict)

@@ -280,7 +280,9 @@ def interface_schema() -> Schema:
         "outcomes": {"anyOf": [outcomes, names]},
         "writes": {"type": "object", "additionalProperties": names},
         "claims": names,
-        **dict.fromkeys(("blocking", "stand_in", "simulation"), flag | {"default": False}),
+        **dict.fromkeys(
+            ("blocking", "stand_in", "simulation", "checks_grasp"), flag | {"default": False}
+        ),
         "adds_frames": names,
         "code": {"type": "object", "additionalProperties": {"anyOf": [text, class_]}},
     }

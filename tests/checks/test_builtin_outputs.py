@@ -33,12 +33,12 @@ BUILT_IN = disk_library(Path("main.yml"), [])
     ("fields", "key", "unset"),
     [
         ("template: ConditionalOutcomeState\n      output_keys: [KEY]", "outcome", ""),
-        ("template: ConditionalOutcomeState\n      output_keys: [KEY]", "level_seen", "every"),
+        ("template: ConditionalOutcomeState\n      output_keys: [KEY]", "level_seen", "never"),
         ("template: RandomOutcomeState\n      output_keys: [KEY]", "outcome", ""),
-        ("template: RandomOutcomeState\n      output_keys: [KEY]", "drawn", "every"),
+        ("template: RandomOutcomeState\n      output_keys: [KEY]", "drawn", "never"),
         ("template: RandomOutcomeState\n      output_keys: [KEY]\n"
          "      callbacks: {drawn: 'lambda ud: 1'}", "drawn", ""),
-        ("template: WaitForMsgState\n      output_keys: [KEY]", "message", "every"),
+        ("template: WaitForMsgState\n      output_keys: [KEY]", "message", "never"),
         ("template: WaitForMsgState\n      output_keys: [KEY]\n"
          "      msg_cb: 'lambda message, ud: 1'",
          "message", ""),
@@ -48,13 +48,13 @@ BUILT_IN = disk_library(Path("main.yml"), [])
         ("template: ReadTopicState\n      output_keys: [KEY]", "output", ""),
         ("template: ReadTopicState\n      output_keys: [KEY]", "output_msg", ""),
         ("template: ReadTopicState\n      output_keys: [KEY]", "AB", "every"),
-        ("template: ReadTopicState\n      output_keys: [KEY]", "seen", "every"),
+        ("template: ReadTopicState\n      output_keys: [KEY]", "seen", "never"),
         ("template: TransformMsgState\n      output_keys: [KEY]", "transform", ""),
         ("template: TransformMsgState\n      output_keys: [KEY]", "AB", "every"),
     ],
 )  # fmt: skip
 def test_what_is_set_after_a_built_in_state(fields: str, key: str, unset: str) -> None:
-    """`AB`: the key `output` is read after the outcome `aborted`."""
+    """`never`: the state never writes the key. `AB`: `output` is read after `aborted`."""
     waits = "Topic" in fields or "Msg" in fields
     if "Conditional" in fields:
         fields += "\n      input_keys: [level]\n      outcomes: [low]\n      default_outcome: high"
@@ -76,8 +76,82 @@ def test_what_is_set_after_a_built_in_state(fields: str, key: str, unset: str) -
     text = SCRIPT.format(base=base, fields=fields, key=name)
     report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
     found = [item.message for item in report if item.code == "SM301"]
-    assert [item.code for item in report if item.severity is Severity.ERROR] == (
-        ["SM301"] if unset == "every" else []
-    )
+    errors = [item.code for item in report if item.severity is Severity.ERROR]
+    if unset == "never":
+        assert errors == ["SM306"]
+        assert not found
+        return
+    assert errors == (["SM301"] if unset == "every" else [])
     path = f"on {unset} path{'s' if unset == 'some' else ''}"
     assert found == ([f"`SHOW` reads `{name}`, which is unset {path}"] if unset else [])
+
+
+NEVER = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+OUT
+userdata: {topic: /pose}
+states:
+  - SEE:
+      template: ReadTopicState
+      timeout: 2.0
+      input_keys: [topic]
+      output_keys: [KEYS]
+      MORE
+      transitions: {succeeded: done, aborted: failed, preempted: failed}
+"""
+
+
+def seen(keys: str, more: str = "doc: x", out: str = "") -> list[tuple[str, str, str | None]]:
+    text = NEVER.replace("KEYS", keys).replace("MORE", more).replace("OUT", out)
+    report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
+    return [
+        (item.code, item.span.text, item.help)
+        for item in report
+        if item.severity is not Severity.INFO and item.code.startswith("SM3")
+    ]
+
+
+def test_a_key_that_a_state_never_writes() -> None:
+    help = "write `output_keys: [msg]` and `remapping: {msg: piece}`"
+    remapped = "remapping: {message: piece}"
+    assert seen("message", remapped, "output_keys: [piece]") == [("SM306", "message", help)]
+
+
+def test_keys_that_a_state_writes() -> None:
+    for key in ("msg", "output", "output_msg", "msg_output"):
+        assert seen(key, out=f"output_keys: [{key}]") == []
+    call = "callbacks: {message: 'lambda ud: ud.topic'}"
+    assert seen("message", call, "output_keys: [message]") == []
+
+
+PUBLISH = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {msg: hello, msg_type: std_msgs/String}
+states:
+  - SAY:
+      template: PublishMsgState
+      action: start
+      topic: /alarm
+      KEYS
+      transitions: {succeeded: done, aborted: failed}
+"""
+
+
+@pytest.mark.parametrize(
+    ("keys", "more"),
+    [
+        ("input_keys: [msg, msg_type]", " and add `topic` to its `input_keys`"),
+        ("input_keys: [msg, msg_type, topic]", ""),
+        ("doc: x", ""),
+    ],
+)
+def test_an_input_key_that_is_written_as_a_variable(keys: str, more: str) -> None:
+    text = PUBLISH.replace("KEYS", keys)
+    report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
+    (found,) = [item for item in report if item.code == "SM003"]
+    help = f"`topic` is an input key: write `userdata: {{topic: /alarm}}`{more}"
+    assert (found.span.text, found.help) == ("topic", help)

@@ -11,6 +11,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
+from tests.trust.project_text import analysed
 
 SCRIPT = """
 name: sm
@@ -535,3 +536,70 @@ def test_a_helper_that_ends_without_return(tail: str, severity: Severity | None)
     for each in found:
         assert each.span.text == "judge"
         assert str(each.help).startswith("end each path of `judge` with a `return`")
+
+
+FIELDS = """
+import smach
+
+class Reader(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["done"], input_keys=["pad", "pads"])
+
+    def execute(self, userdata):
+        BODY
+        return "done"
+"""
+FIELD_FILES = {
+    "main.yml": """
+name: sm
+outcomes: [done]
+userdata: {pad: {name: a, at: [0, 0, 0]}, pads: [{name: a, at: [0, 0, 0]}]}
+states:
+  - READ: {template: Reader, transitions: {done: done}}
+""",
+    "templates/Reader.yml": "{input_keys: {pad: {type: {name: str, at: Point}}, pads: {type:"
+    " 'list[{name: str, at: Point}]'}}, outcomes: {done: {}}, code: {python: 'own:Reader'}}",
+}
+
+
+def fields_missed(body: str) -> list[tuple[str, str | None]]:
+    text = FIELDS.replace("BODY", body.replace("\n", "\n        "))
+    report = analysed(FIELD_FILES | {"own.py": text}).report
+    return [(item.span.text, item.help) for item in report if item.code == "SM311"]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        'print(userdata.pad["volume"])',
+        'print(userdata["pad"]["volume"])',
+        'print(userdata.pads[0]["volume"])',
+        'pad = userdata.pad\nprint(pad["volume"])',
+        'for pad in userdata.pads:\n    print(pad["volume"])',
+        'for k, pad in enumerate(userdata.pads):\n    print(pad["volume"])',
+        'print(sum(pad["volume"] for pad in userdata.pads))',
+    ],
+)
+def test_a_class_reads_a_field_that_a_record_lacks(body: str) -> None:
+    assert fields_missed(body) == [('"volume"', "use one of its fields: `at`, `name`")]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        'print(userdata.pad["name"], userdata.pads[0]["at"])',
+        'if "volume" in userdata.pad:\n    print(userdata.pad["volume"])',
+        'try:\n    print(userdata.pad["volume"])\nexcept KeyError:\n    pass',
+        'userdata.pad["volume"] = 1\nprint(userdata.pad["volume"])',
+        'pad = userdata.pad\npad = other()\nprint(pad["volume"])',
+        'print(userdata.pad.get("volume"))',
+        'if isinstance(userdata.pad, dict):\n    print(userdata.pad["volume"])',
+    ],
+)
+def test_a_class_reads_fields_correctly(body: str) -> None:
+    assert fields_missed(body) == []
+
+
+def test_a_misspelt_field_in_a_class() -> None:
+    (found,) = fields_missed('print(userdata.pad["nmae"])')
+    assert found == ('"nmae"', "did you mean `name`?")

@@ -356,6 +356,56 @@ def test_limbs_of_a_robot_with_two_arms() -> None:
     assert seen(grip("arm: {names: limb}", "arm: left", more="robot: baxter")) == []
 
 
+TWO_ARMS = """
+name: sm
+template: PyBulletBase
+robot: baxter
+outcomes: [done, failed]
+params: {none: null, arm: right}
+userdata: {home: [-0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.5]}
+states:
+  - MOVE: {template: MoveToJointPositionsState, LIMB remapping: {positions: home},
+      transitions: {succeeded: done, aborted: failed, preempted: failed}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("limb", "expected"),
+    [
+        ("", "MOVE"),
+        ("limb: null,", "null"),
+        ("limb: [params, none],", "null"),
+        ("limb: left,", None),
+        ("limb: [params, arm],", None),
+    ],
+)
+def test_a_state_without_a_limb_on_a_robot_with_two(limb: str, expected: str | None) -> None:
+    text = TWO_ARMS.replace("LIMB", limb)
+    found = [
+        (item.span.text, item.message, item.help)
+        for item in findings({"main.yml": text})
+        if item.code in FAULTS
+    ]
+    message = "`MOVE` names no limb, but `baxter` has two: `left` and `right`"
+    help = "write `limb: left` or `limb: right`"
+    assert found == ([(expected, message, help)] if expected is not None else [])
+    assert seen({"main.yml": text.replace("robot: baxter", "robot: panda")}) == (
+        [("SM521", "left" if "left" in limb else "right")] if expected is None else []
+    )
+
+
+@pytest.mark.parametrize(
+    ("variable", "expected"),
+    [
+        ("{names: limb, default: null}", [("SM521", "GRIP")]),
+        ("{names: limb, default: left}", []),
+        ("{type: 'list[str]', names: limb, default: null}", []),
+    ],
+)
+def test_a_type_of_the_user_without_a_limb(variable: str, expected: list[tuple[str, str]]) -> None:
+    assert seen(grip(f"arm: {variable}", more="robot: baxter")) == expected
+
+
 GRIPS = """\
 name: sm
 template: PyBulletBase

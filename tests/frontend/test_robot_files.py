@@ -93,9 +93,11 @@ def test_a_mistake_is_a_diagnostic_with_its_place(
     path = project(tmp_path, **{file.replace(".", "_"): texts[file].replace(old, new, 1)})
     (found,) = [item for item in smachac.check(path) if item.code == "SM018"]
     assert found.finding.message == f"`{file}` does not describe a {message}"
-    (related,) = found.finding.related
-    assert Path(related.span.source.name).name == file
-    assert (related.span.line, related.span.column) == place
+    span = found.finding.span
+    assert Path(span.source.name).name == file
+    assert (span.line, span.column) == place
+    (named,) = found.finding.related
+    assert (Path(named.span.source.name).name, named.span.text) == ("main.yml", file)
 
 
 def test_a_urdf_file_alone_cannot_be_simulated(tmp_path: Path) -> None:
@@ -146,8 +148,7 @@ def test_a_mistake_between_files(
     path = project(tmp_path, **{file.replace(".", "_"): text})
     found = [item.finding for item in smachac.check(path) if item.code == "SM018"]
     assert [each.message.partition("does not describe a ")[2] for each in found] == [message]
-    (related,) = found[0].related
-    span = related.span
+    span = found[0].span
     assert (Path(span.source.name).name, span.line, span.column) == place
 
 
@@ -157,6 +158,7 @@ STATION = "{name: two, parts: {near: {robot: panda}, far: {robot: arm.yml}}}"
 def test_several_robots() -> None:
     files = {"arm.yml": ARM, "arm.urdf": URDF, "two.yml": STATION}
     text = SCRIPT.format(angle="0.5", frame="near", scene="").replace("arm.yml", "two.yml")
+    text = text.replace("JointPositionsState", "JointPositionsState\n      limb: far")
     found = analyse(Source("main.yml", text), memory_library(files, BUILT_IN), [])
     assert [item.code for item in found.report] == []
     assert found.machine is not None

@@ -165,6 +165,7 @@ def unknown_variable(
     anything: bool = False,
     meant: str | None = None,
     outcome: bool = False,
+    key: str | None = None,
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -205,6 +206,13 @@ def unknown_variable(
             message=f"`{word.text}` is not a {owner.part} of {owner.text}",
             arguments=(word.text, owner.name),
             help=f"`{word.text}` is an outcome: write its transition inside `transitions:`",
+        )
+    if key is not None:
+        return Finding(
+            span=word.span,
+            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
+            arguments=(word.text, owner.name),
+            help=f"`{word.text}` is an input key: {key}",
         )
     if anything:
         return Finding(

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source, Span
+from smachac.diagnostics.wording import either
 from smachac.frontend.loader import ROS_VERSIONS, Library, Ros
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import expressions, walk
@@ -111,7 +112,11 @@ def unsupported(machine: Machine, ros: Ros) -> Iterator[Diagnostic]:
                 continue
             shown = f"`{held.name}: {value}`" if isinstance(value, str) else f"`{held.name}`"
             message = f"{shown} of {node.type} needs ROS {other}"
-            help = f"remove it, or set `ros = {other}` in the project file"
+            use = "remove it"
+            if known is not None and known.required:
+                choices = [each for each in known.type.args if needed.get(str(each)) != other]
+                use = f"write {either(f'{held.name}: {each}' for each in choices)}"
+            help = f"{use}, or set `ros = {other}` in the project file"
             place = (node.name, held.name)
             yield unsupported_by_target(held.value.span, language, message, help, place)
         for each in expressions(node):

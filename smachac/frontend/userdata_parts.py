@@ -1,0 +1,134 @@
+"""The parts of userdata keys that the Python class of a state reads."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+
+from smachac.frontend.python_source import PythonText
+from smachac.ir.class_facts import Part, Step
+
+TESTS = frozenset(["hasattr", "isinstance", "type"])
+"""Functions that test what a value is; code with one of them may handle values of every type."""
+
+
+def parts_read(text: PythonText, function: ast.FunctionDef) -> tuple[Part, ...]:
+    """The attributes, constant indexes and fields of userdata keys that `execute` reads, without
+    those of keys that it writes, of fields that it sets or tests, and without code in `try`."""
+    userdata = function.args.args[1].arg
+    every = [*ast.walk(function)]
+    tried = {inner for each in every if isinstance(each, ast.Try)
+             for line in each.body for inner in ast.walk(line)}  # fmt: skip
+    if any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
+        return ()
+    written = _written(every, userdata)
+    known = _fields_known(every)
+    names = _names(every, userdata)
+    found: list[Part] = []
+    for each in every:
+        way = _way(each, names, userdata)
+        if way is None or each in tried or not isinstance(each, ast.expr):
+            continue
+        key, steps = way
+        if not steps or steps[-1] in known or key in written:
+            continue
+        span = text.span(each)
+        if not text.is_filled(span):
+            place = span
+            if isinstance(each, ast.Subscript) and isinstance(steps[-1][1], str):
+                place = text.span(each.slice)
+            found.append(Part(key, steps, span.text, place))
+    return tuple(found)
+
+
+def _written(every: Sequence[ast.AST], userdata: str) -> frozenset[str]:
+    """The keys of userdata that the code writes or deletes."""
+    found: set[str] = set()
+    for each in every:
+        match each:
+            case ast.Attribute(value=ast.Name(id=name), attr=key, ctx=ast.Store() | ast.Del()):
+                found.update([key] if name == userdata else ())
+            case ast.Subscript(
+                value=ast.Name(id=name),
+                slice=ast.Constant(value=str(key)),
+                ctx=ast.Store() | ast.Del(),
+            ):
+                found.update([key] if name == userdata else ())
+    return frozenset(found)
+
+
+Way = tuple[str, tuple[Step, ...]]
+"""A key of userdata, and the steps to a part of its value."""
+
+
+def _fields_known(every: Sequence[ast.AST]) -> frozenset[Step]:
+    """The fields that the code sets, or for which it tests a mapping."""
+    found: set[Step] = set()
+    for each in every:
+        match each:
+            case ast.Subscript(slice=ast.Constant(value=str(name)), ctx=ast.Store() | ast.Del()):
+                found.add(("item", name))
+            case ast.Compare(left=ast.Constant(value=str(name)), ops=[ast.In() | ast.NotIn()]):
+                found.add(("item", name))
+    return frozenset(found)
+
+
+def _names(every: Sequence[ast.AST], userdata: str) -> Mapping[str, Way]:
+    """The local names that are bound once, to a part of userdata or to each item of one."""
+    bound = Counter(each.id for each in every if isinstance(each, ast.Name) and not _is_read(each))
+    bound.update(each.arg for each in every if isinstance(each, ast.arg))
+    names: dict[str, Way] = {}
+    # An outer loop comes before an inner one, and `ast.walk` gives it first.
+    for each in every:
+        for target, value, more in _bindings(each):
+            way = _way(value, names, userdata)
+            if isinstance(target, ast.Name) and bound[target.id] == 1 and way is not None:
+                names[target.id] = (way[0], (*way[1], *more))
+    return names
+
+
+def _bindings(node: ast.AST) -> Iterator[tuple[ast.expr, ast.expr, tuple[Step, ...]]]:
+    """The targets of an assignment or a loop, each with the value and the steps to its part."""
+    match node:
+        case ast.Assign(targets=[target], value=value):
+            yield target, value, ()
+        case ast.For(target=target, iter=items) | ast.comprehension(target=target, iter=items):
+            match target, items:
+                case ast.Tuple(elts=[_, item]), ast.Call(
+                    func=ast.Name(id="enumerate"), args=[value, *_]
+                ):
+                    yield item, value, (("each", ""),)
+                case _, ast.Call(func=ast.Name(id="reversed" | "sorted" | "list"), args=[value]):
+                    yield target, value, (("each", ""),)
+                case _:
+                    yield target, items, (("each", ""),)
+
+
+def _way(node: ast.AST, names: Mapping[str, Way], userdata: str) -> Way | None:
+    """The part of userdata that code reads; None for other code."""
+    steps: list[Step] = []
+    while True:
+        match node:
+            case ast.Attribute(value=ast.Name(id=name), attr=key, ctx=ast.Load()) if (
+                name == userdata
+            ):
+                return key, tuple(reversed(steps))
+            case ast.Attribute(value=value, attr=name, ctx=ast.Load()):
+                steps.append(("attribute", name))
+            case ast.Subscript(value=value, slice=ast.Constant(value=step), ctx=ast.Load()) if (
+                isinstance(step, str | int) and not isinstance(step, bool)
+            ):
+                if isinstance(value, ast.Name) and value.id == userdata:
+                    return (step, tuple(reversed(steps))) if isinstance(step, str) else None
+                steps.append(("item", step))
+            case ast.Name(id=name) if name in names and _is_read(node):
+                key, first = names[name]
+                return key, (*first, *reversed(steps))
+            case _:
+                return None
+        node = value
+
+
+def _is_read(node: ast.Name) -> bool:
+    return isinstance(node.ctx, ast.Load)
