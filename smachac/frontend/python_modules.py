@@ -72,7 +72,10 @@ class OwnClass:
         """The attributes of the object that its methods assign: `self.name = value`."""
         found: dict[str, list[tuple[Module, ast.expr | None, Span]]] = {}
         for module, node in self.classes:
+            others = of_other_objects(node)
             for method in ast.walk(node):
+                if method in others:
+                    continue
                 if isinstance(method, ast.Assign | ast.AnnAssign | ast.AugAssign):
                     targets = method.targets if isinstance(method, ast.Assign) else [method.target]
                     value = None if isinstance(method, ast.AugAssign) else method.value
@@ -87,6 +90,21 @@ class OwnClass:
 
 def _is_self(node: ast.expr) -> bool:
     return isinstance(node, ast.Name) and node.id == "self"
+
+
+def of_other_objects(node: ast.ClassDef) -> set[ast.AST]:
+    """The nodes in a class whose `self` is another object: those of inner classes, and of functions
+    in a method that have a parameter of this name."""
+    found: set[ast.AST] = set()
+    methods = ast.FunctionDef | ast.AsyncFunctionDef
+    own = {each for each in node.body if isinstance(each, methods)}
+    for each in ast.walk(node):
+        inner = each is not node and isinstance(each, ast.ClassDef)
+        if isinstance(each, methods | ast.Lambda) and each not in own:
+            inner = any(arg.arg == "self" for arg in ast.walk(each.args) if isinstance(arg, ast.arg))
+        if inner and each not in found:
+            found.update(ast.walk(each))
+    return found
 
 
 def template_module(source: Source) -> Module | None:
