@@ -166,12 +166,13 @@ def _wrong_returns(
             near = near or _without_tuple(word.text, outcomes)
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
+            returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
-                span=word.span,
+                span=ending.defined or word.span,
                 message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
-                help=near or f"{known}{'' if ending.possible else _or_declare(word, leaf)}",
-                related=_used_here(leaf),
+                help=near or f"{known}{'' if ending.possible else _or_declare(ending, leaf)}",
+                related=(*(returned if ending.defined else ()), *_used_here(leaf)),
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
@@ -217,13 +218,14 @@ def _open_end(facts: ClassFacts) -> tuple[Related, ...]:
     return other_place(end.span, END_OF_EXECUTE[end.text])
 
 
-def _or_declare(word: Word, leaf: Leaf) -> str:
-    """The part of a help that adds a returned word to the outcomes of its type."""
+def _or_declare(ending: Ending, leaf: Leaf) -> str:
+    """The part of a help that adds a returned word to the outcomes of its type. A constant that has
+    a name is usually in `__init__` too."""
+    word = ending.outcome
     if not word.text.isidentifier() or word.text in ("None", "True", "False"):
         return ""
-    return (
-        f", or add `{word.text}` to the outcomes of `{leaf.type}` in its interface and `__init__`"
-    )
+    where = "its interface" if ending.defined else "its interface and `__init__`"
+    return f", or add `{word.text}` to the outcomes of `{leaf.type}` in {where}"
 
 
 def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
@@ -232,6 +234,10 @@ def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
     if near is not None:
         return near
     near = guess(word)
+    if (
+        near is not None and len(word) > 3 and near.startswith(word)
+    ):  # a form of the same word: slip, slipped
+        return near
     if not is_failure(word):
         return near if near is None or not fails(leaf, near) else None
     if near is not None and fails(leaf, near):
@@ -306,14 +312,19 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
     for path, leaf, facts in leaves_by_type(context, declared=True):
         inputs, outputs = names.get(leaf.type, _own_names(leaf))[1:]
         unknown = {word.text for word in facts.reads}.difference(inputs)
+        written = {word.text for word in facts.writes}
+        sure = facts.endings and all(each.written is not None for each in facts.endings)
         for word in _first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
             what = "only an input key" if only else "not an output key of its interface"
-            guess = None if only else did_you_mean(guesser(outputs)(word.text))
+            unset = [key for key in outputs if key not in written and key not in inputs]
+            near = guesser(unset if only else outputs)(word.text)
+            guess = did_you_mean(near)
+            never = f", and `{near}` is never set" if near in unset and sure else ""
             yield Finding(
                 span=word.span,
                 message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
-                " is discarded",
+                f" is discarded{never}",
                 arguments=(word.text,),
                 help=guess
                 or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`",

@@ -27,6 +27,7 @@ from smachac.frontend.class_slips import (
 )
 from smachac.frontend.loader import Library
 from smachac.frontend.python_flow import Flow, Flows, is_plain
+from smachac.frontend.python_imports import missing_imports
 from smachac.frontend.python_modules import (
     Module,
     OwnClass,
@@ -110,7 +111,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
     own = with_bases(module, node, library)
     lists = _declared(module.text, node)
     whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
-    undefined = (*_undefined(own, lists),) if whole else ()
+    undefined = (*_undefined(own, lists, library),) if whole else ()
     flow, execute, place = _execute(own, library)
     if execute is not None and any(_is_userdata(each, execute) for each in undefined):
         flow = Flow()  # its code uses another name for the userdata
@@ -211,11 +212,19 @@ def _unused(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word],
     )
 
 
-def _undefined(own: OwnClass, lists: dict[str, Words | None] | None) -> Iterator[ClassFault]:
+def _undefined(
+    own: OwnClass, lists: dict[str, Words | None] | None, library: Library
+) -> Iterator[ClassFault]:
     """The names and attributes that nothing defines, and other slips in the code."""
+    modules = {module.name: module for module, _ in own.classes if module.name}.values()
+    imports = [each for module in modules
+               for each in missing_imports(module, library)]  # fmt: skip
+    yield from imports
+    absent = {each.name.text for each in imports}
     names = {key: [word.text for word in words or ()] for key, words in (lists or {}).items()}
     for module, node in own.classes:
-        yield from undefined_names(own, module, node, names)
+        found = undefined_names(own, module, node, names)
+        yield from (each for each in found if each.near not in absent)
     yield from undefined_methods(own)
     yield from undefined_in_base(own)
     yield from slips(own)
@@ -360,7 +369,25 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
         )
         for each in ast.walk(owner)
     )
-    return [] if calls else [_at_method("no constructor call", *found)]
+    return [] if calls else [_without_call(own, *found)]
+
+
+def _without_call(own: OwnClass, module: Module, maker: ast.FunctionDef) -> ClassFault:
+    """The fault of a constructor that does not call that of its base class, with the call where it
+    is one of the user's classes."""
+    at = next(index for index, (_, node) in enumerate(own.classes) if maker in node.body)
+    bases = [names["__init__"][-1] for names in own.names[at + 1 :] if "__init__" in names]
+    if not bases or not isinstance(bases[0], ast.FunctionDef):
+        return _at_method("no constructor call", module, maker)
+    taken, known = bases[0].args, {each.arg for each in maker.args.args[1:]}
+    positional = [*taken.posonlyargs, *taken.args]
+    required = positional[1 : len(positional) - len(taken.defaults)]
+    required += [each for each, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+                 if default is None]  # fmt: skip
+    given = [f"{each.arg}={each.arg if each.arg in known else '...'}" for each in required]
+    name = Word(maker.name, name_span(module.text, maker))
+    near = f"super().__init__({', '.join(given)})"
+    return ClassFault(kind="no base constructor call", name=name, near=near)
 
 
 def _data_class_fault(module: Module, node: ast.ClassDef) -> Iterator[ClassFault]:

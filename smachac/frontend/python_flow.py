@@ -16,8 +16,8 @@ from smachac.frontend.class_names import compared
 from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_constants import entries, member, table
-from smachac.frontend.python_modules import Module, OwnClass, constant, find_function
-from smachac.frontend.python_source import name_span
+from smachac.frontend.python_modules import Module, OwnClass, constant_node, find_function
+from smachac.frontend.python_source import PythonText, name_span
 from smachac.frontend.skipped_writes import Paths, SkippedWrites
 from smachac.ir.class_facts import Ending
 
@@ -460,9 +460,7 @@ class _Reader:
             case ast.Name(id=name):
                 return self._named(name, span, before)
             case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner == self.own_name:
-                bound = [names for names in self.flows.own.names if name in names]
-                text = constant(bound[0], name) if bound else None
-                return name not in self.flows.assigned and self._add(text, span, before)
+                return name not in self.flows.assigned and self._of_class(name, span, before)
             case ast.Attribute(value=ast.Name(id=owner), attr=name):
                 return not self._is_local(owner) and self._member(owner, name, span, before)
             case ast.Attribute(
@@ -480,11 +478,28 @@ class _Reader:
                 return self._add(ast.unparse(value), span, before)
         return False
 
-    def _add(self, text: str | None, span: Span, before: Keys) -> bool:
+    def _add(self, text: str | None, span: Span, before: Keys, defined: Span | None = None) -> bool:
         """Adds the ending with a constant, if it is known."""
         if text is not None:
-            self.endings.append(Ending(outcome=Word(text, span), written=before))
+            ending = Ending(outcome=Word(text, span), written=before, defined=defined)
+            self.endings.append(ending)
         return text is not None
+
+    def _of_class(self, name: str, span: Span, before: Keys) -> bool:
+        """As `_constants` for a constant of the class, `self.FOUND`."""
+        own = self.flows.own
+        for (module, _), names in zip(own.classes, own.names, strict=True):
+            if name in names:
+                return self._defined(module.text, constant_node(names, name), span, before)
+        return False
+
+    def _defined(
+        self, text: PythonText, node: ast.Constant | None, span: Span, before: Keys
+    ) -> bool:
+        """Adds the ending with a constant that has a name, if it is known."""
+        if node is None:
+            return False
+        return self._add(str(node.value), span, before, text.span(node))
 
     def _member(self, owner: str, name: str, span: Span, before: Keys) -> bool:
         """As `_constants` for a constant of a class, `Result.GOOD`. A member of an enumeration is
@@ -530,7 +545,7 @@ class _Reader:
         if other:
             return False
         if not stores:
-            return self._add(constant(self.module.names, name), span, before)
+            return self._defined(self.text, constant_node(self.module.names, name), span, before)
         given = [(_targets(each), each.value) for each in self.nodes
                  if isinstance(each, ast.Assign | ast.AnnAssign)]  # fmt: skip
         values = [value for targets, value in given for each in targets if each in stores]

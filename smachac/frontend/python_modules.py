@@ -101,7 +101,9 @@ def of_other_objects(node: ast.ClassDef) -> set[ast.AST]:
     for each in ast.walk(node):
         inner = each is not node and isinstance(each, ast.ClassDef)
         if isinstance(each, methods | ast.Lambda) and each not in own:
-            inner = any(arg.arg == "self" for arg in ast.walk(each.args) if isinstance(arg, ast.arg))
+            inner = any(
+                arg.arg == "self" for arg in ast.walk(each.args) if isinstance(arg, ast.arg)
+            )
         if inner and each not in found:
             found.update(ast.walk(each))
     return found
@@ -313,11 +315,17 @@ def _imports(node: ast.AST, name: str) -> set[str]:
 
 def constant(names: Names, name: str) -> str | None:
     """The text that a name is bound to, if it is bound once, and to a text."""
+    node = constant_node(names, name)
+    return str(node.value) if node is not None else None
+
+
+def constant_node(names: Names, name: str) -> ast.Constant | None:
+    """The text that a name is bound to, as `constant`, in the tree."""
     match names.get(name, ()):
-        case (ast.Assign(targets=[ast.Name()], value=ast.Constant(str() as text)),):
-            return text
-        case (ast.AnnAssign(value=ast.Constant(str() as text)),):
-            return text
+        case (ast.Assign(targets=[ast.Name()], value=ast.Constant(str()) as node),):
+            return node
+        case (ast.AnnAssign(value=ast.Constant(str()) as node),):
+            return node
     return None
 
 

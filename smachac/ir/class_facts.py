@@ -10,6 +10,8 @@ from smachac.diagnostics.source import Span, Word
 FaultKind = Literal[
     "no module",
     "no class",
+    "no imported module",
+    "no imported name",
     "syntax",
     "no state",
     "no execute",
@@ -17,6 +19,7 @@ FaultKind = Literal[
     "coroutine",
     "arguments",
     "no constructor call",
+    "no base constructor call",
     "no outcomes",
     "data class",
     "self twice",
@@ -27,6 +30,7 @@ FaultKind = Literal[
     "no parameter",
     "required parameter",
     "other parameter",
+    "renamed parameter",
     "no such parameter",
     "missing argument",
     "no outcome",
@@ -66,12 +70,13 @@ class ClassFault:
     """A certain fault in the structure of a class, at the name that it is about.
 
     For `syntax`, the text of `name` is the message of the parser. `near` is the name that was
-    probably meant.
+    probably meant. `file` is the module that lacks the name.
     """
 
     kind: FaultKind
     name: Word
     near: str | None = None
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +93,8 @@ class Ending:
     None: not known. `possible`: an entry of a table, which may be one that is never used, or a path
     that may be impossible. `meant` is the expression that was probably meant; `silent` the helper
     that ends without `return`, and so returns None. `skipped` are the keys that a path to it does
-    not set, each with the place that leads past the assignment (frontend/skipped_writes.py)."""
+    not set, each with the place that leads past the assignment (frontend/skipped_writes.py).
+    `defined` is the place of the text of a constant that has a name in the code."""
 
     outcome: Word
     written: frozenset[str] | None = None
@@ -96,6 +102,7 @@ class Ending:
     skipped: tuple[tuple[str, Word], ...] = ()
     meant: str | None = None
     silent: str = ""
+    defined: Span | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

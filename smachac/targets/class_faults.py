@@ -31,6 +31,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`__init__` of `{name}` does not call `__init__` of `smach.State`",
         "write `super().__init__({lists})` as the first line of `__init__`",
     ),
+    "no base constructor call": (
+        "`__init__` of `{name}` does not call `__init__` of its base class",
+        "write `{near}` as the first line of `__init__`",
+    ),
     "no outcomes": (
         "the class `{name}` has no `__init__`, so the state has no outcomes",
         "add `def __init__(self):` with the line `super().__init__({lists})`",
@@ -198,6 +202,11 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " `{near}`",
         "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
     ),
+    "renamed parameter": (
+        "`__init__` of `{name}` has the parameter `{word}`, but the variable of the interface"
+        " `{type}` is `{near}`",
+        "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
+    ),
     "no such parameter": (
         "`__init__` of `{name}` does not accept `{word}`, which is set here",
         "add the parameter `{word}` to `__init__`, or remove it here",
@@ -259,6 +268,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no method": "SMACH needs the name of an outcome: the machine stops with an error",
     "coroutine": "SMACH needs the name of an outcome: the machine stops with an error",
     "no constructor call": "the outcomes and keys of the state are missing: the program stops",
+    "no base constructor call": "what the base class sets is missing, also the outcomes and keys:"
+    " the program stops",
     "no comma": "SMACH knows the joined name only: the machine stops with an error",
     "no argument": "the call raises a TypeError when the program makes the state",
     "no state class": "the definition of the class raises an error when the program starts",
@@ -266,6 +277,7 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no parameter": _PASSED,
     "no such parameter": _PASSED,
     "other parameter": _PASSED,
+    "renamed parameter": _PASSED,
     "required parameter": _CALLED,
     "missing argument": _CALLED,
 }
@@ -281,6 +293,8 @@ WRITTEN = frozenset[FaultKind](
         "no number",
         "skipped output",
         "other parameter",
+        "renamed parameter",
+        "no base constructor call",
         "other class",
         "other userdata",
         "lost userdata",

@@ -378,14 +378,16 @@ def defined_twice(
 def code_not_found(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
 ) -> Finding:
-    """The class that an interface names as the code of a state type does not exist, or its file
-    cannot be parsed.
+    """The class that an interface names as the code of a state type does not exist, its file cannot
+    be parsed, or an import in it or in a template fails.
 
     The generated program stops when it starts.
 
-    Exactly: a module is missing if the folder of its package has other modules, or if a module
-    with nearly the same name exists. Other modules can be installed packages, which are not
-    searched. `check` reports a warning; a build for the language of the class fails.
+    Exactly: of a class, its module and those of its base classes are read, of a template the block
+    `imports`; there, imports of modules of the project are checked. A module is missing if the
+    folder of its package has other modules, or if a module with nearly the same name exists. Other
+    modules can be installed packages, which are not searched. `check` reports a warning; a build
+    for the language of the class fails.
 
     Wrong:
         name: sm
@@ -438,6 +440,12 @@ def code_not_found(
     elif fault.kind == "no module":
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
         help = near or f"correct the name {interface}, or create the {file}"
+    elif fault.kind == "no imported module":
+        message = f"no module `{word.text}` exists, which is imported here"
+        help = near or "correct the name, or create the module"
+    elif fault.kind == "no imported name":
+        message = f"`{fault.file}` has no `{word.text}`, which is imported from it"
+        help = near or f"correct the name, or define it in `{fault.file}`"
     else:
         message = f"no class `{word.text}` is defined in the {file} that `{state_type}` names"
         help = near or f"correct the name {interface}, or define the class"

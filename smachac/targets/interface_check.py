@@ -27,8 +27,8 @@ from smachac.targets.errors import (
     stale_code,
 )
 
-NOT_FOUND = ("no module", "no class", "syntax")
-"""The kinds of faults for which there is no class (SM608)."""
+NOT_FOUND = ("no module", "no class", "syntax", "no imported module", "no imported name")
+"""The kinds of faults of code that does not exist (SM608)."""
 
 Words = tuple[Word, ...]
 
