@@ -25,6 +25,7 @@ from smachac.frontend.class_slips import (
     unknown_argument,
     wrong_base,
 )
+from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
 from smachac.frontend.python_flow import Flow, Flows, is_plain
 from smachac.frontend.python_imports import missing_imports
@@ -225,6 +226,7 @@ def _undefined(
     for module, node in own.classes:
         found = undefined_names(own, module, node, names)
         yield from (each for each in found if each.near not in absent)
+        yield from missing_attributes(module, node, library)
     yield from undefined_methods(own)
     yield from undefined_in_base(own)
     yield from slips(own)

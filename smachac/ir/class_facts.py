@@ -53,6 +53,7 @@ FaultKind = Literal[
     "no import",
     "wrong import",
     "undefined method",
+    "no attribute",
     "unset attribute",
     "no list",
     "no comma",

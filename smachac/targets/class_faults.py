@@ -97,6 +97,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "neither `{name}` nor `smach.State` defines `{word}`: Python stops here",
         "define `{word}` in the class, or correct the name",
     ),
+    "no attribute": (
+        "the module `{file}` of Python has no `{word}`: Python stops here",
+        "correct the name",
+    ),
     "unset attribute": (
         "`self.{word}` of `{name}` is never set: Python stops here",
         "write `self.{word} = {word}` in `__init__`",
@@ -237,6 +241,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
     "undefined name": "",
     "undefined method": "",
+    "no attribute": "",
     "unset attribute": "",
     "no import": "",
     "other scope": "",
@@ -315,7 +320,14 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
     """The message and the help for a fault of a class. `lists` are the arguments of the constructor
     of `smach.State` that fit the interface."""
     message, help = (
-        text.format(word=fault.name.text, name=name, type=state_type, lists=lists, near=fault.near)
+        text.format(
+            word=fault.name.text,
+            name=name,
+            type=state_type,
+            lists=lists,
+            near=fault.near,
+            file=fault.file,
+        )
         for text in WORDS[fault.kind]
     )
     near = fault.near
@@ -327,6 +339,8 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         what = f"rename the parameter `{near}` to `{fault.name.text}`"
         return message, f"{what}, or correct the name in the interface"
     written = fault.kind == "no list" or near.startswith('"') or "." in near
+    if fault.kind == "no attribute":
+        written = near.endswith(")")
     return message, f"write `{near}`" if written else f"did you mean `{near}`?"
 
 

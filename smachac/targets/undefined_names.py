@@ -20,8 +20,15 @@ from smachac.diagnostics.diagnostic import Diagnostic, Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.script import NameFix, undefined_name
+from smachac.frontend.library_names import (
+    MODULES,
+    attributes,
+    is_shadowed,
+    missing_name,
+    only_imported,
+)
 from smachac.frontend.loader import Library
-from smachac.ir.code_places import node_place, python_tree
+from smachac.ir.code_places import attribute_place, node_place, python_tree
 from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
@@ -72,6 +79,7 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
                     base=machine.base,
                     own=own_base,
                 )
+    yield from _missing_attributes(context, library)
     for word in classes:
         if known is not None and word.text not in known:
             package = _PACKAGES.get(word.text, "my_messages")
@@ -82,6 +90,46 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
                 example = _EXAMPLES.get(word.text, "TYPE")
                 help = f"write the type as well, as in `{word.text}/{example}`"
             yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
+
+
+def _missing_attributes(context: Context, library: Library) -> Iterator[Diagnostic]:
+    """The attributes of modules of Python's library that these do not have."""
+    machine = context.machine
+    found = [*context.at_states(_attributes_used, machine.state_types)]
+    if not found:
+        return
+    from smachac.targets.python.template_sources import template_sources
+
+    sources = template_sources(machine, library)
+    texts = [source.text for file, source in sources if library.own_template(file) is not None]
+    for code, module, node, meant in found:
+        if only_imported(module, texts) and not is_shadowed(module, library):
+            help = "correct the name"
+            if meant:
+                help = f"write `{meant}`" if meant.endswith(")") else f"did you mean `{meant}`?"
+            why = f"the module `{module}` of Python has no `{node.attr}`"
+            effect = "Python would stop at this name with an AttributeError"
+            place = attribute_place(code, node)
+            fix = NameFix(help, why)
+            yield undefined_name(place, node.attr, code.text, False, fix, effect=effect)
+
+
+def _attributes_used(
+    _: str, node: Node, types: Mapping[str, StateType]
+) -> Iterator[tuple[Expression, str, ast.Attribute, str]]:
+    """The attributes that modules of the library do not have, with what is probably meant."""
+    if isinstance(node, Leaf) and not node.type:
+        return
+    keys = {key.name for key in node.inputs}
+    for code in _codes(node, types):
+        likely = any(f"{name}." in code.text for name in MODULES)
+        tree = python_tree(code.text) if likely else None
+        used = [*attributes(tree)] if tree is not None else []
+        free = {name.id for name in free_in(code.text)} - keys if used else set()
+        for module, each in used:
+            meant = missing_name(module, each.attr) if module.partition(".")[0] in free else None
+            if meant is not None:
+                yield code, module, each, meant
 
 
 def _names_used(_: str, node: Node, types: Mapping[str, StateType]) -> Iterator[_Use]:
