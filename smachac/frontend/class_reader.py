@@ -25,6 +25,12 @@ from smachac.frontend.class_slips import (
     unknown_argument,
     wrong_base,
 )
+from smachac.frontend.class_values import (
+    loops,
+    lost_results,
+    texts_as_lists,
+    written_values,
+)
 from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
 from smachac.frontend.python_flow import Flow, Flows, is_plain
@@ -134,32 +140,11 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         writes=flow.writes,
         stub=execute is not None and all(map(_does_nothing, execute.body)),
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
-        values=_values(own, execute) if execute is not None and flow.writes else (),
+        values=written_values(own, execute, library) if execute is not None else (),
         unused=_unused(own, execute) if execute is not None else (),
+        loops=loops(own) if whole else (),
         parts=_parts(own, execute) if execute is not None and flow.reads else (),
     )
-
-
-def _values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
-    """The expressions that `execute` itself writes to userdata keys: `userdata.key = value`."""
-    text = next(module.text for module, node in own.classes if function in node.body)
-    userdata = function.args.args[1].arg
-    found = []
-    for node in ast.walk(function):
-        if not isinstance(node, ast.Assign) or len(node.targets) != 1:
-            continue
-        value = node.value
-        match node.targets[0]:
-            case ast.Attribute(value=ast.Name(id=name), attr=key):
-                pass
-            case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=str(key))):
-                pass
-            case _:
-                continue
-        span = text.span(value)
-        if name == userdata and not text.is_filled(span):
-            found.append((key, Word(span.text, span)))
-    return tuple(found)
 
 
 def _parts(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, str | int, Word], ...]:
@@ -230,6 +215,8 @@ def _undefined(
     yield from undefined_methods(own)
     yield from undefined_in_base(own)
     yield from slips(own)
+    yield from lost_results(own)
+    yield from texts_as_lists(own)
 
 
 def _is_userdata(fault: ClassFault, execute: ast.FunctionDef) -> bool:

@@ -549,6 +549,9 @@ class _Reader:
         given = [(_targets(each), each.value) for each in self.nodes
                  if isinstance(each, ast.Assign | ast.AnnAssign)]  # fmt: skip
         values = [value for targets, value in given for each in targets if each in stores]
+        match values:
+            case [ast.Call() as call] if len(stores) == 1 and not self._is_examined(name):
+                return self._results(call, before)
         found = [one for value in values if value is not None for one in alternatives(value)]
         texts = [isinstance(each, ast.Constant) and isinstance(each.value, str) for each in found]
         if len(values) != len(stores) or None in values or not all(texts):
@@ -564,6 +567,10 @@ class _Reader:
         every = [each.arg for each in self.nodes if isinstance(each, ast.arg)]
         if own.count(name) != 1 or every.count(name) != 1 or name in (self.own_name, self.userdata):
             return False
+        return not self._is_examined(name)
+
+    def _is_examined(self, name: str) -> bool:
+        """Whether a condition or a look-up of the function depends on a name."""
         tests: list[ast.AST] = []
         for node in self.nodes:
             match node:
@@ -576,7 +583,7 @@ class _Reader:
                 case ast.Call(func=ast.Attribute(attr="get" | "pop")):
                     tests.append(node)
         names = (each for test in tests for each in ast.walk(test) if isinstance(each, ast.Name))
-        return all(each.id != name for each in names)
+        return any(each.id == name for each in names)
 
     def _results(self, call: ast.Call, before: Keys) -> bool:
         """As `_constants` for what a method or function of the user returns."""

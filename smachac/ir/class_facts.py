@@ -57,6 +57,8 @@ FaultKind = Literal[
     "unset attribute",
     "no list",
     "no comma",
+    "no tuple",
+    "no result",
     "no argument",
     "no state class",
     "not called",
@@ -122,7 +124,9 @@ class ClassFacts:
     kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`.
     `reads` and `writes` are the userdata keys that it accesses, each at its name.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
-    `values` are the expressions that `execute` itself writes, each with its key. `unused` are the
+    `values` are the expressions that the class writes, each with its key; of a call of a function,
+    also the texts that it returns. `loops` are the attributes that it loops over, each with the
+    parameter of the constructor that it is. `unused` are the
     local variables that it assigns and does not use, each with the userdata key of that name.
     `parts` are the attributes and constant indexes of userdata keys that it reads itself, each with
     the key and its place: `userdata.pose.x`, `userdata.pose[9]`.
@@ -148,6 +152,7 @@ class ClassFacts:
     values: tuple[tuple[str, Word], ...] = ()
     unused: tuple[tuple[str, Word], ...] = ()
     parts: tuple[tuple[str, str | int, Word], ...] = ()
+    loops: tuple[tuple[str, Word], ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

@@ -113,6 +113,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "a comma is missing: Python joins the two texts to `{word}`",
         "write `{near}`",
     ),
+    "no tuple": (
+        "`{word}` is a text, but `{name}` uses it as a list of names: only a comma makes a tuple",
+        "write `{near}`",
+    ),
+    "no result": (
+        "`{word}` changes a collection and returns None: the variable becomes None",
+        "write `{near}`",
+    ),
     "no argument": (
         "`smach.State.__init__` has no argument `{word}`",
         "its arguments are `outcomes`, `input_keys`, `output_keys` and `io_keys`",
@@ -233,6 +241,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "no effect",
         "identity",
         "comparison",
+        "no result",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -242,6 +251,8 @@ EFFECTS: Mapping[FaultKind, str] = {
     "undefined name": "",
     "undefined method": "",
     "no attribute": "",
+    "no result": "",
+    "no tuple": "each letter of the text counts as a name",
     "unset attribute": "",
     "no import": "",
     "other scope": "",
@@ -306,6 +317,8 @@ WRITTEN = frozenset[FaultKind](
         "no self parameter",
         "wrong import",
         "no comma",
+        "no tuple",
+        "no result",
         "no state class",
         "not called",
         "no effect",
