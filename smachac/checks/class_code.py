@@ -185,7 +185,7 @@ def _wrong_returns(
             arguments=(leaf.type,),
             help=f"write `return {alone.span.text}`"
             if alone
-            else f"end each path with a `return`; {known}",
+            else f"{_after_loop(facts)}end each path with a `return`; {known}",
             related=(*_open_end(facts), *_used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
@@ -199,6 +199,13 @@ def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> Word | None:
         return None
     outcome = end.span.text.strip("'\"")
     return Word(outcome, end.span) if outcome in outcomes else None
+
+
+def _after_loop(facts: ClassFacts) -> str:
+    """The part of a help about a `return` at the end of a loop behind which there is none."""
+    if facts.in_loop is None or facts.always_silent:
+        return ""
+    return f"move `{facts.in_loop.span.text}` behind the loop if it is meant there; otherwise "
 
 
 END_OF_EXECUTE = {
@@ -439,11 +446,14 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
 
 
 def _local(path: str, leaf: Leaf, key: str, meant: Word) -> Finding:
-    """The finding on a local variable with the name of an output key that is not set."""
+    """The finding on a local variable or an attribute of `self` with the name of an output key that
+    is not set."""
+    kept = meant.span.text.startswith("self.")
+    what = "an attribute of the object" if kept else "a local variable"
     return Finding(
         span=meant.span,
-        message=f"`{key}` is a local variable here: the output key `{key}` of `{leaf.type}` is not"
-        " set",
+        message=f"`{meant.span.text}` is {what} here: the output key `{key}` of `{leaf.type}` is"
+        " not set",
         arguments=(leaf.type, key),
         help=f"write `{meant.text}`",
         related=_used_here(leaf),
@@ -610,5 +620,6 @@ def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
         arguments=(leaf.type, outcome),
         help=help,
         related=(*other_place(place, f"`{outcome}` is declared here"), *_used_here(leaf)),
+        effect="the robot goes on until the state ends by itself" if outcome == PREEMPTED else None,
         node=path,
     )

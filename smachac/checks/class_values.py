@@ -19,9 +19,10 @@ from smachac.analysis.type_lattice import (
     widened,
 )
 from smachac.checks.class_code import leaves_by_type
-from smachac.checks.messages import other_place
+from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.type_words import HELP, example, in_words
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.spelling import guesser
 from smachac.ir.nodes import Data, Struct
 from smachac.ir.types import Type
 
@@ -50,7 +51,8 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 message=f"`{leaf.type}` writes {in_words(given)} to `{name}`, but its interface"
                 f" declares `{name}` as `{key.type}`",
                 arguments=(name, str(widened(given)), str(key.type), "class"),
-                help=HELP.get(present(key.type).name)
+                help=_plain_help(written.text, key.type)
+                or HELP.get(present(key.type).name)
                 or f"write a value of the type `{key.type}`{such}, or correct the interface",
                 related=(
                     *other_place(key.span, f"the interface declares `{name}`"),
@@ -58,6 +60,18 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 ),
                 node=path,
             )
+
+
+def _plain_help(text: str, type_: Type) -> str | None:
+    """The help for a choice that is one slip away, and for a value in a needless `str()`."""
+    wanted = present(type_)
+    node = ast.parse(f"({text})", mode="eval").body
+    match node:
+        case ast.Constant(value=str(word)) if wanted.name == "one_of":
+            return did_you_mean(guesser([str(each) for each in wanted.args])(word))
+        case ast.Call(func=ast.Name(id="str" | "repr"), args=[ast.Name(id=name)], keywords=[]):
+            return f"write `{name}` without `str()`" if wanted.name in ("int", "float") else None
+    return None
 
 
 def none_writes(context: Context) -> Iterator[Finding]:

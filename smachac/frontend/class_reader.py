@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -39,6 +40,7 @@ from smachac.frontend.python_modules import (
     Module,
     OwnClass,
     absent_module,
+    file_of,
     find_class,
     is_smach_state,
     load_module,
@@ -99,7 +101,8 @@ def read_module(word: Word, library: Library) -> ClassFacts | None:
             return ClassFacts(faults=(module,)) if module is not None else None
         found = find_class(module, name, library)
         if isinstance(found, ClassFault):
-            return ClassFacts(faults=(_at_the_name(found, word),))
+            fault = replace(found, file=file_of(module))
+            return ClassFacts(faults=(_at_the_name(fault, word),))
         return _facts(*found, library) if found is not None else None
     except (RecursionError, MemoryError, ValueError):
         return None
@@ -110,7 +113,7 @@ def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
     at = word.span.text.rfind(fault.name.text)
     start = word.span.start + max(at, 0)
     span = Span(word.span.source, start, min(start + len(fault.name.text), word.span.end))
-    return ClassFault(kind=fault.kind, name=Word(fault.name.text, span), near=fault.near)
+    return replace(fault, name=Word(fault.name.text, span))
 
 
 def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
@@ -136,6 +139,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         silent=flow.silent,
         always_silent=flow.always_silent,
         open_end=flow.open_end,
+        in_loop=flow.in_loop,
         reads=flow.reads,
         writes=flow.writes,
         stub=execute is not None and all(map(_does_nothing, execute.body)),
@@ -191,11 +195,21 @@ def _unused(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word],
     used = {each.id for each in names if not isinstance(each.ctx, ast.Store)}
     assigned = [each.targets[0] for each in ast.walk(function)
                 if isinstance(each, ast.Assign) and len(each.targets) == 1]  # fmt: skip
-    return tuple(
+    local = tuple(
         (each.id, Word(f"{userdata}.{each.id}", text.span(each)))
         for each in assigned
         if isinstance(each, ast.Name) and each.id not in used
     )
+    read = {each.attr for _, node in own.classes for each in ast.walk(node)
+            if isinstance(each, ast.Attribute) and not isinstance(each.ctx, ast.Store)
+            and not (isinstance(each.value, ast.Name) and each.value.id == userdata)}  # fmt: skip
+    kept = tuple(
+        (each.attr, Word(f"{userdata}.{each.attr}", text.span(each)))
+        for each in assigned
+        if isinstance(each, ast.Attribute) and each.attr not in read
+        and isinstance(each.value, ast.Name) and each.value.id == "self"
+    )  # fmt: skip
+    return (*kept, *local)
 
 
 def _undefined(

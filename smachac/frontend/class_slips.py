@@ -73,7 +73,8 @@ def _uncalled(
             if isinstance(value, ast.Attribute) and (
                 _is_method(value, methods) or _is_method_of_key(value)
             ):
-                yield _without_call("no effect", text, value)
+                answer = value.attr == "service_preempt"
+                yield _without_call("no answer" if answer else "no effect", text, value)
 
 
 def _operands(test: ast.expr) -> Iterator[ast.expr]:

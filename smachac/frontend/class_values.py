@@ -192,7 +192,7 @@ def texts_as_lists(own: OwnClass) -> Iterator[ClassFault]:
     """A constant of the class that is a text in parentheses, `KEYS = ("part")`, where the class
     uses it as a list of names."""
     used = {name for _, node in own.classes for name in _used_as_list(node)}
-    for (module, node), names in zip(own.classes, own.names, strict=True):
+    for (module, _), names in zip(own.classes, own.names, strict=True):
         for name, bound in names.items():
             match bound:
                 case (ast.Assign(targets=[ast.Name()], value=ast.Constant(value=str()) as value),):

@@ -40,7 +40,8 @@ class Flow:
     returns, each with the keys that can be set before. `skipped` are the keys that a call sets only
     on some paths, each with the place that leads past the assignment. `open_end` is the place of
     the statement after which it ends without `return`, with its kind (see PathEnds.open_end);
-    `name` is that of the function.
+    `in_loop` is the `return` at the end of the loop that it ends after. `name` is that of the
+    function.
     """
 
     endings: tuple[Ending, ...] = ()
@@ -53,6 +54,7 @@ class Flow:
     passed: tuple[tuple[str, Keys], ...] = ()
     skipped: tuple[tuple[str, Word], ...] = ()
     open_end: Word | None = None
+    in_loop: Word | None = None
     name: Word | None = None
 
 
@@ -141,6 +143,7 @@ class _Reader:
             written=written,
             skipped=tuple(self.paths.whole().items()),
             open_end=self._open_end() if not self.path_ends.block(body) else None,
+            in_loop=self._in_loop() if not self.path_ends.block(body) else None,
             name=Word(self.function.name, name_span(self.text, self.function)),
             passed=tuple(self.passed if known else [(name, None) for name, _ in self.passed]),
         )
@@ -149,6 +152,15 @@ class _Reader:
         """The kind of place from which control gets to the end, and its first line."""
         kind, node = self.path_ends.open_end(self.function.body)
         return self._first_line(kind, node) if kind else None
+
+    def _in_loop(self) -> Word | None:
+        """The `return` at the end of the body of a loop after which the function ends."""
+        kind, node = self.path_ends.open_end(self.function.body)
+        last = node.body[-1] if kind == "loop" and isinstance(node, ast.For | ast.While) else None
+        if not isinstance(last, ast.Return):
+            return None
+        span = self.text.span(last)
+        return Word(span.text, span)
 
     def _first_line(self, kind: str, node: ast.AST) -> Word:
         """The place of the first line of a statement or handler, with its kind."""

@@ -130,6 +130,12 @@ def load_module(name: str, library: Library) -> Module | ClassFault | None:
     return None
 
 
+def file_of(module: Module) -> str:
+    """The file of a module, below a folder with code."""
+    path = module.name.replace(".", "/")
+    return f"{path}/__init__.py" if module.package else f"{path}.py"
+
+
 def absent_module(word: Word, library: Library) -> ClassFault | None:
     """The fault that a module is in no searched folder; None where it can be an installed one.
 

@@ -63,6 +63,7 @@ FaultKind = Literal[
     "no state class",
     "not called",
     "no effect",
+    "no answer",
     "identity",
     "comparison",
 ]
@@ -121,13 +122,15 @@ class ClassFacts:
     `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
     `execute` is the place of its name. `silent`: some path through it returns nothing,
     `always_silent`: every path. `open_end` is the place after which it returns nothing, with its
-    kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`.
+    kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`;
+    `in_loop` the `return` at the end of that loop.
     `reads` and `writes` are the userdata keys that it accesses, each at its name.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
     `values` are the expressions that the class writes, each with its key; of a call of a function,
     also the texts that it returns. `loops` are the attributes that it loops over, each with the
     parameter of the constructor that it is. `unused` are the
-    local variables that it assigns and does not use, each with the userdata key of that name.
+    local variables, and the attributes of `self`, that it assigns and does not use, each with the
+    userdata key of that name.
     `parts` are the attributes and constant indexes of userdata keys that it reads itself, each with
     the key and its place: `userdata.pose.x`, `userdata.pose[9]`.
     """
@@ -145,6 +148,7 @@ class ClassFacts:
     silent: bool = False
     always_silent: bool = False
     open_end: Word | None = None
+    in_loop: Word | None = None
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
     stub: bool = False

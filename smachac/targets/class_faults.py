@@ -137,6 +137,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "the line `{word}` does nothing: without `()` a method is not called",
         "write `{near}`, or remove the line",
     ),
+    "no answer": (
+        "the line `{word}` does nothing: without `()` a method is not called",
+        "write `{near}`",
+    ),
     "identity": (
         "`is` compares objects, not values: two equal values can be two objects",
         "write `{near}`",
@@ -151,7 +155,7 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "no outcome": (
         "`Outcome` of `{name}` has no `{word}`",
-        "add it to `Outcome` and to the interface, or correct the name",
+        "write one of {file}, or add it to `Outcome` and to the interface",
     ),
     "wrong result": (
         "`execute` of `{name}` returns `{word}`, not an outcome",
@@ -191,7 +195,8 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "unset output": (
         "`execute` of `{name}` never sets its output key `{word}`",
-        "write `out.{word} = ...`, or remove the key from the interface and from `Out`",
+        "write `out.{word} = ...` before a `return`, or remove the key from the interface and from"
+        " `Out`",
     ),
     "skipped output": (
         "`execute` of `{name}` can return `Outcome::{near}` without setting its output key"
@@ -239,6 +244,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "parameter order",
         "not called",
         "no effect",
+        "no answer",
         "identity",
         "comparison",
         "no result",
@@ -263,6 +269,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "wrong import": "",
     "not called": "the value is the method itself, which is true in every condition",
     "no effect": "",
+    "no answer": "the request stays set: when the state runs again, it is stopped at once",
     "identity": "the comparison can be false for equal values",
     "comparison": "the line has no effect: the old value stays, or there is none",
     "unused outcome": "a transition for this outcome is never taken",
@@ -322,6 +329,7 @@ WRITTEN = frozenset[FaultKind](
         "no state class",
         "not called",
         "no effect",
+        "no answer",
         "identity",
         "comparison",
     ]

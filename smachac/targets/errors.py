@@ -162,6 +162,7 @@ def interfaces_differ(
         arguments=(target, state_type, name),
         related=(*_places(differences[1:]), used),
         help=differences[0].help,
+        effect="the program does not compile" if target in ("cpp", "C++") else None,
     )
 
 
@@ -447,7 +448,8 @@ def code_not_found(
         message = f"`{fault.file}` has no `{word.text}`, which is imported from it"
         help = near or f"correct the name, or define it in `{fault.file}`"
     else:
-        message = f"no class `{word.text}` is defined in the {file} that `{state_type}` names"
+        place = f"`{fault.file}`" if fault.file else f"the {file} that `{state_type}` names"
+        message = f"no class `{word.text}` is defined in {place}"
         help = near or f"correct the name {interface}, or define the class"
     return Finding(
         span=word.span,

@@ -40,6 +40,7 @@ FUNCTIONS = tuple(name for name in dir(builtins) if name.islower() and name[0] !
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
 _WORDS = re.compile(r"[^\W\d]\w*")
+_IMPORTED = re.compile(r"^[ \t]*from \S+ import (.+)$", re.M)
 _DEFINED = re.compile(r"^[ \t]*(?:def|class|import|from \S+ import)\s+(\w+)|^[ \t]*(\w+) = ", re.M)
 
 
@@ -68,7 +69,7 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
             if use.name.id not in imported and not _lacks_parameter(use, types):
-                fix = _fix(use, imported)
+                fix = _fix(use, imported) or _own_fix(use, machine, library)
                 by_look = _by_look(use.node, use.code)
                 yield undefined_name(
                     use.span,
@@ -270,6 +271,23 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
         return NameFix(f"did you mean `{near if near in own else f'{own[0]}.{near}'}`?")
     near = guesser(FUNCTIONS)(word)
     return NameFix(f"did you mean `{near}`?") if near is not None else None
+
+
+def _own_fix(use: _Use, machine: Machine, library: Library) -> NameFix | None:
+    """The cure of a name that is one slip away from one that the user's templates define or
+    import."""
+    from smachac.targets.python.template_sources import template_sources
+
+    names: set[str] = set()
+    for file, source in template_sources(machine, library):
+        if library.own_template(file) is not None:
+            names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
+            names.update(word for line in _IMPORTED.findall(source.text)
+                         for word in _WORDS.findall(line))  # fmt: skip
+    near = guesser(sorted(names)).sure(use.name.id)
+    if near is None:
+        return None
+    return NameFix(f"did you mean `{near}`?", edits=_edits(use, near))
 
 
 def _param_fix(use: _Use) -> NameFix:
