@@ -16,6 +16,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
+from smachac.frontend.yaml_tree import Map, Seq, parse
 from smachac.ir import nodes
 from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.nodes import Leaf, StateType
@@ -472,7 +473,7 @@ def _unwritten(
     if promised:
         for ending in facts.endings:
             if ending.outcome.text in promised:
-                yield from _broken_promise(path, leaf, ending, key)
+                yield from _broken_promise(path, leaf, type_, ending, key)
     elif facts.complete and facts.execute is not None and missing == [*facts.endings] != []:
         yield Finding(
             span=facts.execute,
@@ -495,7 +496,25 @@ WAY_PAST = {
 """The place that leads past the assignment to an output key, by its kind."""
 
 
-def _broken_promise(path: str, leaf: Leaf, ending: Ending, key: str) -> Iterator[Finding]:
+def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
+    """The place in the interface that promises a key for an outcome; none if the interface is not a
+    file of its own."""
+    place = next((each.span for each in type_.output_keys if each.name == key), None)
+    if place is None or not place.source.name.endswith((".yml", ".yaml")):
+        return ()
+    tree = parse(place.source, [])
+    writes = tree.get("writes") if isinstance(tree, Map) else None
+    entry = (
+        writes.value.get(outcome) if writes is not None and isinstance(writes.value, Map) else None
+    )
+    items = entry.value.items if entry is not None and isinstance(entry.value, Seq) else ()
+    found = next((each for each in items if getattr(each, "value", None) == key), None)
+    return () if found is None else other_place(found.span, f"`writes:` promises `{key}` here")
+
+
+def _broken_promise(
+    path: str, leaf: Leaf, type_: StateType, ending: Ending, key: str
+) -> Iterator[Finding]:
     """The finding on a return that breaks a promise of `writes:`, on all paths to it or on some."""
     place = dict(ending.skipped).get(key)
     never = ending.written is not None and key not in ending.written
@@ -503,14 +522,17 @@ def _broken_promise(path: str, leaf: Leaf, ending: Ending, key: str) -> Iterator
         return
     does, where = ("returns", "before") if place is None else ("can return", "on each path to")
     past = other_place(place.span, WAY_PAST[place.text].format(key=key)) if place else ()
+    promise = _promise(type_, ending.outcome.text, key)
+    other = f"correct `writes:` in the interface `{leaf.type}`"
+    if promise:
+        other = f"remove `{key}` from `{ending.outcome.text}` in the `writes:` of the interface"
     yield Finding(
         span=ending.outcome.span,
         message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
         f" `{key}`",
         arguments=(leaf.type, key, ending.outcome.text),
-        help=f"set `userdata.{key}` {where} this `return`, or correct `writes:` in the interface"
-        f" `{leaf.type}`",
-        related=(*past, *_used_here(leaf)),
+        help=f"set `userdata.{key}` {where} this `return`, or {other}",
+        related=(*past, *promise, *_used_here(leaf)),
         node=path,
     )
 
@@ -598,10 +620,24 @@ def never_returned(context: Context) -> Iterator[Finding]:
         wrong = returned.difference(names)  # SM309: probably one of the others was meant
         for name in names:
             if name in declared and name not in returned and not (wrong and name != PREEMPTED):
-                yield _never(path, leaf, facts, name)
+                limits = _limits(context, leaf.type) if name == PREEMPTED else ()
+                yield _never(path, leaf, facts, name, limits)
 
 
-def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
+def _limits(context: Context, type_: str) -> tuple[Related, ...]:
+    """The first time limit of a state of a type, which cannot end it."""
+    for _, leaf, _, container in context.leaves_with_class:
+        if leaf.type != type_ or not isinstance(container, nodes.Concurrence):
+            continue
+        if container.sugar == "timeout":
+            message = f"this time limit cannot end `{leaf.name}`"
+            return other_place(container.default_span, message)
+    return ()
+
+
+def _never(
+    path: str, leaf: Leaf, facts: ClassFacts, outcome: str, limits: tuple[Related, ...]
+) -> Finding:
     assert facts.execute is not None
     message = f"`execute` of `{leaf.type}` never returns `{outcome}`"
     help = (
@@ -619,7 +655,11 @@ def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
         message=message,
         arguments=(leaf.type, outcome),
         help=help,
-        related=(*other_place(place, f"`{outcome}` is declared here"), *_used_here(leaf)),
+        related=(
+            *limits,
+            *other_place(place, f"`{outcome}` is declared here"),
+            *_used_here(leaf),
+        ),
         effect="the robot goes on until the state ends by itself" if outcome == PREEMPTED else None,
         node=path,
     )

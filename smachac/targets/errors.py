@@ -224,11 +224,14 @@ def stale_code(
         }
     """
     used = Related(span=span, message=f"this state is of the type `{state_type}`")
+    cause = differences[0].word if differences else None
+    known = Related(span=number.span, message=f"the number of this version is {number.text}")
     return Finding(
-        span=number.span,
-        message=f"the class `{name}` was written for another version of `{state_type}.yml`",
+        span=cause.span if cause is not None else number.span,
+        message=f"the class `{name}` was written for another version of `{state_type}.yml`"
+        + (f": {cause.text}" if cause is not None else ""),
         arguments=(state_type, name),
-        related=(*_places(differences), used),
+        related=(*_places(differences[1:]), *([known] if cause is not None else []), used),
         help=f"adapt the class to the interface, then set `smachac_interface` to {number.text}",
     )
 

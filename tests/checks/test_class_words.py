@@ -97,5 +97,34 @@ states:
     assert (item.help == f"did you mean `{near}`?") == bool(near)
 
 
+def test_the_promise_of_an_interface_is_a_second_place() -> None:
+    promise = ("writes: {found: [part]}", "writes: {found: [part], nothing: [part]}")
+    item = only(promise)
+    assert (item.code, item.span.text) == ("SM314", '"nothing"')
+    assert "remove `part` from `nothing`" in (item.help or "")
+    assert item.related[0].span.start == FIND.index("writes:") + len(promise[1]) - len("part]}")
+
+
+STOP = "outcomes: {found: {}, nothing: {}, preempted: {}}\nblocking: true\n"
+
+
+@pytest.mark.parametrize("timeout", ["", "      timeout: 5\n"])
+def test_a_time_limit_that_cannot_end_the_state(timeout: str) -> None:
+    steps = "nothing: failed, preempted: failed" + (", timeout: failed" if timeout else "")
+    (item,) = [
+        each
+        for each in report(
+            ("outcomes: {found: {}, nothing: {}}\n", STOP),
+            ('[FOUND, "nothing"]', '[FOUND, "nothing", "preempted"]'),
+            ("nothing: failed", steps),
+            ("      template: Find\n", f"      template: Find\n{timeout}"),
+        )
+        if each.code == "SM315"
+    ]
+    messages = [each.message for each in item.related]
+    assert ("this time limit cannot end `FIND`" in messages) == bool(timeout)
+    assert item.effect == "the robot goes on until the state ends by itself"
+
+
 def test_no_note_without_a_finding() -> None:
     assert report() == []
