@@ -16,6 +16,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
+from smachac.frontend.yaml_tree import Map, Seq, parse
 from smachac.ir import nodes
 from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.nodes import Leaf, StateType
@@ -166,12 +167,13 @@ def _wrong_returns(
             near = near or _without_tuple(word.text, outcomes)
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
+            returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
-                span=word.span,
+                span=ending.defined or word.span,
                 message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
-                help=near or f"{known}{'' if ending.possible else _or_declare(word, leaf)}",
-                related=_used_here(leaf),
+                help=near or f"{known}{'' if ending.possible else _or_declare(ending, leaf)}",
+                related=(*(returned if ending.defined else ()), *_used_here(leaf)),
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
@@ -184,7 +186,7 @@ def _wrong_returns(
             arguments=(leaf.type,),
             help=f"write `return {alone.span.text}`"
             if alone
-            else f"end each path with a `return`; {known}",
+            else f"{_after_loop(facts)}end each path with a `return`; {known}",
             related=(*_open_end(facts), *_used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
@@ -198,6 +200,13 @@ def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> Word | None:
         return None
     outcome = end.span.text.strip("'\"")
     return Word(outcome, end.span) if outcome in outcomes else None
+
+
+def _after_loop(facts: ClassFacts) -> str:
+    """The part of a help about a `return` at the end of a loop behind which there is none."""
+    if facts.in_loop is None or facts.always_silent:
+        return ""
+    return f"move `{facts.in_loop.span.text}` behind the loop if it is meant there; otherwise "
 
 
 END_OF_EXECUTE = {
@@ -217,13 +226,14 @@ def _open_end(facts: ClassFacts) -> tuple[Related, ...]:
     return other_place(end.span, END_OF_EXECUTE[end.text])
 
 
-def _or_declare(word: Word, leaf: Leaf) -> str:
-    """The part of a help that adds a returned word to the outcomes of its type."""
+def _or_declare(ending: Ending, leaf: Leaf) -> str:
+    """The part of a help that adds a returned word to the outcomes of its type. A constant that has
+    a name is usually in `__init__` too."""
+    word = ending.outcome
     if not word.text.isidentifier() or word.text in ("None", "True", "False"):
         return ""
-    return (
-        f", or add `{word.text}` to the outcomes of `{leaf.type}` in its interface and `__init__`"
-    )
+    where = "its interface" if ending.defined else "its interface and `__init__`"
+    return f", or add `{word.text}` to the outcomes of `{leaf.type}` in {where}"
 
 
 def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
@@ -232,6 +242,10 @@ def _meant(leaf: Leaf, word: str, guess: Guesser) -> str | None:
     if near is not None:
         return near
     near = guess(word)
+    if (
+        near is not None and len(word) > 3 and near.startswith(word)
+    ):  # a form of the same word: slip, slipped
+        return near
     if not is_failure(word):
         return near if near is None or not fails(leaf, near) else None
     if near is not None and fails(leaf, near):
@@ -306,14 +320,19 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
     for path, leaf, facts in leaves_by_type(context, declared=True):
         inputs, outputs = names.get(leaf.type, _own_names(leaf))[1:]
         unknown = {word.text for word in facts.reads}.difference(inputs)
+        written = {word.text for word in facts.writes}
+        sure = facts.endings and all(each.written is not None for each in facts.endings)
         for word in _first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
             what = "only an input key" if only else "not an output key of its interface"
-            guess = None if only else did_you_mean(guesser(outputs)(word.text))
+            unset = [key for key in outputs if key not in written and key not in inputs]
+            near = guesser(unset if only else outputs)(word.text)
+            guess = did_you_mean(near)
+            never = f", and `{near}` is never set" if near in unset and sure else ""
             yield Finding(
                 span=word.span,
                 message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
-                " is discarded",
+                f" is discarded{never}",
                 arguments=(word.text,),
                 help=guess
                 or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`",
@@ -428,11 +447,14 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
 
 
 def _local(path: str, leaf: Leaf, key: str, meant: Word) -> Finding:
-    """The finding on a local variable with the name of an output key that is not set."""
+    """The finding on a local variable or an attribute of `self` with the name of an output key that
+    is not set."""
+    kept = meant.span.text.startswith("self.")
+    what = "an attribute of the object" if kept else "a local variable"
     return Finding(
         span=meant.span,
-        message=f"`{key}` is a local variable here: the output key `{key}` of `{leaf.type}` is not"
-        " set",
+        message=f"`{meant.span.text}` is {what} here: the output key `{key}` of `{leaf.type}` is"
+        " not set",
         arguments=(leaf.type, key),
         help=f"write `{meant.text}`",
         related=_used_here(leaf),
@@ -451,7 +473,7 @@ def _unwritten(
     if promised:
         for ending in facts.endings:
             if ending.outcome.text in promised:
-                yield from _broken_promise(path, leaf, ending, key)
+                yield from _broken_promise(path, leaf, type_, ending, key)
     elif facts.complete and facts.execute is not None and missing == [*facts.endings] != []:
         yield Finding(
             span=facts.execute,
@@ -474,7 +496,25 @@ WAY_PAST = {
 """The place that leads past the assignment to an output key, by its kind."""
 
 
-def _broken_promise(path: str, leaf: Leaf, ending: Ending, key: str) -> Iterator[Finding]:
+def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
+    """The place in the interface that promises a key for an outcome; none if the interface is not a
+    file of its own."""
+    place = next((each.span for each in type_.output_keys if each.name == key), None)
+    if place is None or not place.source.name.endswith((".yml", ".yaml")):
+        return ()
+    tree = parse(place.source, [])
+    writes = tree.get("writes") if isinstance(tree, Map) else None
+    entry = (
+        writes.value.get(outcome) if writes is not None and isinstance(writes.value, Map) else None
+    )
+    items = entry.value.items if entry is not None and isinstance(entry.value, Seq) else ()
+    found = next((each for each in items if getattr(each, "value", None) == key), None)
+    return () if found is None else other_place(found.span, f"`writes:` promises `{key}` here")
+
+
+def _broken_promise(
+    path: str, leaf: Leaf, type_: StateType, ending: Ending, key: str
+) -> Iterator[Finding]:
     """The finding on a return that breaks a promise of `writes:`, on all paths to it or on some."""
     place = dict(ending.skipped).get(key)
     never = ending.written is not None and key not in ending.written
@@ -482,14 +522,17 @@ def _broken_promise(path: str, leaf: Leaf, ending: Ending, key: str) -> Iterator
         return
     does, where = ("returns", "before") if place is None else ("can return", "on each path to")
     past = other_place(place.span, WAY_PAST[place.text].format(key=key)) if place else ()
+    promise = _promise(type_, ending.outcome.text, key)
+    other = f"correct `writes:` in the interface `{leaf.type}`"
+    if promise:
+        other = f"remove `{key}` from `{ending.outcome.text}` in the `writes:` of the interface"
     yield Finding(
         span=ending.outcome.span,
         message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
         f" `{key}`",
         arguments=(leaf.type, key, ending.outcome.text),
-        help=f"set `userdata.{key}` {where} this `return`, or correct `writes:` in the interface"
-        f" `{leaf.type}`",
-        related=(*past, *_used_here(leaf)),
+        help=f"set `userdata.{key}` {where} this `return`, or {other}",
+        related=(*past, *promise, *_used_here(leaf)),
         node=path,
     )
 
@@ -580,10 +623,24 @@ def never_returned(context: Context) -> Iterator[Finding]:
         for name in names:
             checked = name == PREEMPTED or not only_stops
             if checked and name in declared and name not in returned:
-                yield _never(path, leaf, facts, name)
+                limits = _limits(context, leaf.type) if name == PREEMPTED else ()
+                yield _never(path, leaf, facts, name, limits)
 
 
-def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
+def _limits(context: Context, type_: str) -> tuple[Related, ...]:
+    """The first time limit of a state of a type, which cannot end it."""
+    for _, leaf, _, container in context.leaves_with_class:
+        if leaf.type != type_ or not isinstance(container, nodes.Concurrence):
+            continue
+        if container.sugar == "timeout":
+            message = f"this time limit cannot end `{leaf.name}`"
+            return other_place(container.default_span, message)
+    return ()
+
+
+def _never(
+    path: str, leaf: Leaf, facts: ClassFacts, outcome: str, limits: tuple[Related, ...]
+) -> Finding:
     assert facts.execute is not None
     message = f"`execute` of `{leaf.type}` never returns `{outcome}`"
     help = (
@@ -601,6 +658,11 @@ def _never(path: str, leaf: Leaf, facts: ClassFacts, outcome: str) -> Finding:
         message=message,
         arguments=(leaf.type, outcome),
         help=help,
-        related=(*other_place(place, f"`{outcome}` is declared here"), *_used_here(leaf)),
+        related=(
+            *limits,
+            *other_place(place, f"`{outcome}` is declared here"),
+            *_used_here(leaf),
+        ),
+        effect="the robot goes on until the state ends by itself" if outcome == PREEMPTED else None,
         node=path,
     )

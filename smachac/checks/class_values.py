@@ -56,7 +56,8 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 message=f"`{leaf.type}` writes {in_words(given)} to `{name}`, but its interface"
                 f" declares `{name}` as `{key.type}`",
                 arguments=(name, str(widened(given)), str(key.type), "class"),
-                help=HELP.get(present(key.type).name)
+                help=_plain_help(written.text, key.type)
+                or HELP.get(present(key.type).name)
                 or f"write a value of the type `{key.type}`{such}, or correct the interface",
                 related=(
                     *other_place(key.span, f"the interface declares `{name}`"),
@@ -64,6 +65,119 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 ),
                 node=path,
             )
+
+
+def _plain_help(text: str, type_: Type) -> str | None:
+    """The help for a choice that is one slip away, and for a value in a needless `str()`."""
+    wanted = present(type_)
+    node = ast.parse(f"({text})", mode="eval").body
+    match node:
+        case ast.Constant(value=str(word)) if wanted.name == "one_of":
+            return did_you_mean(guesser([str(each) for each in wanted.args])(word))
+        case ast.Call(func=ast.Name(id="str" | "repr"), args=[ast.Name(id=name)], keywords=[]):
+            return f"write `{name}` without `str()`" if wanted.name in ("int", "float") else None
+    return None
+
+
+def none_writes(context: Context) -> Iterator[Finding]:
+    """The results of methods such as `append`, which are None, that a class writes to a key
+    (SM318)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or type_.open:
+            continue
+        types = {key.name: present(key.type) for key in (*type_.input_keys, *type_.output_keys)}
+        for name, written in facts.values:
+            found = _changed_key(written.text)
+            if found is None or found[1] not in types or name not in types:
+                continue
+            owner, key, method, argument = found
+            kind = "list" if types[key].name == "list" else "mapping"
+            known = types[key].name in ("list", "map", "record") and method in CHANGES[kind]
+            if not known:
+                continue
+            help = f"write `{written.text}` without an assignment"
+            if kind == "list" and method == "append" and argument:
+                help = f"write `{owner}.{key} + [{argument}]`"
+            yield Finding(
+                span=written.span,
+                message=f"`{leaf.type}` writes the result of `{method}` to `{name}`, which is None",
+                arguments=(leaf.type, name, method),
+                help=help,
+                effect=f"`{name}` gets the value None",
+                related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                node=path,
+            )
+
+
+CHANGES = {
+    "list": frozenset(["append", "extend", "insert", "remove", "sort", "reverse", "clear"]),
+    "mapping": frozenset(["update", "clear"]),
+}
+"""The methods that change a value and return None, by the kind of the value."""
+
+
+def _changed_key(text: str) -> tuple[str, str, str, str] | None:
+    """The userdata, the key, the method and the only argument in `userdata.key.append(value)`."""
+    if not text.endswith(")"):
+        return None
+    try:
+        node = ast.parse(f"({text})", mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    match node:
+        case ast.Call(
+            func=ast.Attribute(
+                value=ast.Attribute(value=ast.Name(id=owner), attr=key), attr=method
+            ),
+            args=arguments,
+        ):
+            plain = len(arguments) == 1 and not isinstance(arguments[0], ast.Starred)
+            argument = ast.get_source_segment(f"({text})", arguments[0]) if plain else ""
+            return owner, key, method, argument or ""
+    return None
+
+
+def wrong_loops(context: Context) -> Iterator[Finding]:
+    """The loops of a class over a variable that is a number (SM304), by the interface or, if that
+    has no type for it, in the script."""
+    seen: set[tuple[str, str]] = set()
+    for path, leaf, facts, _ in context.leaves_with_class:
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or not facts.loops:
+            continue
+        set_ = {each.name: each.value for each in leaf.variables}
+        for name, loop in facts.loops:
+            if name not in type_.variables or (leaf.type, name) in seen:
+                continue
+            declared = type_.variables[name].type
+            value = set_[name].data if name in set_ else None
+            number = type(value) in (int, float, bool)
+            if declared.name in ("int", "float", "bool"):
+                seen.add((leaf.type, name))
+                yield Finding(
+                    span=loop.span,
+                    message=f"`{leaf.type}` loops over `{loop.text}`, but its interface declares"
+                    f" `{name}` as `{declared}`",
+                    arguments=(leaf.type, name, "loop"),
+                    help=f"write `range({loop.text})`"
+                    if declared.name == "int"
+                    else "loop over a list, or correct the type in the interface",
+                    effect="Python cannot loop over a number: the machine stops with an error",
+                    related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                    node=path,
+                )
+            elif is_open(declared) and number:
+                yield Finding(
+                    span=set_[name].span,
+                    message=f"`{name}` of `{leaf.name}` is {value}, but `{leaf.type}` loops over"
+                    " it",
+                    arguments=(leaf.name, name, "loop"),
+                    help=f"write `range({value})`, or a list",
+                    effect="Python cannot loop over a number: the machine stops with an error",
+                    related=other_place(loop.span, f"`{leaf.type}` loops over `{name}` here"),
+                    node=path,
+                )
 
 
 COORDINATES = {"x": 0, "y": 1, "z": 2, "w": 3}

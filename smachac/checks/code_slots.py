@@ -25,6 +25,7 @@ from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.message_code import content_of
 from smachac.analysis.type_inference import TypeFlow
+from smachac.checks.class_values import none_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import number_meant
 from smachac.checks.rule import rule
@@ -419,6 +420,7 @@ def wrong_result(context: Context) -> Iterator[Finding]:
                 node=path,
                 severity=None if sure and len(found) == 1 else Severity.WARNING,
             )
+    yield from none_writes(context)
 
     yield from _silent_functions(context)
 

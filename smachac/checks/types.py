@@ -24,7 +24,7 @@ from smachac.analysis.type_lattice import (
     widened,
 )
 from smachac.analysis.units import conversion
-from smachac.checks.class_values import wrong_writes
+from smachac.checks.class_values import wrong_loops, wrong_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
 from smachac.checks.rule import rule
@@ -96,6 +96,7 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
     yield from _without_items(context)
     yield from _wrong_steps(context)
     yield from wrong_writes(context)
+    yield from wrong_loops(context)
     for type_ in context.machine.state_types.values():
         yield from _wrong_defaults(type_)
 

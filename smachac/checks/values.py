@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
@@ -136,7 +137,7 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
     for number in dict.fromkeys(_outside(flow.value, limits)):
         held = "is" if number == flow.value else "contains"
         message = f"`{origin.key}` {held} {number}, but the {kind} `{cell.key}` of {owner} must be"
-        yield at(
+        found = at(
             flow,
             f"{message} {in_words(limits)}",
             ("write " if limits.choices else "write a number ")
@@ -146,6 +147,8 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
             more,
             part=steps_to_number(flow.value, number),
         )
+        outside = f"{number} {unit} is outside of what the state type accepts: the state can fail"
+        yield replace(found, effect=f"{outside} or do a wrong thing") if unit else found
 
 
 def in_words(limits: Limits) -> str:

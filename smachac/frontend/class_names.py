@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.python_modules import Module, OwnClass
+from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.ir.class_facts import ClassFault
 
 BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "__class__", "_"])
@@ -271,18 +271,21 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     attributes = [each for each in every if isinstance(each, ast.Attribute)]
     if not LATE.isdisjoint(each.attr for each in attributes):
         return []
-    defined |= {each.attr for each in attributes if isinstance(each.ctx, ast.Store)} | INHERITED
+    defined |= {each.attr for each in attributes if isinstance(each.ctx, ast.Store)}
     defined |= {each.left.attr for each in map(compared, every)
                 if each is not None and isinstance(each.left, ast.Attribute)}  # fmt: skip
     quoted = {each.value for each in every if isinstance(each, ast.Constant)}
     called = [each.func for each in every if isinstance(each, ast.Call)]
-    guess, found = guesser(sorted(name for name in defined if not name.startswith("__"))), []
+    usual = sorted({*STATE_METHODS, *(name for name in defined if not name.startswith("__"))})
+    guess, found = guesser(usual), []
+    defined |= INHERITED
     constructor = own.method("__init__")
     arguments = ast.walk(constructor[1].args) if constructor is not None else ()
     given = {each.arg for each in arguments if isinstance(each, ast.arg)}
     for module, node in own.classes:
+        others = of_other_objects(node)
         for each in _evaluated(node):
-            if not isinstance(each, ast.Attribute) or not _of_self(each):
+            if not isinstance(each, ast.Attribute) or not _of_self(each) or each in others:
                 continue
             span = module.text.span(each)
             if each.attr in defined or each.attr in quoted or module.text.is_filled(span):
@@ -305,8 +308,12 @@ def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:
         return
     for at, (module, node) in enumerate(own.classes):
         defined = INHERITED.union(*own.names[at + 1 :])
+        usual = sorted(STATE_METHODS.union(*own.names[at + 1 :]))
+        others = of_other_objects(node)
         for each in _evaluated(node):
             match each:
+                case _ if each in others:
+                    continue
                 case ast.Attribute(value=ast.Call(func=ast.Name(id="super"), args=[]), attr=name):
                     span = module.text.span(each)
                 case _:
@@ -314,7 +321,7 @@ def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:
             if name in defined or module.text.is_filled(span):
                 continue
             plain = name.strip("_") in ("init", "int")
-            near = "__init__" if plain else guesser(sorted(defined))(name)
+            near = "__init__" if plain else guesser(usual)(name)
             word = Word(name, _end_of(span, name))
             yield ClassFault(kind="undefined method", name=word, near=near)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -25,12 +26,21 @@ from smachac.frontend.class_slips import (
     unknown_argument,
     wrong_base,
 )
+from smachac.frontend.class_values import (
+    loops,
+    lost_results,
+    texts_as_lists,
+    written_values,
+)
+from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
 from smachac.frontend.python_flow import Flow, Flows, is_plain
+from smachac.frontend.python_imports import missing_imports
 from smachac.frontend.python_modules import (
     Module,
     OwnClass,
     absent_module,
+    file_of,
     find_class,
     is_smach_state,
     load_module,
@@ -92,7 +102,8 @@ def read_module(word: Word, library: Library) -> ClassFacts | None:
             return ClassFacts(faults=(module,)) if module is not None else None
         found = find_class(module, name, library)
         if isinstance(found, ClassFault):
-            return ClassFacts(faults=(_at_the_name(found, word),))
+            fault = replace(found, file=file_of(module))
+            return ClassFacts(faults=(_at_the_name(fault, word),))
         return _facts(*found, library) if found is not None else None
     except (RecursionError, MemoryError, ValueError):
         return None
@@ -103,7 +114,7 @@ def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
     at = word.span.text.rfind(fault.name.text)
     start = word.span.start + max(at, 0)
     span = Span(word.span.source, start, min(start + len(fault.name.text), word.span.end))
-    return ClassFault(kind=fault.kind, name=Word(fault.name.text, span), near=fault.near)
+    return replace(fault, name=Word(fault.name.text, span))
 
 
 def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
@@ -111,7 +122,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
     own = with_bases(module, node, library)
     lists = _declared(module.text, node)
     whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
-    undefined = (*_undefined(own, lists),) if whole else ()
+    undefined = (*_undefined(own, lists, library),) if whole else ()
     flow, execute, place = _execute(own, library)
     if execute is not None and any(_is_userdata(each, execute) for each in undefined):
         flow = Flow()  # its code uses another name for the userdata
@@ -129,12 +140,14 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         silent=flow.silent,
         always_silent=flow.always_silent,
         open_end=flow.open_end,
+        in_loop=flow.in_loop,
         reads=flow.reads,
         writes=flow.writes,
         stub=execute is not None and all(map(_does_nothing, execute.body)),
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
-        values=_values(own, execute) if execute is not None and flow.writes else (),
+        values=written_values(own, execute, library) if execute is not None else (),
         unused=_unused(own, execute) if execute is not None else (),
+        loops=loops(own) if whole else (),
         parts=parts_read(_text_of(own, execute), execute)
         if execute is not None and flow.reads
         else (),
@@ -146,28 +159,6 @@ def _text_of(own: OwnClass, function: ast.FunctionDef) -> PythonText:
     return next(module.text for module, node in own.classes if function in node.body)
 
 
-def _values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
-    """The expressions that `execute` itself writes to userdata keys: `userdata.key = value`."""
-    text = _text_of(own, function)
-    userdata = function.args.args[1].arg
-    found = []
-    for node in ast.walk(function):
-        if not isinstance(node, ast.Assign) or len(node.targets) != 1:
-            continue
-        value = node.value
-        match node.targets[0]:
-            case ast.Attribute(value=ast.Name(id=name), attr=key):
-                pass
-            case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=str(key))):
-                pass
-            case _:
-                continue
-        span = text.span(value)
-        if name == userdata and not text.is_filled(span):
-            found.append((key, Word(span.text, span)))
-    return tuple(found)
-
-
 def _unused(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
     """The local variables that `execute` assigns and does not use, with the key of each."""
     text = _text_of(own, function)
@@ -176,21 +167,42 @@ def _unused(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word],
     used = {each.id for each in names if not isinstance(each.ctx, ast.Store)}
     assigned = [each.targets[0] for each in ast.walk(function)
                 if isinstance(each, ast.Assign) and len(each.targets) == 1]  # fmt: skip
-    return tuple(
+    local = tuple(
         (each.id, Word(f"{userdata}.{each.id}", text.span(each)))
         for each in assigned
         if isinstance(each, ast.Name) and each.id not in used
     )
+    read = {each.attr for _, node in own.classes for each in ast.walk(node)
+            if isinstance(each, ast.Attribute) and not isinstance(each.ctx, ast.Store)
+            and not (isinstance(each.value, ast.Name) and each.value.id == userdata)}  # fmt: skip
+    kept = tuple(
+        (each.attr, Word(f"{userdata}.{each.attr}", text.span(each)))
+        for each in assigned
+        if isinstance(each, ast.Attribute) and each.attr not in read
+        and isinstance(each.value, ast.Name) and each.value.id == "self"
+    )  # fmt: skip
+    return (*kept, *local)
 
 
-def _undefined(own: OwnClass, lists: dict[str, Words | None] | None) -> Iterator[ClassFault]:
+def _undefined(
+    own: OwnClass, lists: dict[str, Words | None] | None, library: Library
+) -> Iterator[ClassFault]:
     """The names and attributes that nothing defines, and other slips in the code."""
+    modules = {module.name: module for module, _ in own.classes if module.name}.values()
+    imports = [each for module in modules
+               for each in missing_imports(module, library)]  # fmt: skip
+    yield from imports
+    absent = {each.name.text for each in imports}
     names = {key: [word.text for word in words or ()] for key, words in (lists or {}).items()}
     for module, node in own.classes:
-        yield from undefined_names(own, module, node, names)
+        found = undefined_names(own, module, node, names)
+        yield from (each for each in found if each.near not in absent)
+        yield from missing_attributes(module, node, library)
     yield from undefined_methods(own)
     yield from undefined_in_base(own)
     yield from slips(own)
+    yield from lost_results(own)
+    yield from texts_as_lists(own)
 
 
 def _is_userdata(fault: ClassFault, execute: ast.FunctionDef) -> bool:
@@ -332,7 +344,25 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
         )
         for each in ast.walk(owner)
     )
-    return [] if calls else [_at_method("no constructor call", *found)]
+    return [] if calls else [_without_call(own, *found)]
+
+
+def _without_call(own: OwnClass, module: Module, maker: ast.FunctionDef) -> ClassFault:
+    """The fault of a constructor that does not call that of its base class, with the call where it
+    is one of the user's classes."""
+    at = next(index for index, (_, node) in enumerate(own.classes) if maker in node.body)
+    bases = [names["__init__"][-1] for names in own.names[at + 1 :] if "__init__" in names]
+    if not bases or not isinstance(bases[0], ast.FunctionDef):
+        return _at_method("no constructor call", module, maker)
+    taken, known = bases[0].args, {each.arg for each in maker.args.args[1:]}
+    positional = [*taken.posonlyargs, *taken.args]
+    required = positional[1 : len(positional) - len(taken.defaults)]
+    required += [each for each, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+                 if default is None]  # fmt: skip
+    given = [f"{each.arg}={each.arg if each.arg in known else '...'}" for each in required]
+    name = Word(maker.name, name_span(module.text, maker))
+    near = f"super().__init__({', '.join(given)})"
+    return ClassFault(kind="no base constructor call", name=name, near=near)
 
 
 def _data_class_fault(module: Module, node: ast.ClassDef) -> Iterator[ClassFault]:

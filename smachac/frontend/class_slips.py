@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.class_names import SMACH_CLASSES, STATE_METHODS, compared
-from smachac.frontend.python_modules import Module, OwnClass
+from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import ClassFault, FaultKind
 
@@ -32,7 +32,8 @@ def slips(own: OwnClass) -> Iterator[ClassFault]:
     """The slips in the code of a class and of its base classes."""
     methods = _methods(own)
     for module, node in own.classes:
-        every = [*ast.walk(node)]
+        others = of_other_objects(node)
+        every = [each for each in ast.walk(node) if each not in others]
         found = [*_uncalled(module.text, every, methods), *_compared(module.text, every)]
         yield from (each for each in found if not module.text.is_filled(each.name.span))
 
@@ -72,7 +73,8 @@ def _uncalled(
             if isinstance(value, ast.Attribute) and (
                 _is_method(value, methods) or _is_method_of_key(value)
             ):
-                yield _without_call("no effect", text, value)
+                answer = value.attr == "service_preempt"
+                yield _without_call("no answer" if answer else "no effect", text, value)
 
 
 def _operands(test: ast.expr) -> Iterator[ast.expr]:

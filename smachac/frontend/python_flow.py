@@ -16,8 +16,8 @@ from smachac.frontend.class_names import compared
 from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_constants import entries, member, table
-from smachac.frontend.python_modules import Module, OwnClass, constant, find_function
-from smachac.frontend.python_source import name_span
+from smachac.frontend.python_modules import Module, OwnClass, constant_node, find_function
+from smachac.frontend.python_source import PythonText, name_span
 from smachac.frontend.skipped_writes import Paths, SkippedWrites
 from smachac.ir.class_facts import Ending
 
@@ -40,7 +40,8 @@ class Flow:
     returns, each with the keys that can be set before. `skipped` are the keys that a call sets only
     on some paths, each with the place that leads past the assignment. `open_end` is the place of
     the statement after which it ends without `return`, with its kind (see PathEnds.open_end);
-    `name` is that of the function.
+    `in_loop` is the `return` at the end of the loop that it ends after. `name` is that of the
+    function.
     """
 
     endings: tuple[Ending, ...] = ()
@@ -53,6 +54,7 @@ class Flow:
     passed: tuple[tuple[str, Keys], ...] = ()
     skipped: tuple[tuple[str, Word], ...] = ()
     open_end: Word | None = None
+    in_loop: Word | None = None
     name: Word | None = None
 
 
@@ -141,6 +143,7 @@ class _Reader:
             written=written,
             skipped=tuple(self.paths.whole().items()),
             open_end=self._open_end() if not self.path_ends.block(body) else None,
+            in_loop=self._in_loop() if not self.path_ends.block(body) else None,
             name=Word(self.function.name, name_span(self.text, self.function)),
             passed=tuple(self.passed if known else [(name, None) for name, _ in self.passed]),
         )
@@ -149,6 +152,15 @@ class _Reader:
         """The kind of place from which control gets to the end, and its first line."""
         kind, node = self.path_ends.open_end(self.function.body)
         return self._first_line(kind, node) if kind else None
+
+    def _in_loop(self) -> Word | None:
+        """The `return` at the end of the body of a loop after which the function ends."""
+        kind, node = self.path_ends.open_end(self.function.body)
+        last = node.body[-1] if kind == "loop" and isinstance(node, ast.For | ast.While) else None
+        if not isinstance(last, ast.Return):
+            return None
+        span = self.text.span(last)
+        return Word(span.text, span)
 
     def _first_line(self, kind: str, node: ast.AST) -> Word:
         """The place of the first line of a statement or handler, with its kind."""
@@ -460,9 +472,7 @@ class _Reader:
             case ast.Name(id=name):
                 return self._named(name, span, before)
             case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner == self.own_name:
-                bound = [names for names in self.flows.own.names if name in names]
-                text = constant(bound[0], name) if bound else None
-                return name not in self.flows.assigned and self._add(text, span, before)
+                return name not in self.flows.assigned and self._of_class(name, span, before)
             case ast.Attribute(value=ast.Name(id=owner), attr=name):
                 return not self._is_local(owner) and self._member(owner, name, span, before)
             case ast.Attribute(
@@ -480,11 +490,28 @@ class _Reader:
                 return self._add(ast.unparse(value), span, before)
         return False
 
-    def _add(self, text: str | None, span: Span, before: Keys) -> bool:
+    def _add(self, text: str | None, span: Span, before: Keys, defined: Span | None = None) -> bool:
         """Adds the ending with a constant, if it is known."""
         if text is not None:
-            self.endings.append(Ending(outcome=Word(text, span), written=before))
+            ending = Ending(outcome=Word(text, span), written=before, defined=defined)
+            self.endings.append(ending)
         return text is not None
+
+    def _of_class(self, name: str, span: Span, before: Keys) -> bool:
+        """As `_constants` for a constant of the class, `self.FOUND`."""
+        own = self.flows.own
+        for (module, _), names in zip(own.classes, own.names, strict=True):
+            if name in names:
+                return self._defined(module.text, constant_node(names, name), span, before)
+        return False
+
+    def _defined(
+        self, text: PythonText, node: ast.Constant | None, span: Span, before: Keys
+    ) -> bool:
+        """Adds the ending with a constant that has a name, if it is known."""
+        if node is None:
+            return False
+        return self._add(str(node.value), span, before, text.span(node))
 
     def _member(self, owner: str, name: str, span: Span, before: Keys) -> bool:
         """As `_constants` for a constant of a class, `Result.GOOD`. A member of an enumeration is
@@ -530,10 +557,13 @@ class _Reader:
         if other:
             return False
         if not stores:
-            return self._add(constant(self.module.names, name), span, before)
+            return self._defined(self.text, constant_node(self.module.names, name), span, before)
         given = [(_targets(each), each.value) for each in self.nodes
                  if isinstance(each, ast.Assign | ast.AnnAssign)]  # fmt: skip
         values = [value for targets, value in given for each in targets if each in stores]
+        match values:
+            case [ast.Call() as call] if len(stores) == 1 and not self._is_examined(name):
+                return self._results(call, before)
         found = [one for value in values if value is not None for one in alternatives(value)]
         texts = [isinstance(each, ast.Constant) and isinstance(each.value, str) for each in found]
         if len(values) != len(stores) or None in values or not all(texts):
@@ -549,6 +579,10 @@ class _Reader:
         every = [each.arg for each in self.nodes if isinstance(each, ast.arg)]
         if own.count(name) != 1 or every.count(name) != 1 or name in (self.own_name, self.userdata):
             return False
+        return not self._is_examined(name)
+
+    def _is_examined(self, name: str) -> bool:
+        """Whether a condition or a look-up of the function depends on a name."""
         tests: list[ast.AST] = []
         for node in self.nodes:
             match node:
@@ -561,7 +595,7 @@ class _Reader:
                 case ast.Call(func=ast.Attribute(attr="get" | "pop")):
                     tests.append(node)
         names = (each for test in tests for each in ast.walk(test) if isinstance(each, ast.Name))
-        return all(each.id != name for each in names)
+        return any(each.id == name for each in names)
 
     def _results(self, call: ast.Call, before: Keys) -> bool:
         """As `_constants` for what a method or function of the user returns."""

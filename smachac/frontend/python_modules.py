@@ -72,7 +72,10 @@ class OwnClass:
         """The attributes of the object that its methods assign: `self.name = value`."""
         found: dict[str, list[tuple[Module, ast.expr | None, Span]]] = {}
         for module, node in self.classes:
+            others = of_other_objects(node)
             for method in ast.walk(node):
+                if method in others:
+                    continue
                 if isinstance(method, ast.Assign | ast.AnnAssign | ast.AugAssign):
                     targets = method.targets if isinstance(method, ast.Assign) else [method.target]
                     value = None if isinstance(method, ast.AugAssign) else method.value
@@ -87,6 +90,23 @@ class OwnClass:
 
 def _is_self(node: ast.expr) -> bool:
     return isinstance(node, ast.Name) and node.id == "self"
+
+
+def of_other_objects(node: ast.ClassDef) -> set[ast.AST]:
+    """The nodes in a class whose `self` is another object: those of inner classes, and of functions
+    in a method that have a parameter of this name."""
+    found: set[ast.AST] = set()
+    methods = ast.FunctionDef | ast.AsyncFunctionDef
+    own = {each for each in node.body if isinstance(each, methods)}
+    for each in ast.walk(node):
+        inner = each is not node and isinstance(each, ast.ClassDef)
+        if isinstance(each, methods | ast.Lambda) and each not in own:
+            inner = any(
+                arg.arg == "self" for arg in ast.walk(each.args) if isinstance(arg, ast.arg)
+            )
+        if inner and each not in found:
+            found.update(ast.walk(each))
+    return found
 
 
 def template_module(source: Source) -> Module | None:
@@ -108,6 +128,12 @@ def load_module(name: str, library: Library) -> Module | ClassFault | None:
         error = syntax_error(source)
         return ClassFault(kind="syntax", name=error) if error is not None else None
     return None
+
+
+def file_of(module: Module) -> str:
+    """The file of a module, below a folder with code."""
+    path = module.name.replace(".", "/")
+    return f"{path}/__init__.py" if module.package else f"{path}.py"
 
 
 def absent_module(word: Word, library: Library) -> ClassFault | None:
@@ -295,11 +321,17 @@ def _imports(node: ast.AST, name: str) -> set[str]:
 
 def constant(names: Names, name: str) -> str | None:
     """The text that a name is bound to, if it is bound once, and to a text."""
+    node = constant_node(names, name)
+    return str(node.value) if node is not None else None
+
+
+def constant_node(names: Names, name: str) -> ast.Constant | None:
+    """The text that a name is bound to, as `constant`, in the tree."""
     match names.get(name, ()):
-        case (ast.Assign(targets=[ast.Name()], value=ast.Constant(str() as text)),):
-            return text
-        case (ast.AnnAssign(value=ast.Constant(str() as text)),):
-            return text
+        case (ast.Assign(targets=[ast.Name()], value=ast.Constant(str()) as node),):
+            return node
+        case (ast.AnnAssign(value=ast.Constant(str()) as node),):
+            return node
     return None
 
 

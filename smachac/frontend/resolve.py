@@ -69,7 +69,7 @@ from smachac.frontend.state_fields import (
 )
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import SUB_SCRIPT_HELP, overridden, sub_script_state
-from smachac.frontend.type_annotations import TYPED, Aliases, read_aliases, typed
+from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import (
     Entry,
@@ -191,6 +191,7 @@ class _Resolver:
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
         if "types" in entries:
+            self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
         definitions = definitions_of(base, self.library)
         return Script(

@@ -230,7 +230,7 @@ def _known_fields(
     meant: set[str | None] = set()
     for key, entry in entries.items():
         row = schema.VARIABLES.get(key)
-        if row is not None and (owner in row.owners or key in type_.variables):
+        if row is not None and _is_field(key, owner, type_):
             if key not in _READ_ELSEWHERE:
                 value = _read(key, row.shape, entry, report)
                 if key in _FIELDS and (key != "name" or owner == "base"):
@@ -292,6 +292,14 @@ def _as_key(word: Word, entry: Entry, entries: Entries, type_: StateType) -> str
 
 LONGEST_VALUE = 60
 """In characters; a longer value is not repeated in a help."""
+
+
+def _is_field(key: str, owner: FieldOwner, type_: StateType) -> bool:
+    """Whether a name is that of a field of the schema here. A variable that a type of the user
+    declares has its own type, also under the name of a field of containers, such as `it`."""
+    owners = schema.VARIABLES[key].owners
+    own = owners and not type_.built_in
+    return owner in owners or (key in type_.variables and not own)
 
 
 def _read(key: str, shape: str, entry: Entry, report: Report) -> object:
@@ -455,7 +463,8 @@ def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterato
         of_schema = owner != "base" and row is not None and owner in row.owners
         if entry is None or (of_schema and not (name in NAMES and is_own(name, type_))):
             continue
-        if row is not None and row.shape == "name" and not isinstance(entry.value, Scalar):
+        named = row is not None and row.shape == "name" and _is_field(name, owner, type_)
+        if named and not isinstance(entry.value, Scalar):
             continue  # reported
         known = type_.variables.get(name)
         role = known.role if known is not None else ""

@@ -592,7 +592,9 @@ def _check_declared(
         return word.text
     message = f"`{word.text}` is not in the `{part}` of the interface"
     help = did_you_mean(word.text, names) or f"add it to `{part}`, or remove it here"
-    report.append(wrong_shape(word.span, message, help, arguments=(part, word.text)))
+    effect = f"only names in `{part}` have a meaning here, so no program is generated"
+    arguments = (part, word.text)
+    report.append(wrong_shape(word.span, message, help, arguments=arguments, effect=effect))
     return guesser_of(tuple(names)).sure(word.text)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Source, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend.errors.script import Owner, bad_type, unknown_variable
 from smachac.frontend.fields import PRESET_FIELDS, as_pairs, is_long_form
@@ -31,6 +32,21 @@ def read_aliases(tree: Tree, report: Report) -> Aliases:
         text = _filled(value.text, found)
         if read_type(text, value, report) is not None:
             found[key.text] = text
+    return found
+
+
+def explain_aliases(aliases: Aliases, source: Source, report: Report) -> set[str]:
+    """The names of aliases that other files than the script use as types, where they are unknown
+    (SM017): the help of these findings is the type to write there."""
+    found: set[str] = set()
+    for index, item in enumerate(report) if aliases else ():
+        finding = item.finding
+        unknown = finding.arguments[1] if item.code == "SM017" and finding.arguments[1:] else ""
+        if unknown in aliases and finding.span.source is not source:
+            found.add(unknown)
+            meant = _filled(finding.arguments[0], aliases)
+            help = f"an interface does not use the `types:` of a script: write `{meant}`"
+            report[index] = replace(item, finding=replace(finding, help=help))
     return found
 
 

@@ -10,6 +10,8 @@ from smachac.diagnostics.source import Span, Word
 FaultKind = Literal[
     "no module",
     "no class",
+    "no imported module",
+    "no imported name",
     "syntax",
     "no state",
     "no execute",
@@ -17,6 +19,7 @@ FaultKind = Literal[
     "coroutine",
     "arguments",
     "no constructor call",
+    "no base constructor call",
     "no outcomes",
     "data class",
     "self twice",
@@ -27,6 +30,7 @@ FaultKind = Literal[
     "no parameter",
     "required parameter",
     "other parameter",
+    "renamed parameter",
     "no such parameter",
     "missing argument",
     "not passed",
@@ -52,13 +56,17 @@ FaultKind = Literal[
     "no import",
     "wrong import",
     "undefined method",
+    "no attribute",
     "unset attribute",
     "no list",
     "no comma",
+    "no tuple",
+    "no result",
     "no argument",
     "no state class",
     "not called",
     "no effect",
+    "no answer",
     "identity",
     "comparison",
 ]
@@ -69,12 +77,13 @@ class ClassFault:
     """A certain fault in the structure of a class, at the name that it is about.
 
     For `syntax`, the text of `name` is the message of the parser. `near` is the name that was
-    probably meant.
+    probably meant. `file` is the module that lacks the name.
     """
 
     kind: FaultKind
     name: Word
     near: str | None = None
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,7 +109,8 @@ class Ending:
     None: not known. `possible`: an entry of a table, which may be one that is never used, or a path
     that may be impossible. `meant` is the expression that was probably meant; `silent` the helper
     that ends without `return`, and so returns None. `skipped` are the keys that a path to it does
-    not set, each with the place that leads past the assignment (frontend/skipped_writes.py)."""
+    not set, each with the place that leads past the assignment (frontend/skipped_writes.py).
+    `defined` is the place of the text of a constant that has a name in the code."""
 
     outcome: Word
     written: frozenset[str] | None = None
@@ -108,6 +118,7 @@ class Ending:
     skipped: tuple[tuple[str, Word], ...] = ()
     meant: str | None = None
     silent: str = ""
+    defined: Span | None = None
 
 
 Step = tuple[Literal["attribute", "item", "each"], str | int]
@@ -138,13 +149,16 @@ class ClassFacts:
     `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
     `execute` is the place of its name. `silent`: some path through it returns nothing,
     `always_silent`: every path. `open_end` is the place after which it returns nothing, with its
-    kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`.
+    kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`;
+    `in_loop` the `return` at the end of that loop.
     `reads` and `writes` are the userdata keys that it accesses, each at its name.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
-    `values` are the expressions that `execute` itself writes, each with its key. `unused` are the
-    local variables that it assigns and does not use, each with the userdata key of that name.
-    `parts` are the parts of userdata keys that it reads itself: `userdata.pose.x`. `state_call`:
-    the built-in `State.tpl.py` makes the state.
+    `values` are the expressions that the class writes, each with its key; of a call of a function,
+    also the texts that it returns. `loops` are the attributes that it loops over, each with the
+    parameter of the constructor that it is. `unused` are the local variables, and the attributes of
+    `self`, that it assigns and does not use, each with the userdata key of that name. `parts` are
+    the parts of userdata keys that it reads itself: `userdata.pose.x`. `state_call`: the built-in
+    `State.tpl.py` makes the state.
     """
 
     name: Word | None = None
@@ -160,6 +174,7 @@ class ClassFacts:
     silent: bool = False
     always_silent: bool = False
     open_end: Word | None = None
+    in_loop: Word | None = None
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
     stub: bool = False
@@ -167,6 +182,7 @@ class ClassFacts:
     values: tuple[tuple[str, Word], ...] = ()
     unused: tuple[tuple[str, Word], ...] = ()
     parts: tuple[Part, ...] = ()
+    loops: tuple[tuple[str, Word], ...] = ()
     state_call: StateCall | None = None
 
     @property

@@ -31,6 +31,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`__init__` of `{name}` does not call `__init__` of `smach.State`",
         "write `super().__init__({lists})` as the first line of `__init__`",
     ),
+    "no base constructor call": (
+        "`__init__` of `{name}` does not call `__init__` of its base class",
+        "write `{near}` as the first line of `__init__`",
+    ),
     "no outcomes": (
         "the class `{name}` has no `__init__`, so the state has no outcomes",
         "add `def __init__(self):` with the line `super().__init__({lists})`",
@@ -93,6 +97,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "neither `{name}` nor `smach.State` defines `{word}`: Python stops here",
         "define `{word}` in the class, or correct the name",
     ),
+    "no attribute": (
+        "the module `{file}` of Python has no `{word}`: Python stops here",
+        "correct the name",
+    ),
     "unset attribute": (
         "`self.{word}` of `{name}` is never set: Python stops here",
         "write `self.{word} = {word}` in `__init__`",
@@ -103,6 +111,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "no comma": (
         "a comma is missing: Python joins the two texts to `{word}`",
+        "write `{near}`",
+    ),
+    "no tuple": (
+        "`{word}` is a text, but `{name}` uses it as a list of names: only a comma makes a tuple",
+        "write `{near}`",
+    ),
+    "no result": (
+        "`{word}` changes a collection and returns None: the variable becomes None",
         "write `{near}`",
     ),
     "no argument": (
@@ -121,6 +137,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "the line `{word}` does nothing: without `()` a method is not called",
         "write `{near}`, or remove the line",
     ),
+    "no answer": (
+        "the line `{word}` does nothing: without `()` a method is not called",
+        "write `{near}`",
+    ),
     "identity": (
         "`is` compares objects, not values: two equal values can be two objects",
         "write `{near}`",
@@ -135,7 +155,7 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "no outcome": (
         "`Outcome` of `{name}` has no `{word}`",
-        "add it to `Outcome` and to the interface, or correct the name",
+        "write one of {file}, or add it to `Outcome` and to the interface",
     ),
     "wrong result": (
         "`execute` of `{name}` returns `{word}`, not an outcome",
@@ -175,7 +195,8 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "unset output": (
         "`execute` of `{name}` never sets its output key `{word}`",
-        "write `out.{word} = ...`, or remove the key from the interface and from `Out`",
+        "write `out.{word} = ...` before a `return`, or remove the key from the interface and from"
+        " `Out`",
     ),
     "skipped output": (
         "`execute` of `{name}` can return `Outcome::{near}` without setting its output key"
@@ -196,6 +217,11 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     "other parameter": (
         "`__init__` of `{name}` requires `{word}`, but the variable of the interface `{type}` is"
         " `{near}`",
+        "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
+    ),
+    "renamed parameter": (
+        "`__init__` of `{name}` has the parameter `{word}`, but the variable of the interface"
+        " `{type}` is `{near}`",
         "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
     ),
     "no such parameter": (
@@ -232,8 +258,10 @@ CHECKED_ONLY = frozenset[FaultKind](
         "parameter order",
         "not called",
         "no effect",
+        "no answer",
         "identity",
         "comparison",
+        "no result",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -242,6 +270,9 @@ EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
     "undefined name": "",
     "undefined method": "",
+    "no attribute": "",
+    "no result": "",
+    "no tuple": "each letter of the text counts as a name",
     "unset attribute": "",
     "no import": "",
     "other scope": "",
@@ -252,6 +283,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "wrong import": "",
     "not called": "the value is the method itself, which is true in every condition",
     "no effect": "",
+    "no answer": "the request stays set: when the state runs again, it is stopped at once",
     "identity": "the comparison can be false for equal values",
     "comparison": "the line has no effect: the old value stays, or there is none",
     "unused outcome": "a transition for this outcome is never taken",
@@ -273,6 +305,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no method": "SMACH needs the name of an outcome: the machine stops with an error",
     "coroutine": "SMACH needs the name of an outcome: the machine stops with an error",
     "no constructor call": "the outcomes and keys of the state are missing: the program stops",
+    "no base constructor call": "what the base class sets is missing, also the outcomes and keys:"
+    " the program stops",
     "no comma": "SMACH knows the joined name only: the machine stops with an error",
     "no argument": "the call raises a TypeError when the program makes the state",
     "no state class": "the definition of the class raises an error when the program starts",
@@ -280,6 +314,7 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no parameter": _PASSED,
     "no such parameter": _PASSED,
     "other parameter": _PASSED,
+    "renamed parameter": _PASSED,
     "required parameter": _CALLED,
     "missing argument": _CALLED,
     "not passed": _CALLED,
@@ -298,6 +333,8 @@ WRITTEN = frozenset[FaultKind](
         "no number",
         "skipped output",
         "other parameter",
+        "renamed parameter",
+        "no base constructor call",
         "other class",
         "other userdata",
         "lost userdata",
@@ -305,9 +342,12 @@ WRITTEN = frozenset[FaultKind](
         "wrong import",
         "no comma",
         "other guard",
+        "no tuple",
+        "no result",
         "no state class",
         "not called",
         "no effect",
+        "no answer",
         "identity",
         "comparison",
     ]
@@ -319,7 +359,14 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
     """The message and the help for a fault of a class. `lists` are the arguments of the constructor
     of `smach.State` that fit the interface."""
     message, help = (
-        text.format(word=fault.name.text, name=name, type=state_type, lists=lists, near=fault.near)
+        text.format(
+            word=fault.name.text,
+            name=name,
+            type=state_type,
+            lists=lists,
+            near=fault.near,
+            file=fault.file,
+        )
         for text in WORDS[fault.kind]
     )
     near = fault.near
@@ -331,6 +378,8 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         what = f"rename the parameter `{near}` to `{fault.name.text}`"
         return message, f"{what}, or correct the name in the interface"
     written = fault.kind == "no list" or near.startswith('"') or "." in near
+    if fault.kind == "no attribute":
+        written = near.endswith(")")
     return message, f"write `{near}`" if written else f"did you mean `{near}`?"
 
 

@@ -162,6 +162,7 @@ def interfaces_differ(
         arguments=(target, state_type, name),
         related=(*_places(differences[1:]), used),
         help=differences[0].help,
+        effect="the program does not compile" if target in ("cpp", "C++") else None,
     )
 
 
@@ -223,11 +224,14 @@ def stale_code(
         }
     """
     used = Related(span=span, message=f"this state is of the type `{state_type}`")
+    cause = differences[0].word if differences else None
+    known = Related(span=number.span, message=f"the number of this version is {number.text}")
     return Finding(
-        span=number.span,
-        message=f"the class `{name}` was written for another version of `{state_type}.yml`",
+        span=cause.span if cause is not None else number.span,
+        message=f"the class `{name}` was written for another version of `{state_type}.yml`"
+        + (f": {cause.text}" if cause is not None else ""),
         arguments=(state_type, name),
-        related=(*_places(differences), used),
+        related=(*_places(differences[1:]), *([known] if cause is not None else []), used),
         help=f"adapt the class to the interface, then set `smachac_interface` to {number.text}",
     )
 
@@ -378,14 +382,16 @@ def defined_twice(
 def code_not_found(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
 ) -> Finding:
-    """The class that an interface names as the code of a state type does not exist, or its file
-    cannot be parsed.
+    """The class that an interface names as the code of a state type does not exist, its file cannot
+    be parsed, or an import in it or in a template fails.
 
     The generated program stops when it starts.
 
-    Exactly: a module is missing if the folder of its package has other modules, or if a module
-    with nearly the same name exists. Other modules can be installed packages, which are not
-    searched. `check` reports a warning; a build for the language of the class fails.
+    Exactly: of a class, its module and those of its base classes are read, of a template the block
+    `imports`; there, imports of modules of the project are checked. A module is missing if the
+    folder of its package has other modules, or if a module with nearly the same name exists. Other
+    modules can be installed packages, which are not searched. `check` reports a warning; a build
+    for the language of the class fails.
 
     Wrong:
         name: sm
@@ -438,8 +444,15 @@ def code_not_found(
     elif fault.kind == "no module":
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
         help = near or f"correct the name {interface}, or create the {file}"
+    elif fault.kind == "no imported module":
+        message = f"no module `{word.text}` exists, which is imported here"
+        help = near or "correct the name, or create the module"
+    elif fault.kind == "no imported name":
+        message = f"`{fault.file}` has no `{word.text}`, which is imported from it"
+        help = near or f"correct the name, or define it in `{fault.file}`"
     else:
-        message = f"no class `{word.text}` is defined in the {file} that `{state_type}` names"
+        place = f"`{fault.file}`" if fault.file else f"the {file} that `{state_type}` names"
+        message = f"no class `{word.text}` is defined in {place}"
         help = near or f"correct the name {interface}, or define the class"
     return Finding(
         span=word.span,

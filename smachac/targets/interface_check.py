@@ -28,8 +28,8 @@ from smachac.targets.errors import (
 )
 from smachac.targets.smacha_templates import call_faults, guard_faults
 
-NOT_FOUND = ("no module", "no class", "syntax")
-"""The kinds of faults for which there is no class (SM608)."""
+NOT_FOUND = ("no module", "no class", "syntax", "no imported module", "no imported name")
+"""The kinds of faults of code that does not exist (SM608)."""
 
 Words = tuple[Word, ...]
 

@@ -20,8 +20,15 @@ from smachac.diagnostics.diagnostic import Diagnostic, Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.script import NameFix, undefined_name
+from smachac.frontend.library_names import (
+    MODULES,
+    attributes,
+    is_shadowed,
+    missing_name,
+    only_imported,
+)
 from smachac.frontend.loader import Library
-from smachac.ir.code_places import node_place, python_tree
+from smachac.ir.code_places import attribute_place, node_place, python_tree
 from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
 from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
@@ -33,6 +40,7 @@ FUNCTIONS = tuple(name for name in dir(builtins) if name.islower() and name[0] !
 _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
 _WORDS = re.compile(r"[^\W\d]\w*")
+_IMPORTED = re.compile(r"^[ \t]*from \S+ import (.+)$", re.M)
 _DEFINED = re.compile(r"^[ \t]*(?:def|class|import|from \S+ import)\s+(\w+)|^[ \t]*(\w+) = ", re.M)
 
 
@@ -61,7 +69,7 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
             if use.name.id not in imported and not _lacks_parameter(use, types):
-                fix = _fix(use, imported)
+                fix = _fix(use, imported) or _own_fix(use, machine, library)
                 by_look = _by_look(use.node, use.code)
                 yield undefined_name(
                     use.span,
@@ -72,6 +80,7 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
                     base=machine.base,
                     own=own_base,
                 )
+    yield from _missing_attributes(context, library)
     for word in classes:
         if known is not None and word.text not in known:
             package = _PACKAGES.get(word.text, "my_messages")
@@ -82,6 +91,46 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
                 example = _EXAMPLES.get(word.text, "TYPE")
                 help = f"write the type as well, as in `{word.text}/{example}`"
             yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
+
+
+def _missing_attributes(context: Context, library: Library) -> Iterator[Diagnostic]:
+    """The attributes of modules of Python's library that these do not have."""
+    machine = context.machine
+    found = [*context.at_states(_attributes_used, machine.state_types)]
+    if not found:
+        return
+    from smachac.targets.python.template_sources import template_sources
+
+    sources = template_sources(machine, library)
+    texts = [source.text for file, source in sources if library.own_template(file) is not None]
+    for code, module, node, meant in found:
+        if only_imported(module, texts) and not is_shadowed(module, library):
+            help = "correct the name"
+            if meant:
+                help = f"write `{meant}`" if meant.endswith(")") else f"did you mean `{meant}`?"
+            why = f"the module `{module}` of Python has no `{node.attr}`"
+            effect = "Python would stop at this name with an AttributeError"
+            place = attribute_place(code, node)
+            fix = NameFix(help, why)
+            yield undefined_name(place, node.attr, code.text, False, fix, effect=effect)
+
+
+def _attributes_used(
+    _: str, node: Node, types: Mapping[str, StateType]
+) -> Iterator[tuple[Expression, str, ast.Attribute, str]]:
+    """The attributes that modules of the library do not have, with what is probably meant."""
+    if isinstance(node, Leaf) and not node.type:
+        return
+    keys = {key.name for key in node.inputs}
+    for code in _codes(node, types):
+        likely = any(f"{name}." in code.text for name in MODULES)
+        tree = python_tree(code.text) if likely else None
+        used = [*attributes(tree)] if tree is not None else []
+        free = {name.id for name in free_in(code.text)} - keys if used else set()
+        for module, each in used:
+            meant = missing_name(module, each.attr) if module.partition(".")[0] in free else None
+            if meant is not None:
+                yield code, module, each, meant
 
 
 def _names_used(_: str, node: Node, types: Mapping[str, StateType]) -> Iterator[_Use]:
@@ -222,6 +271,23 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
         return NameFix(f"did you mean `{near if near in own else f'{own[0]}.{near}'}`?")
     near = guesser(FUNCTIONS)(word)
     return NameFix(f"did you mean `{near}`?") if near is not None else None
+
+
+def _own_fix(use: _Use, machine: Machine, library: Library) -> NameFix | None:
+    """The cure of a name that is one slip away from one that the user's templates define or
+    import."""
+    from smachac.targets.python.template_sources import template_sources
+
+    names: set[str] = set()
+    for file, source in template_sources(machine, library):
+        if library.own_template(file) is not None:
+            names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
+            names.update(word for line in _IMPORTED.findall(source.text)
+                         for word in _WORDS.findall(line))  # fmt: skip
+    near = guesser(sorted(names)).sure(use.name.id)
+    if near is None:
+        return None
+    return NameFix(f"did you mean `{near}`?", edits=_edits(use, near))
 
 
 def _param_fix(use: _Use) -> NameFix:

@@ -156,7 +156,7 @@ def test_a_correct_class() -> None:
          ['SM309 cell/find.py:19 "lots"'], None),
         (changed(('return "lost"', "return LOST"),
                  ("import smach\n", 'import smach\n\nLOST = "lots"\n')),
-         ["SM309 cell/find.py:21 LOST"], None),
+         ['SM309 cell/find.py:3 "lots"'], None),
         (changed(("(smach.State)", "(Skill)"), ("import smach\n", "from smach import State\n\n\n"
          "class Skill(State):\n    def stop(self):\n        return 1\n"),
                  ("def execute", "def exec")), ["SM609 cell/find.py:16 exec"], None),

@@ -613,6 +613,7 @@ def undefined_name(
     *,
     base: str = "Base",
     own: bool = False,
+    effect: str | None = None,
 ) -> Finding:
     """An expression of the script uses a name that the generated program does not define.
 
@@ -621,7 +622,8 @@ def undefined_name(
     joined from params can become an expression by accident.
 
     Exactly: a name is defined if Python or its library has it, if it is a common name of ROS, or if
-    a template of the script contains the word.
+    a template of the script contains the word. A name that a common module of Python's library
+    does not have is found too, as in `time.now()`.
 
     Wrong:
         name: sm
@@ -643,7 +645,14 @@ def undefined_name(
     """
     if fix is not None:
         what = fix.why or f"`{name}` is used here but is not defined"
-        return Finding(span=span, message=what, arguments=(name,), help=fix.help, edits=fix.edits)
+        return Finding(
+            span=span,
+            message=what,
+            arguments=(name,),
+            help=fix.help,
+            edits=fix.edits,
+            effect=effect,
+        )
     if not by_look:
         line = f"`from MODULE import {name}`"
         help = f"write {line} in the block `imports` of the template `{base}.tpl.py`"

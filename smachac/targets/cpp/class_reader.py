@@ -69,7 +69,7 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     name = code.name.rpartition("::")[2]
     if not re.search(rf"\b{re.escape(name)}\b|^\s*#\s*define\b", whole.text, re.M):
         word = Word(name, type_.class_spans.get(("cpp", "class"), NOWHERE))
-        return _absent(code, _absent_class(word, whole))
+        return _absent(code, _absent_class(word, whole, code.header))
     head = whole.only(_CLASS.format(re.escape(name)))
     body = whole.inside(head)
     if head is None or body is None or "#" in body.text:
@@ -120,14 +120,14 @@ def absent_header(header: Word, library: Library) -> ClassFault | None:
     return ClassFault(kind="no module", name=header, near=meant)
 
 
-def _absent_class(name: Word, whole: Part) -> ClassFault | None:
+def _absent_class(name: Word, whole: Part, header: str) -> ClassFault | None:
     """The fault that a header has no class of a name; None if it includes other headers of the
     user, which can define it."""
     included = re.findall(r'^\s*#\s*include\s*"([^"]*)"', whole.source.text, re.M)
     if any(not each.startswith("smachac/") for each in included):
         return None
     classes = re.findall(r"\b(?:class|struct)\s+(\w+)", whole.text)
-    return ClassFault(kind="no class", name=name, near=guesser(classes)(name.text))
+    return ClassFault(kind="no class", name=name, near=guesser(classes)(name.text), file=header)
 
 
 def _faults(
@@ -143,7 +143,9 @@ def _faults(
     for found in _USED_OUTCOME.finditer(body.text):
         if found[1] not in known:
             word = body.word(found[1], *found.span(1))
-            yield ClassFault(kind="no outcome", name=word, near=guess(found[1]))
+            listed = ", ".join(f"`{each}`" for each in known)
+            near = guess(found[1])
+            yield ClassFault(kind="no outcome", name=word, near=near, file="" if near else listed)
 
 
 def _without_number(

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.class_reader import PARAMETERS
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFacts, ClassFault
 from smachac.ir.nodes import StateType
@@ -58,6 +59,10 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
     required = [p.word for p in facts.parameters if p.required and p.word.text not in given]
     if len(unknown) == len(required) == 1 and guess(unknown[0]) is None:
         yield ClassFault(kind="other parameter", name=required[0], near=unknown[0])
+        return
+    extra = [p.word for p in facts.parameters if p.word.text not in {*given, *PARAMETERS, "node"}]
+    if len(unknown) == len(extra) == 1 and guess(unknown[0]) is None:
+        yield ClassFault(kind="renamed parameter", name=extra[0], near=unknown[0])
         return
     meant = set()
     for name in unknown:

@@ -1,0 +1,25 @@
+"""Imports of modules of the project that fail, in templates of the user (SM608)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
+from smachac.frontend.loader import Library
+from smachac.frontend.python_imports import missing_in_template
+from smachac.ir.nodes import Machine
+from smachac.targets.errors import code_not_found
+
+
+def template_imports(machine: Machine, library: Library) -> Iterator[Diagnostic]:
+    """The imports in the user's templates that fail, as warnings: only the Python program stops."""
+    from smachac.targets.python.template_sources import template_sources, uses_own_templates
+
+    if not uses_own_templates(machine, library):
+        return
+    for file, source in template_sources(machine, library):
+        if library.own_template(file) is not None:
+            for fault in missing_in_template(source, library):
+                found = code_not_found(fault, "python", "", file, ())
+                yield replace(found, severity=Severity.WARNING)
