@@ -96,14 +96,12 @@ def of_other_objects(node: ast.ClassDef) -> set[ast.AST]:
     """The nodes in a class whose `self` is another object: those of inner classes, and of functions
     in a method that have a parameter of this name."""
     found: set[ast.AST] = set()
-    methods = ast.FunctionDef | ast.AsyncFunctionDef
-    own = {each for each in node.body if isinstance(each, methods)}
+    own = {*node.body}
     for each in ast.walk(node):
         inner = each is not node and isinstance(each, ast.ClassDef)
-        if isinstance(each, methods | ast.Lambda) and each not in own:
-            inner = any(
-                arg.arg == "self" for arg in ast.walk(each.args) if isinstance(arg, ast.arg)
-            )
+        if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            given = [arg.arg for arg in ast.walk(each.args) if isinstance(arg, ast.arg)]
+            inner = each not in own and "self" in given
         if inner and each not in found:
             found.update(ast.walk(each))
     return found

@@ -59,7 +59,7 @@ def test_a_correct_class() -> None:
         ({"grasp": CLASS.replace("execute", "run")}, "SM609 arm/grasp.hpp:3:7",
          "the class `arm::Grasp` has no method `execute`"),
         ({"grasp": CLASS.replace("class Grasp", "class Grip")}, "SM608 templates/Grasp.yml:4:44",
-         "the header that `Grasp` names did you mean `Grip`?"),
+         "is defined in `arm/grasp.hpp` did you mean `Grip`?"),
         ({"grisp": CLASS}, "SM608 templates/Grasp.yml:4:22", "did you mean `arm/grisp.hpp`?"),
     ],
 )  # fmt: skip
@@ -177,7 +177,7 @@ def push_findings(*pairs: tuple[str, str]) -> list[str]:
         (("  Outcome give_up() { return Outcome::stuck; }\n", ""), None),
         ((STOP, ""), "5 preempted: add where it waits: `if (stop.requested()) { stop.service();"
          " return Outcome::preempted; }`"),
-        (("    out.force = arm_.force();\n", ""), "7 force: write `out.force = ...`, or"),
+        (("    out.force = arm_.force();\n", ""), "7 force: write `out.force = ...` before a `return`, or"),
     ],
 )  # fmt: skip
 def test_members_of_a_class(pair: tuple[str, str], found: str | None) -> None:

@@ -273,13 +273,14 @@ def test_the_number_of_another_interface() -> None:
     finding = item.finding
     assert item.severity is Severity.WARNING
     assert (
-        finding.message == "the class `arm::Grasp` was written for another version of `Grasp.yml`"
+        finding.message == "the class `arm::Grasp` was written for another version of `Grasp.yml`:"
+        " the outcome `lost` is missing"
     )
     assert (
         finding.help == f"adapt the class to the interface, then set `smachac_interface` to {right}"
     )
-    assert str(finding.span) == "arm/grasp.hpp:16:54"
-    assert [str(each.span) for each in finding.related] == ["arm/grasp.hpp:12:24", "main.yml:11:5"]
+    assert str(finding.span) == "arm/grasp.hpp:12:24"
+    assert [str(each.span) for each in finding.related] == ["arm/grasp.hpp:16:54", "main.yml:11:5"]
 
 
 @pytest.mark.parametrize("spelling", ["{0}", "0X{1}u", "{2}U", "0x{3}'{4}UL"])
