@@ -32,7 +32,7 @@ from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Preset, StateType, Struct
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Preset, Remap, StateType, Struct
 from smachac.ir.traversal import expressions, remapping, walk
 from smachac.ir.types import ANY
 
@@ -52,7 +52,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
     wrong value.
 
     Exactly: only keys in `userdata` and in the `output_keys` of states are checked, not the outputs
-    of a state type or sub-script. It is an info for outputs of states in the outermost machine,
+    of a state type or sub-script, unless the script remaps the output to a key that is one slip
+    away from a key that is read. It is an info for outputs of states in the outermost machine,
     because they can be read after the run; its `output_keys` declare the results.
 
     Wrong:
@@ -110,6 +111,20 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 related=calls(node, span),
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
+            )
+        for child, remap, meant in context.of_container(_misnamed_outputs, scope.path, scope):
+            if remap.to in read or (scope.path, remap.to) in reported:
+                continue
+            yield Finding(
+                span=remap.to_span,
+                message=f"`{remap.to}` is set, but nothing in {container_name(scope, remap.span)}"
+                " reads it",
+                arguments=(remap.to,),
+                help=f"did you mean `{meant}`? Write `{remap.key}: {meant}`",
+                effect=f"the result `{remap.key}` of `{child.name}` is lost: what reads `{meant}`"
+                " works without it",
+                related=calls(child, remap.span),
+                node=f"{scope.path}/{child.name}",
             )
 
 
@@ -209,6 +224,36 @@ def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ..
             if key not in seen and each.span.source is child.span.source and _sets(child, each):
                 seen.add(key)
                 found.append((key, child, place_of(child, each)))
+    return tuple(found)
+
+
+def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ...]:
+    """The outputs of state types that the script remaps to a key that is one slip away from another
+    one that the container reads, with that key. The reader must accept the type of the output."""
+    children = scope.container.children
+    remapped = [
+        (child, remap, key)
+        for child in children
+        if child.remaps
+        for key in child.outputs
+        for remap in child.remaps
+        if remap.key == key.name and key.span.source is not child.span.source
+    ]
+    if not remapped:
+        return ()
+    read: dict[str, list[Key]] = {}
+    for child in children:
+        names = remapping(child)
+        for key in child.inputs:
+            read.setdefault(names.get(key.name, key.name), []).append(key)
+    guess = guesser(read)
+    found: list[tuple[Node, Remap, str]] = []
+    for child, remap, key in remapped:
+        meant = guess.sure(remap.to) if remap.to not in read else None
+        if meant is None or key.name in {each.name for each in child.inputs}:
+            continue
+        if all(misfit(key.type, each.type) is None for each in read[meant]):
+            found.append((child, remap, meant))
     return tuple(found)
 
 

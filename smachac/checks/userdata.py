@@ -454,7 +454,9 @@ def lost_output(context: Context) -> Iterator[Finding]:
     Only the keys in `output_keys` are copied out of a container. The state that reads the key
     outside works with an older value, or finds the key unset, and then the machine stops.
 
-    Exactly: an error if the key is unset outside, a warning if it has an older value.
+    Exactly: an error if the key is unset outside, a warning if it has an older value. The reader
+    can be the container itself, where it runs again, in a loop or for the next item of `for_each`,
+    if no state in it reads the key after it is set.
 
     Wrong:
         name: sm
