@@ -85,6 +85,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
     for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
     reported |= {(path, preset.key) for path, (_, preset, *_) in meant_presets(context).items()}
+    reported |= _swapped_lists(context)
     for scope in flow.scopes.values():
         container = scope.container
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
@@ -100,6 +101,10 @@ def dead_key(context: Context) -> Iterator[Finding]:
             if key == TYPE_KEY and any(map(lacks_type_key, container.children)):
                 continue  # SM515
             # The userdata of the machine can be read after the run.
+            loop = _loop_over_the_word(container, key)
+            if loop is not None:
+                yield _word_as_list(f"{scope.path}/{loop.name}", loop, key)
+                continue
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
             yield Finding(
@@ -126,6 +131,34 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 related=calls(child, remap.span),
                 node=f"{scope.path}/{child.name}",
             )
+
+
+def swapped_loop(missing: Missing) -> nodes.Iterator | None:
+    """The loop over a key that nothing sets, where it calls its item as a key that is set, and a
+    state in it reads the item under the name of that key: both have changed places."""
+    scope = missing.scope
+    if missing.cause not in ("nowhere", "remapped"):
+        return None
+    held = {*scope.held, *scope.inputs}
+    for vertex in missing.vertices:
+        node = scope.container if vertex == START else scope.children.get(str(vertex))
+        if not isinstance(node, nodes.Iterator) or not node.item_key:
+            continue
+        names = remapping(node) if vertex != START else {}
+        if names.get(node.items_key, node.items_key) != missing.key:
+            continue
+        read = {key.name for child in node.children for key in child.inputs}
+        for steps in scope.steps.values() if vertex != START else ():
+            held.update(*(step.writes.perhaps for step in steps))
+        if node.item_key in held and missing.key in read and node.item_key not in read:
+            return node
+    return None
+
+
+def _swapped_lists(context: Context) -> set[tuple[str, str]]:
+    """The lists of loops whose items and item have changed places, with their containers."""
+    loops = [(each, swapped_loop(each)) for each in context.missing_keys("nowhere", "remapped")]
+    return {(each.scope.path, loop.item_key) for each, loop in loops if loop is not None}
 
 
 class MeantPreset(NamedTuple):
@@ -310,6 +343,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     flow = context.corrected_flow
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
+    kept |= _swapped_lists(context)
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     for scope in flow.scopes.values():
@@ -318,7 +352,11 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             continue
         used = context.of_container(_used_in, scope.path, scope)
         for key in container.inputs:
-            if key.name not in used and (scope.path, key.name) not in kept:
+            if key.name in used or (scope.path, key.name) in kept:
+                continue
+            if isinstance(container, nodes.Iterator) and _is_over_the_word(container, key.name):
+                yield _word_as_list(scope.path, container, key.name)
+            else:
                 yield _unused(scope.path, container, key, "input")
         set_ = context.of_container(_written_in, scope.path, scope)
         outer = scope.path.rpartition("/")[0]
@@ -328,6 +366,36 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             if (outer, scope.outputs[key.name]) not in missing:
                 yield _unused(scope.path, container, key, "output")
     yield from _unused_by_the_script(context)
+
+
+def _is_over_the_word(loop: nodes.Iterator, key: str) -> bool:
+    """Whether the items of a loop are a list with one text, the name of a key."""
+    return loop.items is not None and loop.items.data == (key,)
+
+
+def _loop_over_the_word(container: Container, key: str) -> nodes.Iterator | None:
+    """The loop of a container over a list with one text, the name of a key."""
+    for child in container.children:
+        if isinstance(child, nodes.Iterator) and _is_over_the_word(child, key):
+            return child
+    return None
+
+
+def _word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:
+    """The finding on a loop over one text, where nothing reads the key of that name."""
+    field = "in" if loop.sugar else "it"
+    help = f"write `{field}: {key}`"
+    if not loop.sugar and key not in {each.name for each in loop.inputs}:
+        help += f", and add `{key}` to the `input_keys` of `{loop.name}`"
+    return Finding(
+        span=loop.items_span,
+        message=f"`{loop.name}` runs once, for the text `{key}`: nothing reads the key `{key}`",
+        arguments=("items", key),
+        help=help,
+        effect=f"the items in `{key}` are not used",
+        related=calls(loop, loop.items_span),
+        node=path,
+    )
 
 
 def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:

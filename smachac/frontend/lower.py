@@ -446,6 +446,7 @@ def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) 
         item_key=_text(state.it_label, "it_data"),
         item_span=state.it_label.span if state.it_label is not None else NOWHERE,
         exhausted_outcome=exhausted.text,
+        exhausted_span=exhausted.span,
         loop_outcomes=tuple(loops),
         loop_spans=() if breaks else tuple(word.span for word in state.loop_outcomes),
         final_map=tuple(final.items()),

@@ -343,7 +343,8 @@ class Iterator(_Container):
     The items are the value `items`, or the userdata of the container in `items_key`; `items_span`
     is their place, and `item_span` that of the name `item_key`. Outcomes in `loop_outcomes`
     continue with the next item; other outcomes end the iteration. The last outcome, or
-    `exhausted_outcome`, is mapped by `final_map` (pairs from, to). `loop_spans` and `final_spans`
+    `exhausted_outcome`, is mapped by `final_map` (pairs from, to). `exhausted_span` is its place,
+    or the iterator's if the script does not name it. `loop_spans` and `final_spans`
     are the places of `loop_outcomes` and of the entries of `final_map` in the script; empty if it
     does not name them.
     """
@@ -355,6 +356,7 @@ class Iterator(_Container):
     item_key: str = "it_data"
     item_span: Span = field(default=NOWHERE, compare=False, repr=False)
     exhausted_outcome: str = "exhausted"
+    exhausted_span: Span = field(default=NOWHERE, compare=False, repr=False)
     loop_outcomes: tuple[str, ...] = ()
     loop_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     final_map: tuple[tuple[str, str], ...] = ()

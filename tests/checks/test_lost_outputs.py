@@ -1,5 +1,5 @@
-"""SM307 and SM305 on results that a container keeps, also one in a loop or in another container, and
-on results with a misspelt name."""
+"""SM307 and SM305 on results that a container keeps, also in a loop or in another container, and on
+results with a misspelt name."""
 
 from __future__ import annotations
 
