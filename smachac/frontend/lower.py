@@ -80,6 +80,7 @@ def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
         params=script.params,
         fixed_params=script.fixed_params,
         state_types=script.state_types,
+        aliases=script.aliases,
     )
 
 

@@ -206,6 +206,7 @@ class _Resolver:
             fixed_params=tuple(self.fixed_params),
             functions=functions_of(base, self.types, self.library),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
+            aliases=self.aliases,
         )
 
     def has_too_many_keys(self) -> bool:

@@ -503,7 +503,7 @@ class Machine:
     of the targets only `dot` uses properties. `params` are those of the main script, `fixed_params`
     the look-ups of params in time limits and retries. `functions` are those of the user that the
     script names, by the text in the script. `state_types` are the interfaces of its
-    states and of its base, by name.
+    states and of its base, by name. `aliases` are the types that the script names, for messages.
     """
 
     root: StateMachine
@@ -520,6 +520,7 @@ class Machine:
     fixed_params: tuple[FixedParam, ...] = field(default=(), compare=False, repr=False)
     functions: Mapping[str, FunctionFacts] = field(default_factory=dict, compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
+    aliases: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
 
 
 Checked = NewType("Checked", Machine)
