@@ -8,6 +8,7 @@ exclude the error.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -63,7 +64,8 @@ class Fault:
     `what` is its description in a message, `keys` are the userdata keys in it. `always`: every
     evaluation of the whole expression evaluates this part. `word` is the name in the script instead
     of one of `choices`; `length`: the number of items is wrong. `effect`: what happens if the
-    fault is left, where that of the rule does not hold.
+    fault is left, where that of the rule does not hold. `units`: the text of a number,
+    its unit, and the unit of the other number.
     """
 
     kind: FaultKind
@@ -76,6 +78,7 @@ class Fault:
     choices: tuple[str, ...] = ()
     length: bool = False
     effect: str | None = None
+    units: tuple[str, str, str] | None = None
 
 
 EMPTY = mapping(())
@@ -335,7 +338,8 @@ class _Judge:
                     what=text,
                     keys=self.keys(left, right),
                     help=_in_one_unit(unit_of(one), unit_of(other), print_expression(right)),
-                    effect=None if conversion(unit_of(other), unit_of(one)) else NO_MEANING,
+                    effect=_no_meaning(unit_of(one), unit_of(other)),
+                    units=(print_expression(right), unit_of(other), unit_of(one)),
                 )
 
     def mixed(self, expr: Call) -> Iterator[Fault]:
@@ -564,15 +568,25 @@ def can_be_indexed(owner: Type, index: Type) -> bool:
     )  # fmt: skip
 
 
-NO_MEANING = "numbers of two kinds, such as a length and an angle, give no meaningful result"
+def _no_meaning(one: str, other: str) -> str | None:
+    """The effect of an operation on numbers in two units between which there is no factor."""
+    if conversion(other, one) is not None:
+        return None
+    return f"a number in `{one}` and a number in `{other}` give no meaningful result"
 
 
 def _in_one_unit(one: str, other: str, right: str) -> str:
     """The help for two numbers in different units; `right` is the text of the second one."""
     factor = conversion(other, one)
-    if factor is not None:
-        return f"multiply `{right}` by {factor:.6g}: then it is in `{one}` too"
-    return f"use a number in `{one}` in place of `{right}`, or correct the unit of one of the two"
+    if factor is None:
+        return (
+            f"use a number in `{one}` in place of `{right}`, or correct the unit of one of the two"
+        )
+    whole = round(1 / factor)
+    text = f"({right})" if " " in right else right
+    if whole > 1 and math.isclose(1 / factor, whole):
+        return f"1 {one} is {whole} {other}: write `{text} / {whole}`"
+    return f"1 {other} is {factor:.6g} {one}: write `{text} * {factor:.6g}`"
 
 
 class Signature(NamedTuple):

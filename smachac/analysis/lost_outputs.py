@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 from smachac.analysis.def_use import around, place_in
 from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
-from smachac.analysis.unset_reads import MOST_STEPS, Missing, Reader, reader_at
+from smachac.analysis.unset_reads import MOST_LEVELS, MOST_STEPS, Missing, Reader, reader_at
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.graph import Vertex
-from smachac.ir.nodes import Key, Leaf, Node
+from smachac.ir.nodes import Concurrence, Key, Leaf, Node
 from smachac.ir.traversal import remapping
 
 
@@ -51,16 +51,85 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
             continue
         kept: tuple[tuple[Node, Key, str], ...] = fact_of(_kept, scope.path, scope)
         for writer, written, own in kept:
-            around_it = flow.scopes[outer]
-            key = remapping(scope.container).get(own, own)
-            read = fact_of(_read, outer, around_it)
-            if key not in read or left <= 0 or (scope.path, own) in reported:
+            if left <= 0 or (scope.path, own) in reported:
                 continue
-            left -= len(around_it.steps) + len(around_it.reads)
-            vertex = _read_after(around_it, place_in(outer, scope.path), key)
-            if vertex is not None:
-                reader = reader_at(around_it, vertex, key)
-                yield Lost(scope, own, writer, written, reader, key, False)
+            levels = [
+                level
+                for level in _levels(flow, scope, own, writer)
+                if level.key in fact_of(_read, level.scope.path, level.scope)
+            ]
+            left -= sum(len(each.scope.steps) + len(each.scope.reads) for each in levels)
+            for level, vertex in chain(_after(levels), _again(scope, own, writer, levels)):
+                reader = reader_at(level.scope, vertex, level.key)
+                reported.add((scope.path, own))
+                yield Lost(scope, own, writer, written, reader, level.key, False)
+                break
+
+
+class _Level(NamedTuple):
+    """A container around the keeper of a key: the place of the keeper in it, and the name that the
+    key has there."""
+
+    scope: UserdataScope
+    place: str
+    key: str
+
+
+def _after(levels: Iterable[_Level]) -> Iterator[tuple[_Level, Vertex]]:
+    """The states that read the old value of a key after its keeper, innermost first."""
+    for level in levels:
+        vertex = _read_after(level.scope, level.place, level.key)
+        if vertex is not None:
+            yield level, vertex
+
+
+def _levels(flow: DataFlow, scope: UserdataScope, own: str, writer: Node) -> Iterator[_Level]:
+    """The containers around the keeper of a key in which a state can read what the keeper loses,
+    innermost first.
+
+    A container made for a field of a state passes every key on. Another one passes the key on as an
+    output that nothing else in it sets; then the key must also be of no use inside the keeper.
+    """
+    inner, key = scope, own
+    for _ in range(MOST_LEVELS):
+        path = around(flow, inner.path)
+        if path is None:
+            return
+        outer = flow.scopes[path]
+        place, key = place_in(path, inner.path), remapping(inner.container).get(key, key)
+        yield _Level(outer, place, key)
+        if not outer.container.sugar:
+            is_set = any(key in _set_by(child) for child in outer.container.children)
+            if key not in outer.outputs or is_set or not _is_dead(scope, writer, own):
+                return
+        inner = outer
+
+
+def _set_by(child: Node) -> set[str]:
+    """The keys of its container that a child declares as outputs."""
+    names = remapping(child)
+    return {names.get(key.name, key.name) for key in child.outputs}
+
+
+def _is_dead(scope: UserdataScope, writer: Node, own: str) -> bool:
+    """Whether no state in the container reads a key after the writer has set it."""
+    if isinstance(scope.container, Concurrence):
+        return not any(own in keys for keys in scope.reads.values())
+    return _read_after(scope, writer.name, own, again=True, written=True) is None
+
+
+def _again(
+    scope: UserdataScope, own: str, writer: Node, levels: Iterable[_Level]
+) -> Iterator[tuple[_Level, Vertex]]:
+    """The keeper of a key, where it runs again and takes in the old value of a key that it sets for
+    no other purpose."""
+    if own not in scope.inputs or not _is_dead(scope, writer, own):
+        return
+    for level in levels:
+        if _read_after(level.scope, level.place, level.key, again=True) == level.place:
+            yield level, level.place
+        if not level.scope.container.sugar:
+            return
 
 
 def _missed(flow: DataFlow, missing: Missing) -> Lost:
@@ -111,24 +180,32 @@ def _kept(scope: UserdataScope) -> tuple[tuple[Node, Key, str], ...]:
     }
     found: list[tuple[Node, Key, str]] = []
     for child in container.children:
+        renamed = {remap.key for remap in child.remaps} - {key.name for key in child.inputs}
         for key in child.outputs if isinstance(child, Leaf) else ():
             own = remapping(child).get(key.name, key.name)
             is_local = own in read and own not in scope.inputs
-            if key.span.source is child.span.source and own not in scope.outputs and not is_local:
+            is_named = key.span.source is child.span.source or key.name in renamed
+            if is_named and own not in scope.outputs and not is_local:
                 found.append((child, key, own))
     return tuple(found)
 
 
-def _read_after(scope: UserdataScope, start: str, key: str) -> Vertex | None:
-    """A vertex that reads a key after another one and before anything writes it."""
+def _read_after(
+    scope: UserdataScope, start: str, key: str, *, again: bool = False, written: bool = False
+) -> Vertex | None:
+    """A vertex that reads a key after another one and before anything else writes it. `again`: this
+    can be the first one itself. `written`: the first one writes the key."""
     # By hand: networkx needs a graph for each key and takes 3.7 ms instead of 0.9 ms for 1,000
     # states and 40 ms instead of 10 ms for 10,000, that is 2 % of a check with one fault, 22 % with
     # ten; its import adds 128 ms to a check of 10 states, which takes 226 ms (bench/searches.py).
     todo: list[Vertex] = [start]
-    seen: set[Vertex] = set(todo)
+    seen: set[Vertex] = set() if again else {start}
     for vertex in todo:
         for step in scope.steps.get(vertex, ()):
-            if key in step.writes.trusted or step.writes.anything or step.target in seen:
+            is_own = written and vertex == start
+            if step.target in seen or (key in step.writes.trusted and not is_own):
+                continue
+            if step.writes.anything:
                 continue
             if key in scope.reads.get(step.target, ()):
                 return step.target

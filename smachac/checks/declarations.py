@@ -33,7 +33,7 @@ from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Preset, StateType, Struct
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Preset, Remap, StateType, Struct
 from smachac.ir.traversal import expressions, remapping, walk
 from smachac.ir.types import ANY
 
@@ -53,7 +53,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
     wrong value.
 
     Exactly: only keys in `userdata` and in the `output_keys` of states are checked, not the outputs
-    of a state type or sub-script. It is an info for outputs of states in the outermost machine,
+    of a state type or sub-script, unless the script remaps the output to a key that is one slip
+    away from a key that is read. It is an info for outputs of states in the outermost machine,
     because they can be read after the run; its `output_keys` declare the results.
 
     Wrong:
@@ -85,6 +86,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
     for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
     reported |= {(path, preset.key) for path, (_, preset, *_) in meant_presets(context).items()}
+    reported |= _swapped_lists(context)
     for scope in flow.scopes.values():
         container = scope.container
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
@@ -100,6 +102,10 @@ def dead_key(context: Context) -> Iterator[Finding]:
             if key == TYPE_KEY and any(map(lacks_type_key, container.children)):
                 continue  # SM515
             # The userdata of the machine can be read after the run.
+            loop = _loop_over_the_word(container, key)
+            if loop is not None:
+                yield _word_as_list(f"{scope.path}/{loop.name}", loop, key)
+                continue
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
             yield Finding(
@@ -113,6 +119,48 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 severity=Severity.INFO if is_result else None,
                 node=scope.path if node is container else f"{scope.path}/{node.name}",
             )
+        for child, remap, meant in context.of_container(_misnamed_outputs, scope.path, scope):
+            if remap.to in read or (scope.path, remap.to) in reported:
+                continue
+            yield Finding(
+                span=remap.to_span,
+                message=f"`{remap.to}` is set, but nothing in {container_name(scope, remap.span)}"
+                " reads it",
+                arguments=(remap.to,),
+                help=f"did you mean `{meant}`? Write `{remap.key}: {meant}`",
+                effect=f"the result `{remap.key}` of `{child.name}` is lost: what reads `{meant}`"
+                " works without it",
+                related=calls(child, remap.span),
+                node=f"{scope.path}/{child.name}",
+            )
+
+
+def swapped_loop(missing: Missing) -> nodes.Iterator | None:
+    """The loop over a key that nothing sets, where it calls its item as a key that is set, and a
+    state in it reads the item under the name of that key: both have changed places."""
+    scope = missing.scope
+    if missing.cause not in ("nowhere", "remapped"):
+        return None
+    held = {*scope.held, *scope.inputs}
+    for vertex in missing.vertices:
+        node = scope.container if vertex == START else scope.children.get(str(vertex))
+        if not isinstance(node, nodes.Iterator) or not node.item_key:
+            continue
+        names = remapping(node) if vertex != START else {}
+        if names.get(node.items_key, node.items_key) != missing.key:
+            continue
+        read = {key.name for child in node.children for key in child.inputs}
+        for steps in scope.steps.values() if vertex != START else ():
+            held.update(*(step.writes.perhaps for step in steps))
+        if node.item_key in held and missing.key in read and node.item_key not in read:
+            return node
+    return None
+
+
+def _swapped_lists(context: Context) -> set[tuple[str, str]]:
+    """The lists of loops whose items and item have changed places, with their containers."""
+    loops = [(each, swapped_loop(each)) for each in context.missing_keys("nowhere", "remapped")]
+    return {(each.scope.path, loop.item_key) for each, loop in loops if loop is not None}
 
 
 def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
@@ -240,6 +288,36 @@ def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ..
     return tuple(found)
 
 
+def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ...]:
+    """The outputs of state types that the script remaps to a key that is one slip away from another
+    one that the container reads, with that key. The reader must accept the type of the output."""
+    children = scope.container.children
+    remapped = [
+        (child, remap, key)
+        for child in children
+        if child.remaps
+        for key in child.outputs
+        for remap in child.remaps
+        if remap.key == key.name and key.span.source is not child.span.source
+    ]
+    if not remapped:
+        return ()
+    read: dict[str, list[Key]] = {}
+    for child in children:
+        names = remapping(child)
+        for key in child.inputs:
+            read.setdefault(names.get(key.name, key.name), []).append(key)
+    guess = guesser(read)
+    found: list[tuple[Node, Remap, str]] = []
+    for child, remap, key in remapped:
+        meant = guess.sure(remap.to) if remap.to not in read else None
+        if meant is None or key.name in {each.name for each in child.inputs}:
+            continue
+        if all(misfit(key.type, each.type) is None for each in read[meant]):
+            found.append((child, remap, meant))
+    return tuple(found)
+
+
 def _sets(node: Node, key: Key) -> bool:
     """Whether a state can set one of its outputs (if not: SM306)."""
     if not isinstance(node, Leaf) or key.role != "result":
@@ -293,6 +371,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     flow = context.corrected_flow
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
+    kept |= _swapped_lists(context)
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     yield from _unwritten_outputs(context)
@@ -302,7 +381,11 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             continue
         used = context.of_container(_used_in, scope.path, scope)
         for key in container.inputs:
-            if key.name not in used and (scope.path, key.name) not in kept:
+            if key.name in used or (scope.path, key.name) in kept:
+                continue
+            if isinstance(container, nodes.Iterator) and _is_over_the_word(container, key.name):
+                yield _word_as_list(scope.path, container, key.name)
+            else:
                 yield _unused(scope.path, container, key, "input")
         set_ = context.of_container(_written_in, scope.path, scope)
         outer = scope.path.rpartition("/")[0]
@@ -322,6 +405,36 @@ def _unwritten_outputs(context: Context) -> Iterator[Finding]:
         finding = unwritten_finding(each, read=(each.path, each.key.name) in read)
         if finding is not None:
             yield finding
+
+
+def _is_over_the_word(loop: nodes.Iterator, key: str) -> bool:
+    """Whether the items of a loop are a list with one text, the name of a key."""
+    return loop.items is not None and loop.items.data == (key,)
+
+
+def _loop_over_the_word(container: Container, key: str) -> nodes.Iterator | None:
+    """The loop of a container over a list with one text, the name of a key."""
+    for child in container.children:
+        if isinstance(child, nodes.Iterator) and _is_over_the_word(child, key):
+            return child
+    return None
+
+
+def _word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:
+    """The finding on a loop over one text, where nothing reads the key of that name."""
+    field = "in" if loop.sugar else "it"
+    help = f"write `{field}: {key}`"
+    if not loop.sugar and key not in {each.name for each in loop.inputs}:
+        help += f", and add `{key}` to the `input_keys` of `{loop.name}`"
+    return Finding(
+        span=loop.items_span,
+        message=f"`{loop.name}` runs once, for the text `{key}`: nothing reads the key `{key}`",
+        arguments=("items", key),
+        help=help,
+        effect=f"the items in `{key}` are not used",
+        related=calls(loop, loop.items_span),
+        node=path,
+    )
 
 
 def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:

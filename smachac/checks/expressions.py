@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
+from smachac.analysis.units import conversion
 from smachac.checks.class_values import wrong_parts
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
@@ -27,7 +29,7 @@ from smachac.ir.code_places import (
 from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
 from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct
+from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct, is_number
 from smachac.ir.traversal import expressions, outcome_names, values
 
 MAX_LEVELS = 500
@@ -348,7 +350,32 @@ def constant_comparison(context: Context) -> Iterator[Finding]:
 def mixed_units(context: Context) -> Iterator[Finding]:
     """The operations on numbers with different units (SM504)."""
     for site, fault in _faults(context, "unit"):
-        yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
+        finding = _finding(site, fault, f"in {_owner(site)}, {fault.what}")
+        value = _in_other_unit(site, fault)
+        yield replace(finding, help=f"{finding.help}, {value}") if value else finding
+
+
+def _in_other_unit(site: ExpressionSite, fault: Fault) -> str:
+    """The end of the help for a number in another unit: the initial value of its key in the right
+    one; empty if it has not one value in the script."""
+    text, given, wanted = fault.units or ("", "", "")
+    factor = conversion(given, wanted)
+    for key in fault.keys:
+        cell = site.cells.get(key)
+        flows = cell.flows.values() if cell is not None else ()
+        origins = list(dict.fromkeys(alike[0].origin.cell for alike in flows))
+        factor = conversion(given, wanted)
+        if factor is None or text != f"ud.{key}" or len(origins) != 1:
+            continue
+        node, name = origins[0].node, origins[0].key
+        if node is None or isinstance(node, Leaf):
+            continue
+        for each in node.userdata:
+            if each.key == name and is_number(each.value.data) and each.type.args == (given,):
+                number = f"{each.value.data * factor:.6g}"
+                new = f"{{type: {each.type.name}<{wanted}>, value: {number}}}"
+                return f"or write `{name}: {new}` in the `userdata` of `{node.name}`"
+    return ""
 
 
 def _faults(context: Context, kind: FaultKind) -> Iterator[tuple[ExpressionSite, Fault]]:

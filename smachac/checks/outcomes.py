@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, is_catch_all, places_of, unknown_outcomes
+from smachac.analysis.control_flow import (
+    Linear,
+    is_catch_all,
+    is_open,
+    places_of,
+    unknown_outcomes,
+)
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir import nodes
+from smachac.ir.graph import stopped_endings
 from smachac.ir.nodes import (
     Concurrence,
     Container,
@@ -221,7 +229,59 @@ def _unhandled_outcomes(path: str, container: Container) -> Iterator[Finding]:
     if isinstance(container, StateMachine | nodes.Sequence):
         for child in container.children:
             for outcome in unhandled(child):
-                yield _unhandled(path, container, child, outcome)
+                meant = meant_ending(child) if isinstance(child, nodes.Iterator) else None
+                if meant is not None and meant.result is outcome:
+                    yield _misnamed_ending(path, meant)
+                else:
+                    yield _unhandled(path, container, child, outcome)
+
+
+class MeantEnding(NamedTuple):
+    """The outcome of an iterator after its last item, which the script does not declare and which
+    leads nowhere, and the declared outcome that is meant."""
+
+    container: nodes.Iterator
+    result: Outcome
+    meant: Outcome
+
+
+def meant_ending(container: nodes.Iterator) -> MeantEnding | None:
+    """The outcome that an iterator is meant to have after its last item: the only one that it
+    declares and cannot end with."""
+    if container.sugar or not container.transitions or any(map(is_open, container.children)):
+        return None
+    ways = {result for _, _, result in endings(container)}
+    (name, *_) = [result for _, _, result in endings(container)]
+    added = [each for each in container.outcomes if each.name == name]
+    handled = {step.outcome for step in container.transitions}
+    if not added or added[0].span != container.exhausted_span or name in handled:
+        return None
+    ways |= {*stopped_endings(container).values(), PREEMPTED, container.catches}
+    left = [each for each in container.outcomes if each.name not in ways and each.name in handled]
+    return MeantEnding(container, added[0], left[0]) if len(left) == 1 else None
+
+
+def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
+    container, result, meant = ending
+    name, field, value = container.name, "exhausted_outcome", meant.name
+    mapped = container.exhausted_outcome in dict(container.final_map)
+    if mapped:
+        field, value = "final_outcome_map", f"{{{container.exhausted_outcome}: {meant.name}}}"
+    written = result.span.text == result.name
+    message = f"`{name}` ends with `{result.name}` after the last item, but has no such outcome"
+    if written and not mapped:
+        message = f"`{field}` is `{result.name}`, but `{name}` has no such outcome"
+    return Finding(
+        span=result.span,
+        message=message,
+        arguments=(own_name(container, result.span), result.name),
+        help=f"write `{field}: {value}`: `{name}` has no other way to end with `{meant.name}`",
+        related=(
+            *other_place(meant.span, f"`{name}` never ends with this outcome"),
+            *calls(container, result.span),
+        ),
+        node=f"{path}/{name}",
+    )
 
 
 def unhandled(child: Node) -> list[Outcome]:

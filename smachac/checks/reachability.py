@@ -12,7 +12,7 @@ from smachac.analysis.control_flow import (
     strays,
 )
 from smachac.checks.messages import calls, did_you_mean, own_name
-from smachac.checks.outcomes import endings, unhandled
+from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
@@ -179,6 +179,9 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
         # Where SM209 is reported, a state does not lead `preempted` out of the container.
         stops = path in again or ends_preempted(container)
         known = {container.catches, PREEMPTED if stops else ""}
+        misnamed = meant_ending(container) if isinstance(container, nodes.Iterator) else None
+        if misnamed is not None:
+            known.add(misnamed.meant.name)  # SM104
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in possible | known:
                 yield _impossible(path, container, outcome)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 from smachac.analysis.type_lattice import (
     FLOAT,
     fields,
@@ -13,7 +15,7 @@ from smachac.analysis.type_lattice import (
     present,
     widened,
 )
-from smachac.ir.types import EXAMPLES, Type
+from smachac.ir.types import EXAMPLES, Type, parse_type
 
 FORMS = {
     "Pose": "[[x, y, z], [qx, qy, qz, qw]]",
@@ -43,6 +45,31 @@ def in_words(type_: Type) -> str:
             count = len(type_.args)
             return f"a list of {count} number{'s' if count != 1 else ''}"
     return f"`{widened(type_)}`"
+
+
+def named(type_: Type, aliases: Mapping[str, str]) -> str:
+    """A type as text, with the names that the script gives to the records in it."""
+    text = str(type_)
+    for name, alias in sorted(aliases.items(), key=lambda each: -len(each[1])):
+        record = parse_type(alias)
+        if record is not None and record.name == "record":
+            text = text.replace(str(record), name)
+    return text
+
+
+_ORDINALS = ("first", "second", "third")
+
+
+def place_in_words(key: str, steps: Sequence[int | str]) -> str:
+    """The place of a part of a literal, as part of a message: "`floor` of the second item of
+    `stops`"."""
+    words = [f"`{key}`"]
+    for step in steps:
+        if isinstance(step, str):
+            words.append(f"`{step}`")
+        else:
+            words.append(f"the {_ORDINALS[step]} item" if step < 3 else f"item {step + 1}")
+    return " of ".join(reversed(words))
 
 
 MOST_ITEMS = 8

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
+from types import MappingProxyType
 
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import kinds
@@ -28,8 +29,8 @@ from smachac.checks.class_values import wrong_loops, wrong_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
 from smachac.checks.rule import rule
-from smachac.checks.type_words import HELP, example, in_words
-from smachac.checks.value_places import place_of_part, steps_to_misfit
+from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
+from smachac.checks.value_places import place_of_part, steps_to_misfit, type_at
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import guesser
@@ -92,7 +93,8 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    yield from clash_findings([each for each in context.clashes["type"] if not _is_function(each)])
+    clashes = [each for each in context.clashes["type"] if not _is_function(each)]
+    yield from clash_findings(clashes, context.machine.aliases)
     yield from _without_items(context)
     yield from _wrong_steps(context)
     yield from wrong_writes(context)
@@ -204,8 +206,11 @@ MOST_PLACES = 6
 """Limit on the related places of a finding."""
 
 
-def clash_findings(clashes: list[Clash]) -> Iterator[Finding]:
-    """One finding for each value that fits none of its readers, and else one for each reader."""
+def clash_findings(
+    clashes: list[Clash], aliases: Mapping[str, str] = MappingProxyType({})
+) -> Iterator[Finding]:
+    """One finding for each value that fits none of its readers, and else one for each reader.
+    `aliases` are the names that the script gives to types."""
     origins = Counter(map(_root, clashes))
     readers = Counter(clash.cell for clash in clashes)
     groups: dict[tuple[str, TypeFlow | Cell], list[Clash]] = {}
@@ -217,14 +222,14 @@ def clash_findings(clashes: list[Clash]) -> Iterator[Finding]:
         else:
             groups.setdefault(("reader", reader), []).append(clash)
     for (side, _), group in groups.items():
-        yield _finding(group, at_origin=side == "origin")
+        yield _finding(group, aliases, at_origin=side == "origin")
 
 
 def _root(clash: Clash) -> TypeFlow:
     return clash.flow.origin
 
 
-def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
+def _finding(group: list[Clash], aliases: Mapping[str, str], *, at_origin: bool) -> Finding:
     clash = group[0]
     origin, cell = clash.flow.origin, clash.cell
     about = origin.cell if at_origin else cell
@@ -243,12 +248,14 @@ def _finding(group: list[Clash], *, at_origin: bool) -> Finding:
         for where, message in _remaps(each):
             show(where, message)
         if at_origin:
-            show(each.cell.span, _read(each.cell))
-    first, second = _without_fields(clash) or written(origin) + _part(clash), _read(cell)
+            show(each.cell.span, _read(each.cell, aliases))
+    first = _without_fields(clash) or written(origin) + _part(clash)
+    second = _read(cell, aliases)
     message = f"{first}, but {second}" if at_origin else f"{second}, but {first}"
+    special = _wrong_rotation(clash, aliases) or _wrong_part(clash, aliases) if at_origin else ""
     return Finding(
         span=span,
-        message=(_wrong_rotation(clash) if at_origin else None) or message,
+        message=special or message,
         arguments=(about.key, str(widened(clash.misfit.given)), str(clash.misfit.wanted)),
         help=_help(clash),
         effect=_effect(clash),
@@ -298,9 +305,9 @@ def _owner(cell: Cell) -> str:
     return f"`{cell.node.name}`" if cell.node is not None else "the base"
 
 
-def _read(cell: Cell) -> str:
+def _read(cell: Cell, aliases: Mapping[str, str]) -> str:
     """The type that a cell requires, as part of a message."""
-    wanted = f"`{cell.declared}`"
+    wanted = f"`{named(cell.declared, aliases)}`"
     match cell.role:
         case "input":
             return f"{_owner(cell)} reads `{cell.key}` as {wanted}"
@@ -345,15 +352,33 @@ def _part(clash: Clash) -> str:
     return f" (in it, {in_words(given)} is in place of `{wanted}`)"
 
 
-def _wrong_rotation(clash: Clash) -> str | None:
-    """The message on a pose whose rotation has a wrong number of numbers; None for others."""
+def _wrong_rotation(clash: Clash, aliases: Mapping[str, str]) -> str:
+    """The message on a pose whose rotation has a wrong number of numbers; empty for others."""
     given, wanted, whole = clash.misfit.given, clash.misfit.wanted, present(clash.cell.declared)
     count = length_of(given)
     if wanted.name != "Quaternion" or count is None or whole.name not in ("Pose", "Transform"):
-        return None
+        return ""
     key, numbers = clash.flow.origin.cell.key, f"{count} number{'s' if count != 1 else ''}"
     needs = f"a `{whole.name}` needs 4 (a quaternion)"
-    return f"the rotation in `{key}` has {numbers}, but {needs}: {_read(clash.cell)}"
+    return f"the rotation in `{key}` has {numbers}, but {needs}: {_read(clash.cell, aliases)}"
+
+
+def _wrong_part(clash: Clash, aliases: Mapping[str, str]) -> str:
+    """The message for a literal of which a part does not fit; empty for other clashes."""
+    value, (given, wanted) = clash.flow.value, (clash.misfit.given, clash.misfit.wanted)
+    is_part = isinstance(value, (tuple, Struct)) and clash.flow.origin is clash.flow
+    if not is_part or not _part(clash) or given.name != "literal" or len(given.args) != 1:
+        return ""
+    steps = steps_to_misfit(value, clash.cell.declared)
+    if not steps:
+        return ""
+    (data,) = given.args
+    what = f"the text `{data}`" if isinstance(data, str) else f"`{data}`"
+    owner = named(type_at(clash.cell.declared, steps[:-1]), aliases)
+    first = f"{place_in_words(clash.flow.cell.key, steps)} is {what}"
+    if owner in aliases:
+        return f"{first}, but `{owner}` has `{steps[-1]}: {wanted}`"
+    return f"{first}, but {_read(clash.cell, aliases)}"
 
 
 def _without_fields(clash: Clash) -> str:

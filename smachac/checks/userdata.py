@@ -18,7 +18,7 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
-from smachac.checks.declarations import MeantPreset, meant_presets
+from smachac.checks.declarations import MeantPreset, meant_presets, swapped_loop
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
@@ -100,6 +100,10 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             continue  # SM308 reports the cause
         if (missing.scope.path, missing.key) in unwritten:
             continue  # SM306 reports the cause
+        swapped = swapped_loop(missing)
+        if swapped is not None:
+            yield _swapped(missing, swapped)
+            continue
         meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])
@@ -126,6 +130,26 @@ def _with_preset(finding: Finding, witness: Witness, meant: MeantPreset) -> Find
         help=f"if `{name}` {purpose}, write `{text}` in `{name}`; otherwise give `{key}` an initial"
         f" value in {container_name(meant.missing.scope, finding.span)}",
         related=(*other_place(preset.span, f"nothing reads `{preset.key}`"), *finding.related),
+    )
+
+
+def _swapped(missing: Missing, loop: nodes.Iterator) -> Finding:
+    """The finding on a loop whose items and item have changed places."""
+    items, item = missing.key, loop.item_key
+    names = ("item", "in") if loop.sugar else ("it_label", "it")
+    right = f"{names[0]}: {items}, {names[1]}: {item}"
+    help = f"`for_each: {{{right}}}`" if loop.sugar else f"`{right}`".replace(", ", "` and `")
+    return Finding(
+        span=loop.item_span,
+        message=f"`{names[0]}` and `{names[1]}` of `{loop.name}` are swapped: the states in it read"
+        f" the item as `{items}`, and the list is in `{item}`",
+        arguments=(items,),
+        help=f"swap them: write {help}",
+        effect=f"the loop cannot begin: nothing sets `{items}` before it",
+        related=(*other_place(loop.items_span, "the item"), *calls(loop, loop.item_span)),
+        node=missing.scope.path
+        if loop is missing.scope.container
+        else f"{missing.scope.path}/{loop.name}",
     )
 
 
@@ -458,7 +482,9 @@ def lost_output(context: Context) -> Iterator[Finding]:
     Only the keys in `output_keys` are copied out of a container. The state that reads the key
     outside works with an older value, or finds the key unset, and then the machine stops.
 
-    Exactly: an error if the key is unset outside, a warning if it has an older value.
+    Exactly: an error if the key is unset outside, a warning if it has an older value. The reader
+    can be the container itself, where it runs again, in a loop or for the next item of `for_each`,
+    if no state in it reads the key after it is set.
 
     Wrong:
         name: sm

@@ -81,6 +81,14 @@ def steps_to_misfit(data: Data, wanted: Type) -> tuple[int | str, ...]:
     return ()
 
 
+def type_at(wanted: Type, steps: Sequence[int | str]) -> Type:
+    """The type of a part of a literal of a type, by the steps to it."""
+    type_ = present(wanted)
+    for step in steps:
+        type_ = present(fields(type_)[str(step)] if type_.name == "record" else inside(type_))
+    return type_
+
+
 def steps_to_number(data: Data, number: float) -> tuple[int | str, ...]:
     """The steps to the first such number in a literal; none if it is the literal itself."""
     parts: Iterable[tuple[int | str, Data]] = ()

@@ -11,6 +11,7 @@ from typing import Any
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, did_you_mean
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import DEFAULT_ROS, ROS_VERSIONS, Ros
@@ -98,7 +99,9 @@ def read_project(
     folders: dict[str, tuple[Path, ...]] = {}
     texts: dict[str, tuple[str, ...]] = {}
     policy, ros = Policy(), DEFAULT_ROS
-    for key, value in settings.items():
+    given = settings
+    settings = _with_meant_settings(settings)
+    for key in given:
         if key == "tool" and path.name == "smachac.toml" and _tool(data) is not None:
             message = "`[tool.smachac]` is for pyproject.toml; all of smachac.toml is for smachac"
             help = "write its settings without a table, and `[severity]` for the severities"
@@ -106,17 +109,13 @@ def read_project(
         elif key not in SETTINGS:
             message = f"`{key}` is not a setting of smachac"
             _wrong(source, key, message, _near(key, SETTINGS), report, ("setting", key))
-        elif key == "severity":
+    for key, value in settings.items():
+        if key not in SETTINGS:
+            continue
+        if key == "severity":
             policy = Policy(severities=_severities(source, value, report, codes))
         elif key == "ros":
-            if value is True or value not in ROS_VERSIONS:
-                help = "write `ros = 2`, or `ros = 1` for a ROS 1 distribution such as Noetic"
-                message = "`ros` must be 1 or 2"
-                if isinstance(value, str) and value in {str(known) for known in ROS_VERSIONS}:
-                    message, help = f"{message}, a number without quotes", f"write `ros = {value}`"
-                _wrong(source, key, message, help, report, ("ros",), at_value=True)
-            else:
-                ros = value
+            ros = _ros(source, value, report)
         elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             kind = "patterns" if key == "exclude" else "folders"
             message = f"`{key}` must be a list of {kind}"
@@ -134,8 +133,30 @@ def read_project(
         exclude=texts.get("exclude", ()),
         ros=ros,
         policy=policy,
-        readable=all(isinstance(settings.get(key, []), list) for key in FOLDERS),
+        readable=all(isinstance(settings.get(key, []), list) for key in FOLDERS)
+        and not any(isinstance(settings[key], list) for key in settings.keys() - SETTINGS.keys()),
     )
+
+
+def _with_meant_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings, with those of unknown names under the names that are meant, where that is
+    certain: then one misspelt name is one finding."""
+    sure = guesser(SETTINGS).sure
+    meant = {key: sure(key) if key not in SETTINGS else key for key in settings}
+    names = {key: name if name not in settings else key for key, name in meant.items()}
+    return {names[key] or key: value for key, value in settings.items()}
+
+
+def _ros(source: Source, value: object, report: Report) -> Ros:
+    """The version of ROS; the default one in place of a wrong one."""
+    if value is not True and value in ROS_VERSIONS:
+        return value
+    help = "write `ros = 2`, or `ros = 1` for a ROS 1 distribution such as Noetic"
+    message = "`ros` must be 1 or 2"
+    if isinstance(value, str) and value in {str(known) for known in ROS_VERSIONS}:
+        message, help = f"{message}, a number without quotes", f"write `ros = {value}`"
+    _wrong(source, "ros", message, help, report, ("ros",), at_value=True)
+    return DEFAULT_ROS
 
 
 def _looks_like_settings(table: object) -> bool:

@@ -80,6 +80,7 @@ def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
         params=script.params,
         fixed_params=script.fixed_params,
         state_types=script.state_types,
+        aliases=script.aliases,
     )
 
 
@@ -446,6 +447,7 @@ def _iterator(state: State, fields: dict[str, Any], children: tuple[Node, ...]) 
         item_key=_text(state.it_label, "it_data"),
         item_span=state.it_label.span if state.it_label is not None else NOWHERE,
         exhausted_outcome=exhausted.text,
+        exhausted_span=exhausted.span,
         loop_outcomes=tuple(loops),
         loop_spans=() if breaks else tuple(word.span for word in state.loop_outcomes),
         final_map=tuple(final.items()),

@@ -33,6 +33,7 @@ from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
 from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
+from smachac.frontend.misplaced_fields import with_outer_fields, with_outer_variables
 from smachac.frontend.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -206,6 +207,7 @@ class _Resolver:
             fixed_params=tuple(self.fixed_params),
             functions=functions_of(base, self.types, self.library),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
+            aliases=self.aliases,
         )
 
     def has_too_many_keys(self) -> bool:
@@ -259,6 +261,7 @@ class _Resolver:
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
+        entries = with_outer_variables(name, entries, type_, self.report)
         entries |= self.lists(own, scope, type_)
         entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
@@ -476,6 +479,7 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
+        own = with_outer_fields(name, own, self.report)
         called: list[tuple[Word, tuple[Entry, ...]]] = []
         beside: dict[str, Span] = {}
         while "script" in own:
@@ -504,7 +508,9 @@ class _Resolver:
         if called:
             self.params_beside_call(beside, begin)
         for script, given in called:
-            self.misspelt_params(script, given, begin)
+            params = own["params"].value if "params" in own else None
+            known = (str(each.key.value) for each in _entries_of(params))
+            self.misspelt_params(name, script, given, (*around.scope, *known), begin)
         return state
 
     def params_beside_call(self, fields: Mapping[str, Span], begin: Mark) -> None:
@@ -525,18 +531,34 @@ class _Resolver:
             kept.append(item)
         self.report[before:] = kept
 
-    def misspelt_params(self, script: Word, given: tuple[Entry, ...], begin: Mark) -> None:
-        """Puts the look-ups of a sub-script that failed at the call that misspells the param, or
-        beside the call that does not give it."""
+    def misspelt_params(
+        self, state: Word, script: Word, given: tuple[Entry, ...], scope: tuple[str, ...],
+        begin: Mark,
+    ) -> None:  # fmt: skip
+        """Puts the look-ups of a sub-script that failed at the call that misspells the param or
+        does not give it: one finding for each param. `scope` are the params that the call has."""
         looked_up, _, before = begin
         if len(self.report) == before:
             return
         used = set(self.uses.looked_up[looked_up:])
         idle = [name for each in given if (name := as_name(each.key, [])) and name.text not in used]
-        for at in range(before, len(self.report)):
-            item = self.report[at]
+        lost: dict[str, Diagnostic] = {}
+        for item in self.report[before:]:
             if item.kind is unresolved_look_up.code and item.span.source is not script.span.source:
-                self.report[at] = look_up_of_call(item, script, idle)
+                lost.setdefault(item.finding.arguments[0], item)
+        moved = {
+            id(item): look_up_of_call(item, script, state.text, idle, scope, alone=len(lost) == 1)
+            for item in lost.values()
+        }
+        changed = {each for each, item in lost.items() if moved[id(item)] is not item}
+        self.report[before:] = [
+            moved.get(id(item), item)
+            for item in self.report[before:]
+            if id(item) in moved
+            or item.kind is not unresolved_look_up.code
+            or item.span.source is script.span.source
+            or item.finding.arguments[0] not in changed
+        ]
 
     def not_found(self, item: Diagnostic) -> None:
         """Reports a file that was not found, except as a consequence: its folder may be in settings

@@ -149,3 +149,4 @@ class Script:
     fixed_params: tuple[FixedParam, ...] = ()
     functions: Mapping[str, FunctionFacts] = field(default_factory=dict)
     state_types: Mapping[str, StateType] = field(default_factory=dict)
+    aliases: Mapping[str, str] = field(default_factory=dict)

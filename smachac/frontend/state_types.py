@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeAlias, TypeVar, get_args
 
-from smachac.diagnostics.diagnostic import Report, did_you_mean
+from smachac.diagnostics.diagnostic import Diagnostic, Report, did_you_mean
 from smachac.diagnostics.source import NOWHERE, Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import smacha_meta
@@ -567,6 +567,10 @@ def _writes(
     stand for the name that is certainly meant; else the keys of such an outcome are of all."""
     found: dict[str, tuple[str, ...]] = {}
     of_all: set[str] = set()
+    turned = _turned_writes(sections)
+    if turned:
+        report.append(_writes_by_key(sections["writes"], turned))
+        return tuple((outcome, tuple(keys)) for outcome, keys in turned.items())
     for entry in sections["writes"]:
         word = Word(str(entry.key.value), entry.key.span)
         outcome = _check_declared(sections, "outcomes", word, report)
@@ -580,6 +584,33 @@ def _writes(
             found[outcome] = (*found.get(outcome, ()), *keys)
     kept = ((name, tuple(key for key in keys if key not in of_all)) for name, keys in found.items())
     return tuple((name, keys) for name, keys in kept if keys)
+
+
+def _turned_writes(sections: Mapping[str, Section]) -> dict[str, list[str]]:
+    """The outputs of each outcome, where `writes` has the outcomes of each output; empty if it has
+    not."""
+    outcomes = [name for name, _ in _declared(sections["outcomes"])]
+    outputs = [name for name, _ in _declared(sections["output_keys"])]
+    found: dict[str, list[str]] = {}
+    for entry in sections["writes"]:
+        key, named = str(entry.key.value), as_names(entry.value, [])
+        names = [word.text for word in named]
+        if key in outcomes or key not in outputs or not names or not {*names} <= {*outcomes}:
+            return {}
+        if not outputs or not {*outputs}.isdisjoint(names):
+            return {}
+        for name in names:
+            found.setdefault(name, []).append(key)
+    return found
+
+
+def _writes_by_key(section: Section, turned: Mapping[str, list[str]]) -> Diagnostic:
+    """SM004 at a `writes` that has the outcomes of each output."""
+    rows = ", ".join(f"{name}: [{', '.join(keys)}]" for name, keys in turned.items())
+    key = Word(str(section[0].key.value), section[0].key.span)
+    message = f"`writes` begins with an outcome, but `{key.text}` is an output key"
+    help = f"write `writes: {{{rows}}}`"
+    return wrong_shape(key.span, message, help, arguments=("writes", key.text))
 
 
 def _check_declared(

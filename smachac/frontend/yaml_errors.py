@@ -166,6 +166,10 @@ def _open_or_stray(stop: _Stop) -> _Fault | None:
             help = _quoted_type(type_, stop)
         if token == "<scalar>":
             help = f"write a `,` between two values, or close the {kind} with `{end}`"
+        closing = _line_to_close(stop)
+        if closing:
+            message = f"this {kind} is not closed before the next key"
+            return _Fault(message, f"write `{end}` at the end of line {closing}", stop.first)
         message = f"expected `,` or `{end}`, found {found}"
         return _Fault(message, help, stop.at, begins=stop.first, part=kind)
     if stray is not None and stray[1] in _OPENING:
@@ -177,6 +181,30 @@ def _open_or_stray(stop: _Stop) -> _Fault | None:
         help = "write the same quote at the end of the text"
         return _Fault("this quote is not closed", help, stop.first)
     return None
+
+
+_KEY_IN_BLOCK = re.compile(r"[ \t]*(?:-[ \t]+)*[^\W\d][\w.-]*[ \t]*")
+"""The line of a key outside of brackets, up to its colon."""
+
+
+def _line_to_close(stop: _Stop) -> int:
+    """The number of the line whose end lacks a closing bracket: the line after it has a key and is
+    indented no more than the line of the opening bracket. 0 if there is none."""
+    first = stop.first or 0
+    start = stop.text.rfind("\n", 0, first) + 1
+    opening = stop.text[start:first]
+    here = stop.at - len(stop.before)
+    is_key = stop.text.startswith(":", stop.at) and _KEY_IN_BLOCK.fullmatch(stop.before)
+    above = _lines_above(stop, 1)
+    if here <= start or not is_key or not above:
+        return 0
+    if _indent(stop.before) > _indent(opening):
+        return 0
+    return stop.text.count("\n", 0, above[0][0]) + 1
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip(" \t"))
 
 
 _NO_SPACE = re.compile(r"[^\s:]*:[\[{'\"]")

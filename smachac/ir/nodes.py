@@ -343,7 +343,8 @@ class Iterator(_Container):
     The items are the value `items`, or the userdata of the container in `items_key`; `items_span`
     is their place, and `item_span` that of the name `item_key`. Outcomes in `loop_outcomes`
     continue with the next item; other outcomes end the iteration. The last outcome, or
-    `exhausted_outcome`, is mapped by `final_map` (pairs from, to). `loop_spans` and `final_spans`
+    `exhausted_outcome`, is mapped by `final_map` (pairs from, to). `exhausted_span` is its place,
+    or the iterator's if the script does not name it. `loop_spans` and `final_spans`
     are the places of `loop_outcomes` and of the entries of `final_map` in the script; empty if it
     does not name them.
     """
@@ -355,6 +356,7 @@ class Iterator(_Container):
     item_key: str = "it_data"
     item_span: Span = field(default=NOWHERE, compare=False, repr=False)
     exhausted_outcome: str = "exhausted"
+    exhausted_span: Span = field(default=NOWHERE, compare=False, repr=False)
     loop_outcomes: tuple[str, ...] = ()
     loop_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     final_map: tuple[tuple[str, str], ...] = ()
@@ -504,7 +506,7 @@ class Machine:
     of the targets only `dot` uses properties. `params` are those of the main script, `fixed_params`
     the look-ups of params in time limits and retries. `functions` are those of the user that the
     script names, by the text in the script. `state_types` are the interfaces of its
-    states and of its base, by name.
+    states and of its base, by name. `aliases` are the types that the script names, for messages.
     """
 
     root: StateMachine
@@ -521,6 +523,7 @@ class Machine:
     fixed_params: tuple[FixedParam, ...] = field(default=(), compare=False, repr=False)
     functions: Mapping[str, FunctionFacts] = field(default_factory=dict, compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
+    aliases: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
 
 
 Checked = NewType("Checked", Machine)

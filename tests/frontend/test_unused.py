@@ -65,7 +65,7 @@ def test_params_of_sub_scripts_that_nothing_uses(
     [
         ("params: {tect: hello}", "other: 1", "SM015 main.yml tect"),
         ("params: {tone: hello}", "txt: 1", "SM015 ask.yml text"),
-        ("doc: x", "other: 1", "SM015 ask.yml text"),
+        ("doc: x", "other: 1", "SM015 main.yml script: ask"),
     ],
     ids=["the call is wrong", "the look-up is wrong", "the call does not give it"],
 )
@@ -77,7 +77,7 @@ def test_a_look_up_that_fails_is_reported_where_it_is_wrong(
 
 def test_a_call_that_does_not_give_the_param_is_shown() -> None:
     (item,) = [item for item in report("doc: x", "other: 1") if item.code == "SM015"]
-    assert [each.span.source.name for each in item.related] == ["main.yml"]
+    assert [each.span.source.name for each in item.related] == ["ask.yml"]
 
 
 def test_params_of_a_call_follow_those_of_the_sub_script() -> None:

@@ -177,7 +177,8 @@ def push_findings(*pairs: tuple[str, str]) -> list[str]:
         (("  Outcome give_up() { return Outcome::stuck; }\n", ""), None),
         ((STOP, ""), "5 preempted: add where it waits: `if (stop.requested()) { stop.service();"
          " return Outcome::preempted; }`"),
-        (("    out.force = arm_.force();\n", ""), "7 force: write `out.force = ...` before a `return`, or"),
+        (("    out.force = arm_.force();\n", ""),
+         "7 force: write `out.force = ...` before a `return`, or"),
     ],
 )  # fmt: skip
 def test_members_of_a_class(pair: tuple[str, str], found: str | None) -> None:

@@ -301,12 +301,34 @@ def param_before_definition(item: Diagnostic, defined: Span) -> Diagnostic:
     return replace(item, finding=changed)
 
 
-def look_up_of_call(item: Diagnostic, script: Word, given: Sequence[Word]) -> Diagnostic:
-    """SM015 for a look-up in a sub-script, with the call: `script` is its name and the place of the
-    call; `given` are the params of the call that no look-up reads."""
+def look_up_of_call(
+    item: Diagnostic, script: Word, state: str, given: Sequence[Word], known: Iterable[str], *,
+    alone: bool,
+) -> Diagnostic:  # fmt: skip
+    """SM015 for a look-up in a sub-script, at its call: `script` is its name and the place of the
+    call by `state`; `given` are the params of the call that no look-up reads, `known` those in
+    scope of the call. `alone`: no other param is missing."""
     found = item.finding
     (name,) = found.arguments
     meant = guesser(each.text for each in given)(name)
+    place = found.related[0].span if found.related else found.span
+    related = (Related(span=place, message=f"it reads `{name}` here"),)
+    effect = f"`{name}` has no value in `{script.text}`, so no program is generated"
+    idle = {each.text for each in given}
+    is_misspelt = guesser(each for each in known if each not in idle)(name) is not None
+    if meant is None and alone and len(given) == 1 and not is_misspelt:
+        return replace(
+            item,
+            finding=Finding(
+                span=given[0].span,
+                message=f"the sub-script `{script.text}` has the param `{name}`, not"
+                f" `{given[0].text}`",
+                arguments=(given[0].text,),
+                help=_renamed_param(given[0], name),
+                effect=effect,
+                related=related,
+            ),
+        )
     if meant is not None:
         wrong = next(each for each in given if each.text == meant)
         moved = Finding(
@@ -314,15 +336,38 @@ def look_up_of_call(item: Diagnostic, script: Word, given: Sequence[Word]) -> Di
             message=f"the sub-script `{script.text}` does not read the param `{wrong.text}`",
             arguments=(wrong.text,),
             help=f"did you mean `{name}`?",
-            effect=f"`{name}` has no value in `{script.text}`, so no program is generated",
-            related=(Related(span=item.span, message=f"it reads `{name}` here"),),
+            effect=effect,
+            related=related,
             edits=respelt(wrong, name),
         )
         return replace(item, finding=moved)
-    if found.related:
+    if found.related or is_misspelt:
         return item
-    call = Related(span=script.span, message=f"this call does not give `{name}`")
-    return replace(item, finding=replace(found, related=(call,)))
+    return replace(
+        item,
+        finding=Finding(
+            span=script.span,
+            message=f"the sub-script `{script.text}` reads the param `{name}`, which `{state}` does"
+            " not give",
+            arguments=(name,),
+            help=f"add `{name}: ...` to the `params` of `{state}`, or of a container around it",
+            effect=effect,
+            related=related,
+        ),
+    )
+
+
+def _renamed_param(wrong: Word, name: str) -> str:
+    """The help for a param of a call that has another name in the sub-script."""
+    source, end = wrong.span.source, wrong.span.end
+    value = _SHORT_VALUE.match(source.text, end)
+    if value is None:
+        return f"write `{name}:` in place of `{wrong.text}:`"
+    return f"write `{name}: {value[1]}` in place of `{wrong.text}: {value[1]}`"
+
+
+_SHORT_VALUE = re.compile(r":[ ]+([\w.+-]+)[ ]*(?=[,}\n#]|$)")
+"""The value after a key of YAML, if it is one word or number."""
 
 
 @problem(

@@ -1,0 +1,122 @@
+"""Fields of a state that are indented too far: they are in the mapping of another field, such as
+`retry` under `transitions`.
+
+They are reported once (SM004) and then count as fields of the state, so that nothing else follows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Set
+
+from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.source import Span, Word
+from smachac.frontend import schema
+from smachac.frontend.errors.script import duplicate_key, wrong_shape
+from smachac.frontend.params import look_up_word
+from smachac.frontend.sugar import duration
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.ir.nodes import StateType
+
+_OF_NAMES = ("transitions", "remapping", "final_outcome_map")
+"""The fields that are mappings of names to names."""
+
+_NAMED = frozenset(["template", "script"])
+"""The fields with one name that every state has, if it is not another kind of field."""
+
+
+def with_outer_fields(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
+    """The fields of a state by long name, with those that are in the mapping of another one beside
+    it."""
+    for part in _OF_NAMES:
+        entry = own.get(part)
+        if entry is None or not isinstance(entry.value, Map):
+            continue
+        outer = dict(_outer_fields(entry.value, own))
+        if outer:  # the rest that is no name was moved together with it
+            found = {id(each) for each in outer.values()}
+            outer = {
+                schema.LONG.get(str(each.key.value), str(each.key.value)): each
+                for each in entry.value.entries
+                if id(each) in found or not (_is_text(each.value) or look_up_word(each.value))
+            }
+        own = _moved(name, own, part, outer, report)
+    return own
+
+
+def with_outer_variables(
+    name: Word, own: dict[str, Entry], type_: StateType, report: Report
+) -> dict[str, Entry]:
+    """As `with_outer_fields`, for the variables of the state type, whose values are no names."""
+    for part in _OF_NAMES:
+        entry = own.get(part)
+        if entry is None or not isinstance(entry.value, Map):
+            continue
+        outer = {
+            str(each.key.value): each
+            for each in entry.value.entries
+            if each.key.value in type_.variables and not _is_text(each.value)
+        }
+        own = _moved(name, own, part, outer, report)
+    return own
+
+
+def _moved(
+    name: Word, own: dict[str, Entry], part: str, outer: Mapping[str, Entry], report: Report
+) -> dict[str, Entry]:
+    """The fields with those of a mapping beside it, which are reported."""
+    if not outer:
+        return own
+    entry, moved = own[part], list(outer.values())
+    tree = entry.value
+    assert isinstance(tree, Map)
+    words = [str(each.key.value) for each in moved]
+    first = moved[0].key
+    what = "an outcome" if part == "transitions" else "a key"
+    message = f"`{words[0]}` is a field of the state `{name.text}`, not {what} in `{part}`"
+    columns = first.span.column - entry.key.span.column
+    flow = first.span.line == entry.key.span.line or columns <= 0
+    move = f"after the `}}` of `{entry.key.value}`"
+    if not flow:
+        move = f"{columns} column{'s' * (columns > 1)} further left, beside `{entry.key.value}`"
+    help = f"write {' and '.join(f'`{word}`' for word in words)} {move}"
+    spans = {each.key.span for each in moved}
+    report[:] = [item for item in report if not _is_twice(item, spans)]
+    report.append(wrong_shape(first.span, message, help, arguments=("outer", *words)))
+    rest = tuple(each for each in tree.entries if all(each is not other for other in moved))
+    changed = {**own, part: Entry(entry.key, Map(rest, tree.span))}
+    if not rest:
+        del changed[part]
+    return {**outer, **changed}
+
+
+def _is_twice(item: Diagnostic, spans: Set[Span]) -> bool:
+    """Whether a finding (SM002) is about two entries of one name, of which one is moved."""
+    places = (item.span, *(each.span for each in item.finding.related))
+    return item.kind is duplicate_key.code and not spans.isdisjoint(places)
+
+
+def _outer_fields(tree: Map, own: Mapping[str, Entry]) -> Iterator[tuple[str, Entry]]:
+    """The entries of a mapping of names that are fields of the state, by long name: none of these
+    values is a name."""
+    for entry in tree.entries:
+        key = schema.LONG.get(str(entry.key.value), str(entry.key.value))
+        row = schema.VARIABLES.get(key)
+        if row is None or row.owners == {"base"}:
+            continue
+        value = entry.value
+        is_time = key == "timeout" and duration(value, []) is not None
+        is_type = key in _NAMED and _NAMED.isdisjoint(own) and _is_text(value)
+        has_shape = _has_shape(row.shape, value) and len(str(entry.key.value)) > 1
+        if is_time or is_type or has_shape:
+            yield key, entry
+
+
+def _has_shape(shape: str, value: Tree) -> bool:
+    """Whether a collection has the shape of a field."""
+    if isinstance(value, Seq):
+        return shape in ("names", "outcomes", "keys", "value", "items")
+    return isinstance(value, Map) and shape not in ("name", "text", "flag", "names", "items")
+
+
+def _is_text(value: Tree) -> bool:
+    return isinstance(value, Scalar) and (isinstance(value.value, str) or value.value is None)

@@ -1,0 +1,149 @@
+"""SM307 and SM305 on results that a container keeps, also in a loop or in another container, and on
+results with a misspelt name."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+
+ROUND = """\
+name: delivery
+outcomes: [all, some, stopped]
+userdata: {stops: [a, b], refused: 0}
+states:
+  - ROUND:
+      template: StateMachine
+      outcomes: [succeeded, aborted, preempted]
+      input_keys: [stop, refused]OUT
+      for_each: {item: stop, in: stops}
+      transitions: {succeeded: REPORT, aborted: some, preempted: stopped}
+      states:
+        - HAND_OVER:
+            template: ScriptedState
+            input_keys: [stop]
+            outcomes: [taken, refused]
+            transitions: {taken: succeeded, refused: COUNT}
+        - COUNT:
+            template: CallbacksState
+            input_keys: [refused]
+            output_keys: [refused]
+            callbacks: {refused: 'lambda ud: ud.refused + 1'}
+            transitions: {succeeded: NEXT}
+        - CHECK:
+            template: ConditionalOutcomeState
+            input_keys: [refused]
+            outcomes: [many]
+            callbacks: {many: 'lambda ud: ud.refused > 3'}
+            default_outcome: few
+            transitions: {many: aborted, few: HAND_OVER}
+  - REPORT:
+      template: ConditionalOutcomeState
+      input_keys: [refused]
+      outcomes: [yes_]
+      callbacks: {yes_: 'lambda ud: ud.refused > 0'}
+      default_outcome: no_
+      transitions: {yes_: some, no_: all}
+"""
+REPORT = ROUND[ROUND.index("  - REPORT") :]
+ADD = "add `refused` to the `output_keys` of `ROUND`"
+
+
+def round_(*, out: str = "", after: str = "succeeded", initial: str = "HAND_OVER",
+           report: bool = True) -> list[tuple[str, str, str | None]]:  # fmt: skip
+    text = ROUND.replace("NEXT", after).replace("OUT", out)
+    text = text.replace("      states:\n", f"      initial: {initial}\n      states:\n")
+    if initial == "HAND_OVER" and after != "CHECK":
+        text = text.replace(text[text.index("        - CHECK") : text.index("  - REPORT")], "")
+    if not report:
+        text = text.replace(REPORT, "").replace("succeeded: REPORT", "succeeded: all")
+    return [each for each in reported({"main.yml": text}) if each[0] != "SM203"]
+
+
+@pytest.mark.parametrize("after", ["succeeded", "CHECK"])
+def test_a_state_after_the_loop_reads_the_initial_value(after: str) -> None:
+    assert round_(after=after) == [("SM307", "ROUND", ADD)]
+
+
+def test_the_next_item_reads_the_initial_value() -> None:
+    assert round_(initial="CHECK", report=False) == [("SM307", "ROUND", ADD)]
+
+
+def test_an_output_of_a_loop_is_not_lost() -> None:
+    out = "\n      output_keys: [refused]"
+    assert round_(out=out) == []
+    assert round_(out=out, initial="CHECK") == []
+
+
+def test_a_counter_of_one_turn_is_not_lost() -> None:
+    assert round_(after="CHECK", report=False) == []
+
+
+SHOTS = """\
+name: calibrate
+outcomes: [done, failed]
+userdata: {images: []}
+states:
+  - SAFELY:
+      template: Concurrence
+      outcomes: [good, bad]
+      default_outcome: bad
+      outcome_map: {good: {SHOTS: succeeded}}
+      input_keys: [images]
+      output_keys: [images]
+      transitions: {good: SOLVE, bad: failed}
+      states:
+        - SHOTS:
+            template: Sequence
+            outcomes: [succeeded]
+            input_keys: [images]
+            output_keys: [images]
+            connector_outcome: succeeded
+            states:
+              - FIRST: {template: TakeShot, remapping: {list_in: images, list_out: images}}
+              - SECOND: {template: TakeShot, remapping: {list_in: images, list_out: images}}
+              - THIRD: {template: TakeShot, remapping: {list_in: images, list_out: images}}
+        - LIGHT: {template: ScriptedState, outcomes: [lit]}
+  - SOLVE:
+      template: ScriptedState
+      input_keys: [images]
+      outcomes: [solved]
+      transitions: {solved: done}
+"""
+TAKE = """\
+name: TakeShot
+input_keys: {list_in: "list[str]"}
+output_keys: {list_out: "list[str]"}
+outcomes: [succeeded]
+code: {python: "cal.shots:TakeShot"}
+"""
+
+
+def shots(old: str = "", new: str = "") -> list[tuple[str, str, str | None]]:
+    files = {"main.yml": SHOTS.replace(old, new), "templates/TakeShot.yml": TAKE}
+    return [each for each in reported(files) if each[0] not in ("SM404", "SM608", "SM401")]
+
+
+def test_a_result_goes_through_two_containers() -> None:
+    assert shots() == []
+    lost = shots("            output_keys: [images]\n")
+    assert lost == [("SM307", "SHOTS", "add `images` to the `output_keys` of `SHOTS`")]
+
+
+def test_a_remapped_result_with_a_misspelt_name() -> None:
+    second = "SECOND: {template: TakeShot, remapping: {list_in: images, list_out: "
+    help = "did you mean `images`? Write `list_out: images`"
+    assert shots(f"{second}images", f"{second}image") == [("SM305", "image", help)]
+
+
+def test_a_result_that_nobody_wants_has_any_other_name() -> None:
+    second = "SECOND: {template: TakeShot, remapping: {list_in: images, list_out: "
+    assert shots(f"{second}images", f"{second}unused") == []
+
+
+def test_a_key_that_a_state_takes_in_and_gives_out_is_not_meant_as_a_result() -> None:
+    both = TAKE.replace("list_in", "list_").replace("list_out", "list_")
+    text = SHOTS.replace("list_in: images, list_out: images", "list_: images")
+    text = text.replace("            output_keys: [images]\n", "")
+    files = {"main.yml": text, "templates/TakeShot.yml": both}
+    assert [each for each in reported(files) if each[0] in ("SM305", "SM307")] == []

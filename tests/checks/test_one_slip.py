@@ -1,0 +1,234 @@
+"""One slip of a script, an interface or the settings gives one finding, at the word that is
+wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import Source
+from smachac.driver import CODES
+from smachac.frontend.config import Project, read_project
+from tests.checks.test_first_scripts import reported
+
+Row = tuple[str, str, str | None]
+
+DOCK = """\
+name: docking
+outcomes: [docked, gave_up, stopped]
+states:
+  - LINE_UP:
+      template: ScriptedState
+      outcomes: [aligned, slipped]
+      transitions:
+        aligned: WAIT
+        exhausted: gave_up
+        preempted: stopped
+FIELD
+  - WAIT:
+      template: SleepState
+      TIME
+      transitions:
+        succeeded: docked
+        preempted: stopped
+REST
+"""
+RETRY = "retry: {on: [slipped], max: 3, delay: 500ms}"
+
+
+def dock(field: str, time: str = "time: 2", rest: str = "") -> list[Row]:
+    text = DOCK.replace("FIELD", field).replace("TIME", time).replace("REST", rest)
+    return reported({"main.yml": text})
+
+
+def test_fields_beside_the_transitions() -> None:
+    assert dock(f"      {RETRY}\n      tags: [moves]") == []
+
+
+def test_a_field_among_the_transitions_counts_as_a_field() -> None:
+    help = "write `retry` 2 columns further left, beside `transitions`"
+    assert dock(f"        {RETRY}") == [("SM004", "retry", help)]
+    help = "write `retry` and `tags` 2 columns further left, beside `transitions`"
+    assert dock(f"        {RETRY}\n        tags: [moves]") == [("SM004", "retry", help)]
+
+
+def test_a_variable_among_the_transitions_counts_as_a_variable() -> None:
+    help = "write `time` 2 columns further left, beside `transitions`"
+    found = dock(f"      {RETRY}", "tags: [rest]", "        time: 2")
+    assert found == [("SM004", "time", help)]
+
+
+def test_a_time_limit_among_the_transitions() -> None:
+    text = """\
+name: sm
+outcomes: [done, late, stopped]
+states:
+  - WAIT:
+      template: SleepState
+      time: 2
+      transitions: {succeeded: done, timeout: late, preempted: stopped}
+"""
+    help = "write `timeout` after the `}` of `transitions`"
+    limit = text.replace("timeout: late", "timeout: late, timeout: 3s")
+    assert reported({"main.yml": limit}) == [("SM004", "timeout", help)]
+    limit = text.replace("timeout: late", "timeout: 3s, timeout: late")
+    assert reported({"main.yml": limit}) == [("SM004", "timeout", help)]
+    # An outcome may have the name of a field.
+    script = text.replace("SleepState", "ScriptedState").replace("time: 2", "outcomes: [retry, it]")
+    script = script.replace("succeeded: done, timeout: late, preempted: stopped", "retry: done,"
+                            " it: late").replace(", stopped", "")  # fmt: skip
+    assert reported({"main.yml": script}) == []
+
+
+def test_transitions_in_a_remapping() -> None:
+    rest = """\
+  - SHOW:
+      template: PrintUserdataState
+      input_keys: [pose]
+      remapping:
+        pose: target
+        transitions: {succeeded: docked}
+"""
+    found = dock(f"      {RETRY}", rest=rest)
+    help = "write `transitions` 2 columns further left, beside `remapping`"
+    assert ("SM004", "transitions", help) in found
+    assert {code for code, *_ in found} == {"SM004", "SM201"}
+
+
+TYPE = """\
+name: Detect
+output_keys: {dock: float, range: float}
+outcomes: [found, not_found]
+writes: WRITES
+code: {python: "dock.detect:Detect"}
+"""
+USE = """\
+name: sm
+outcomes: [done, failed]
+output_keys: [dock, range]
+states:
+  - LOOK: {template: Detect, transitions: {found: done, not_found: failed}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("writes", "found"),
+    [
+        ("{found: [dock, range]}", []),
+        ("{dock: [found]}", [("SM004", "dock", "write `writes: {found: [dock]}`")]),
+        ("{dock: [found], range: [found, not_found]}",
+         [("SM004", "dock", "write `writes: {found: [dock, range], not_found: [range]}`")]),
+        ("{dokc: [found]}",
+         [("SM004", "dokc", "add it to `outcomes`, or remove it here"),
+          ("SM004", "found", "add it to `output_keys`, or remove it here")]),
+    ],
+)  # fmt: skip
+def test_an_inverted_writes(writes: str, found: list[Row]) -> None:
+    files = {"main.yml": USE, "templates/Detect.yml": TYPE.replace("WRITES", writes)}
+    assert [each for each in reported(files) if each[0] == "SM004"] == found
+
+
+def project(text: str) -> tuple[Project | None, Report]:
+    report: Report = []
+    return read_project(Source("smachac.toml", text), Path("smachac.toml"), report, CODES), report
+
+
+def test_a_misspelt_setting_has_its_value() -> None:
+    found, report = project('script = ["lib"]\n')
+    assert found is not None
+    assert [str(each) for each in found.scripts] == ["lib"]
+    assert [item.finding.help for item in report] == ["did you mean `scripts`?"]
+
+
+def test_a_misspelt_setting_beside_the_right_one() -> None:
+    found, report = project('script = ["lib"]\nscripts = ["parts"]\n')
+    assert found is not None
+    assert [str(each) for each in found.scripts] == ["parts"]
+    assert len(report) == 1
+
+
+def test_an_unknown_setting_with_folders_may_be_any_of_them() -> None:
+    found, report = project('folders = ["lib"]\n')
+    assert found is not None
+    assert not found.readable
+    assert len(report) == 1
+
+
+CALLS = """\
+name: show
+outcomes: [done]
+states:
+  - LEFT: {script: move_arm, params: {limb: left, speed: 0.3}, transitions: {moved: SHOW}}
+  - SHOW: {script: move_arm, params: PARAMS, transitions: {moved: done}}
+"""
+MOVE = """\
+- MOVE:
+    template: ScriptedState
+    doc: ['Moves the ', [params, limb], ' arm with ', [params, speed]]
+    tags: [[[limb]]]
+    outcomes: [moved]
+"""
+MISSING = "add `limb: ...` to the `params` of `SHOW`, or of a container around it"
+
+
+@pytest.mark.parametrize(
+    ("params", "found"),
+    [
+        ("{limb: right, speed: 0.3}", []),
+        ("{speed: 0.3}", [("SM015", "script: move_arm", MISSING)]),
+        ("{arm: left, speed: 0.3}",
+         [("SM015", "arm", "write `limb: left` in place of `arm: left`")]),
+        ("{arm: [left], speed: 0.3}", [("SM015", "arm", "write `limb:` in place of `arm:`")]),
+        ("{lim: left, speed: 0.3}", [("SM015", "lim", "did you mean `limb`?")]),
+    ],
+)  # fmt: skip
+def test_a_param_that_a_call_does_not_give(params: str, found: list[Row]) -> None:
+    files = {"main.yml": CALLS.replace("PARAMS", params), "move_arm.yml": MOVE}
+    assert reported(files) == found
+
+
+def test_a_misspelt_look_up_in_a_sub_script_stays_there() -> None:
+    move = MOVE.replace("[[limb]]", "[[lmib]]")
+    files = {"main.yml": CALLS.replace("PARAMS", "{limb: right, speed: 0.3}"), "move_arm.yml": move}
+    assert {each[:2] for each in reported(files)} == {("SM015", "lmib")}
+
+
+TRAY = """\
+name: sorting
+outcomes: [sorted, stopped]
+userdata: {tray: [bolt, nut]}
+states:
+  - EACH:
+      template: Iterator
+      outcomes: [tray_empty, preempted]
+      input_keys: [tray]
+      it: tray
+      it_label: part
+      FIELDS
+      loop_outcomes: [placed]
+      transitions: {tray_empty: sorted, preempted: stopped}
+      states:
+        - PLACE: {template: ScriptedState, input_keys: [part], outcomes: [placed]}
+"""
+NO_WAY = "`EACH` has no other way to end with `tray_empty`"
+
+
+@pytest.mark.parametrize(
+    ("fields", "found"),
+    [
+        ("exhausted_outcome: tray_empty", []),
+        ("final_outcome_map: {exhausted: tray_empty}", []),
+        ("exhausted_outcome: empty",
+         [("SM104", "empty", f"write `exhausted_outcome: tray_empty`: {NO_WAY}")]),
+        ("tags: []", [("SM104", "EACH", f"write `exhausted_outcome: tray_empty`: {NO_WAY}")]),
+        ("final_outcome_map: {exhausted: empty}",
+         [("SM104", "EACH", f"write `final_outcome_map: {{exhausted: tray_empty}}`: {NO_WAY}")]),
+    ],
+)  # fmt: skip
+def test_the_outcome_after_the_last_item(fields: str, found: list[Row]) -> None:
+    assert [
+        each for each in reported({"main.yml": TRAY.replace("FIELDS", fields)})
+        if each[0] not in ("SM208", "SM209")
+    ] == found  # fmt: skip
