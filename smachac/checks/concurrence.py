@@ -18,6 +18,7 @@ from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.outcomes import inverted_rules
 from smachac.checks.rule import rule
+from smachac.checks.timeouts import missing_joins
 from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
@@ -486,8 +487,12 @@ def overlapping_rules(context: Context) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [found, nothing]}
               transitions: {left: left, right: right, neither: neither}
     """
+    missing: frozenset[str] | None = None
     for each in context.judged:
         if len(each.concurrence.written) > 1:
+            missing = missing_joins(context) if missing is None else missing
+            if each.path in missing:
+                continue  # SM407
             spaces = [without_other(each.whole)]
             if each.concurrence.node.join == "any":
                 spaces = [space for space, _ in each.unstopped]

@@ -377,15 +377,17 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     yield from _unwritten_outputs(context)
     for scope in flow.scopes.values():
         container = scope.container
+        if isinstance(container, nodes.Iterator):
+            yield from _words_as_lists(scope.path, container)
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
             continue
         used = context.of_container(_used_in, scope.path, scope)
         for key in container.inputs:
             if key.name in used or (scope.path, key.name) in kept:
                 continue
-            if isinstance(container, nodes.Iterator) and _is_over_the_word(container, key.name):
-                yield _word_as_list(scope.path, container, key.name)
-            else:
+            if not isinstance(container, nodes.Iterator) or not _is_over_the_word(
+                container, key.name
+            ):
                 yield _unused(scope.path, container, key, "input")
         set_ = context.of_container(_written_in, scope.path, scope)
         outer = scope.path.rpartition("/")[0]
@@ -418,6 +420,15 @@ def _loop_over_the_word(container: Container, key: str) -> nodes.Iterator | None
         if isinstance(child, nodes.Iterator) and _is_over_the_word(child, key):
             return child
     return None
+
+
+def _words_as_lists(path: str, loop: nodes.Iterator) -> Iterator[Finding]:
+    """The finding on an iterator over the name of one of its input keys, which its state does not
+    read."""
+    read = {key.name for child in loop.children for key in child.inputs}
+    for key in loop.inputs if loop.items is not None and not loop.sugar else ():
+        if _is_over_the_word(loop, key.name) and key.name not in read:
+            yield _word_as_list(path, loop, key.name)
 
 
 def _word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:

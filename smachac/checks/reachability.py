@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
@@ -11,19 +12,27 @@ from smachac.analysis.control_flow import (
     is_open,
     strays,
 )
-from smachac.checks.messages import calls, did_you_mean, own_name
+from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
-from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
-from smachac.ir.nodes import Concurrence, Container, Node, Outcome, Sequence, StateMachine
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Node,
+    Outcome,
+    Sequence,
+    StateMachine,
+    Transition,
+)
+from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import ends_preempted, outcome_names
 
@@ -81,15 +90,63 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
         for child in hidden:
             if f"{path}/{child.name}" in (missed or ()):
                 continue  # SM701 reports the transition that must lead to it
+            twice = _led_twice(container, seen) if not before.get(child.name) else None
             yield Finding(
                 span=child.span,
                 message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial"
                 f" state of `{container.name}`",
                 arguments=(child.name,),
-                help=_why_unreachable(container, child, before.get(child.name, [])),
-                related=calls(child, child.span),
+                help=_led_help(child, twice)
+                if twice is not None
+                else _why_unreachable(container, child, before.get(child.name, [])),
+                related=(*_led_places(twice), *calls(child, child.span)),
                 node=f"{path}/{child.name}",
             )
+
+
+class _LedTwice(NamedTuple):
+    """A state with two outcomes of success that lead to one state."""
+
+    child: Node
+    steps: tuple[Transition, Transition]
+
+
+def _led_twice(container: Linear, seen: Collection[str]) -> _LedTwice | None:
+    """The only state of a container that can be entered and has two outcomes, neither of failure,
+    that lead to one state."""
+    names = {child.name for child in container.children}
+    found: list[_LedTwice] = []
+    for child in container.children:
+        by_target: dict[str, list[Transition]] = {}
+        plain = {
+            name for name in outcome_names(child) if name != PREEMPTED and not fails(child, name)
+        }
+        for step in child.transitions if child.name in seen else ():
+            is_plain = step.outcome in plain
+            if step.origin == "written" and step.target in names and is_plain:
+                by_target.setdefault(step.target, []).append(step)
+        found += [_LedTwice(child, (steps[0], steps[1])) for steps in by_target.values()
+                  if len(steps) == 2]  # fmt: skip
+    return found[0] if len(found) == 1 else None
+
+
+def _led_help(child: Node, twice: _LedTwice) -> str:
+    first, second = twice.steps
+    return (
+        f"lead `{first.outcome}` or `{second.outcome}` of `{twice.child.name}` to `{child.name}`,"
+        f" or remove `{child.name}`"
+    )
+
+
+def _led_places(twice: _LedTwice | None) -> tuple[Related, ...]:
+    if twice is None:
+        return ()
+    first, second = twice.steps
+    words = f"`{first.outcome}` and `{second.outcome}` of `{twice.child.name}` both lead to"
+    return (
+        *other_place(first.target_span, f"{words} `{first.target}`"),
+        *other_place(second.target_span, "and here"),
+    )
 
 
 def _never_continues(container: Sequence) -> bool:

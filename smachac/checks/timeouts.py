@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from math import ceil, isfinite
+from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit, time_limit_span
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
-from smachac.checks.messages import calls, own_name
+from smachac.checks.messages import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.checks.stops import answered_here, way_out, witness
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -18,7 +19,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Concurrence, Data, Leaf, StateType, VariableType
+from smachac.ir.nodes import Concurrence, Data, Leaf, OutcomeRule, StateType, VariableType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import outcome_names
@@ -81,6 +82,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
         code: {python: my_robot.states:WaitForButton}
     """
     around: dict[str, Concurrence] = {}
+    watched = {each.branch for each in watched_branches(context)}
     stoppable = stoppable_branches(context.containers, context.endings)
     limits = _time_limits(context.machine.state_types)
     for path, node in context.states:
@@ -89,6 +91,8 @@ def no_timeout(context: Context) -> Iterator[Finding]:
             outer = node if isinstance(node, Concurrence) else outer
             if outer is not None:
                 around.update((f"{path}/{child.name}", outer) for child in node.children)
+        elif path in watched:
+            continue  # SM407
         elif node.blocking and not _is_limited(node, limits.get(node.type, ())):
             answers = PREEMPTED in outcome_names(node)
             timed = outer is not None and outer.sugar == "timeout"
@@ -181,7 +185,8 @@ def never_ends(context: Context) -> Iterator[Finding]:
     `forever: true`, and does not end after a preempt request either; or a state in it starts again
     after a preempt request, as in SM209, so that the branch ends only by itself. The same holds for
     what a time limit cannot stop. A branch that never ends without `forever: true` is an error of
-    SM202; SM207 reports a single state that waits.
+    SM202; SM207 reports a single state that waits. Such a state is reported here where one rule is
+    about it alone and another one about other branches only: they are meant for `join: any`.
 
     Wrong:
         name: sm
@@ -229,9 +234,79 @@ def never_ends(context: Context) -> Iterator[Finding]:
         return
     found = context.endings
     endless = context.endless
+    yield from map(_without_join, watched_branches(context))
     for path, container in concurrences:
         yield from _lasting(path, container, found, endless)
     yield from _starting_again(context)
+
+
+class Watched(NamedTuple):
+    """A concurrence at `path` that waits for all branches, of which the one at `branch` waits
+    without a limit. `other` is a rule without it; another rule is about this branch only."""
+
+    path: str
+    container: Concurrence
+    branch: str
+    leaf: Leaf
+    other: OutcomeRule
+
+
+def watched_branches(context: Context) -> tuple[Watched, ...]:
+    """The concurrences whose rules are meant for `join: any`, which they lack."""
+    limits: dict[str, list[VariableType]] | None = None
+    found: list[Watched] = []
+    for path, container in context.containers:
+        if not isinstance(container, Concurrence) or container.sugar or container.join == "any":
+            continue
+        for child in container.children:
+            if not isinstance(child, Leaf) or not child.blocking or len(container.rules) < 2:
+                continue
+            rules = [({part.child for part in rule.when}, rule) for rule in container.rules]
+            alone = [rule for names, rule in rules if names == {child.name}
+                     and rule.when[0].outcome != PREEMPTED]  # fmt: skip
+            others = [rule for names, rule in rules if names and child.name not in names]
+            if not alone or not others or PREEMPTED not in outcome_names(child):
+                continue
+            if limits is None:
+                limits = _time_limits(context.machine.state_types)
+            if not _is_limited(child, limits.get(child.type, ())):
+                branch = f"{path}/{child.name}"
+                found.append(Watched(path, container, branch, child, others[0]))
+    return tuple(found)
+
+
+def missing_joins(context: Context) -> frozenset[str]:
+    """The paths of the concurrences that wait for all branches, of which one never ends or is meant
+    to be stopped by another one (SM407)."""
+    ever, unstopped = context.endings
+    found = {each.path for each in watched_branches(context)}
+    for path, container in context.containers:
+        if isinstance(container, Concurrence) and container.join == "all":
+            branches = [f"{path}/{child.name}" for child in container.children]
+            if any(unstopped[here] for here in branches) and any(
+                ever[here] and not unstopped[here] for here in branches
+            ):
+                found.add(path)
+    return frozenset(found)
+
+
+def _without_join(watched: Watched) -> Finding:
+    container, name = watched.container, watched.leaf.name
+    other = watched.other
+    ended = " and ".join(f"`{part.child}: {part.outcome}`" for part in other.when)
+    return Finding(
+        span=container.span,
+        message=f"`{container.name}` has no `join: any`: after {ended} it still waits for `{name}`",
+        arguments=(container.name, name),
+        help=f"write `join: any` in `{container.name}`: then the first branch that ends stops the"
+        " others",
+        related=(
+            *other_place(watched.leaf.span, f"`{name}` has no time limit, and nothing preempts it"),
+            *other_place(other.span, f"this rule is meant to hold while `{name}` runs"),
+            *calls(container, container.span),
+        ),
+        node=watched.path,
+    )
 
 
 def _lasting(

@@ -176,6 +176,7 @@ class _Resolver:
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
         self.fixed_params: list[FixedParam] = []
+        self.settled: set[Span] = set()  # the calls that give params, but not one that is read
 
     def script(self, source: Source, tree: Map) -> Script:
         """The script of a tree: its outermost state machine, with the robot and the types."""
@@ -547,9 +548,19 @@ class _Resolver:
             if item.kind is unresolved_look_up.code and item.span.source is not script.span.source:
                 lost.setdefault(item.finding.arguments[0], item)
         moved = {
-            id(item): look_up_of_call(item, script, state.text, idle, scope, alone=len(lost) == 1)
+            id(item): look_up_of_call(
+                item,
+                script,
+                state.text,
+                idle,
+                scope,
+                alone=len(lost) == 1,
+                settled=item.span in self.settled,
+            )
             for item in lost.values()
         }
+        if given:
+            self.settled |= {moved[id(item)].span for item in lost.values()}
         changed = {each for each, item in lost.items() if moved[id(item)] is not item}
         self.report[before:] = [
             moved.get(id(item), item)

@@ -99,7 +99,19 @@ def test_aliases_and_merges() -> None:
 @pytest.mark.parametrize(
     ("text", "place", "words", "help"),
     [
-        ("a: [1\nb: 2\n", (2, 2), "expected `,` or `]`, found `:`", "with `]`"),
+        (
+            "a: [1\nb: 2\n",
+            (1, 4),
+            "this list is not closed before the next key",
+            "write `]` at the end of line 1",
+        ),
+        (
+            "a: {b: 1,\n    c: 2\nd: 3\n",
+            (1, 4),
+            "this mapping is not closed before",
+            "write `}` at the end of line 2",
+        ),
+        ("a: [1\n  b: 2]\n", (2, 4), "expected `,` or `]`, found `:`", "with `]`"),
         ("a: {b: 1", (1, 4), "this mapping is not closed", "with `}`"),
         ("a: {f: lambda ud: 1}", (1, 17), "`}`, found `:`", "in quotes"),
         ("a: 'left\nb: 2\n", (1, 4), "quote is not closed", "the same quote"),

@@ -303,11 +303,12 @@ def param_before_definition(item: Diagnostic, defined: Span) -> Diagnostic:
 
 def look_up_of_call(
     item: Diagnostic, script: Word, state: str, given: Sequence[Word], known: Iterable[str], *,
-    alone: bool,
+    alone: bool, settled: bool,
 ) -> Diagnostic:  # fmt: skip
     """SM015 for a look-up in a sub-script, at its call: `script` is its name and the place of the
     call by `state`; `given` are the params of the call that no look-up reads, `known` those in
-    scope of the call. `alone`: no other param is missing."""
+    scope of the call. `alone`: no other param is missing. `settled`: the finding is at a call
+    inside that gives other params, so it stays there if this call has no other name for it."""
     found = item.finding
     (name,) = found.arguments
     meant = guesser(each.text for each in given)(name)
@@ -341,7 +342,7 @@ def look_up_of_call(
             edits=respelt(wrong, name),
         )
         return replace(item, finding=moved)
-    if found.related or is_misspelt:
+    if settled or is_misspelt:
         return item
     return replace(
         item,

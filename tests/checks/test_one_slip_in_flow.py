@@ -1,0 +1,201 @@
+"""One slip in a loop, a concurrence, a transition or a unit gives one finding, at the word that is
+wrong."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+from tests.trust.project_text import analysed
+
+Row = tuple[str, str, str | None]
+
+LOOP = """\
+name: rounds
+outcomes: [succeeded, aborted, preempted]
+userdata: {waypoints: [door, window]}
+states:
+  - VISIT:
+      template: ScriptedState
+      input_keys: [wp]
+      outcomes: [succeeded, lost]
+      for_each: {FIELDS}
+      transitions: {succeeded: succeeded, lost: aborted, preempted: preempted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("fields", "found"),
+    [
+        ("item: wp, in: waypoints", []),
+        ("item: waypoints, in: wp",
+         [("SM301", "waypoints", "swap them: write `for_each: {item: wp, in: waypoints}`")]),
+        ("item: wp, in: [waypoints]", [("SM305", "[waypoints]", "write `in: waypoints`")]),
+    ],
+)  # fmt: skip
+def test_a_loop_over_a_key(fields: str, found: list[Row]) -> None:
+    assert reported({"main.yml": LOOP.replace("FIELDS", fields)}) == found
+
+
+TRAY = """\
+name: sorting
+outcomes: [sorted, stopped]
+userdata: {tray: [bolt, nut]}
+states:
+  - EACH:
+      template: Iterator
+      outcomes: [exhausted, preempted]
+      input_keys: [tray]
+      it: ITEMS
+      it_label: LABEL
+      loop_outcomes: [placed]
+      final_outcome_map: {placed: preempted}
+      transitions: {exhausted: sorted, preempted: stopped}
+      states:
+        - PLACE: {template: ScriptedState, input_keys: [part], outcomes: [placed]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("items", "label", "found"),
+    [
+        ("tray", "part", []),
+        ("[tray]", "part", [("SM306", "[tray]", "write `it: tray`")]),
+        ("part", "tray", [("SM301", "tray", "swap them: write `it_label: part` and `it: tray`")]),
+    ],
+)
+def test_an_iterator_over_a_key(items: str, label: str, found: list[Row]) -> None:
+    assert reported({"main.yml": TRAY.replace("ITEMS", items).replace("LABEL", label)}) == found
+
+
+BINS = """\
+name: bins
+outcomes: [done, failed]
+userdata: {weight: 1.0}
+states:
+  - WHICH:
+      template: ScriptedState
+      outcomes: [heavy, light, lost, jammed]
+      transitions: {heavy: HEAVY, light: LEFT, lost: STOP, jammed: STOP}
+  - LEFT: {template: ScriptedState, outcomes: [placed], transitions: {placed: done}}
+  - RIGHT: {template: ScriptedState, outcomes: [placed], transitions: {placed: done}}
+  - STOP: {template: ScriptedState, outcomes: [placed], transitions: {placed: failed}}
+"""
+
+
+def test_two_outcomes_that_lead_to_one_state() -> None:
+    files = {"main.yml": BINS.replace("HEAVY", "LEFT").replace("userdata: {weight: 1.0}\n", "")}
+    files["main.yml"] = files["main.yml"].replace("lost", "aborted").replace("jammed", "failed")
+    (item,) = [each for each in analysed(files).report if each.code == "SM201"]
+    words = "lead `heavy` or `light` of `WHICH` to `RIGHT`, or remove `RIGHT`"
+    assert item.finding.help == words
+    assert [each.span.text for each in item.related] == ["LEFT", "LEFT"]
+    right = files["main.yml"].replace("heavy: LEFT", "heavy: RIGHT")
+    assert [each for each in reported({"main.yml": right}) if each[0] == "SM201"] == []
+
+
+SAFELY = """\
+name: shots
+outcomes: [done, failed, unsafe]
+states:
+  - SAFELY:
+      template: Concurrence
+      JOIN
+      outcomes: [done, failed, broken]
+      default_outcome: failed
+      outcome_map: {RULES}
+      transitions: {done: done, failed: failed, broken: unsafe}
+      states:
+        - WORK: {template: ScriptedState, outcomes: [ok, bad, preempted]}
+        - CURTAIN: {template: Curtain}
+"""
+CURTAIN = """\
+name: Curtain
+outcomes: {cut: {failure: true}, preempted: {}}
+blocking: true
+code: {python: "cal.curtain:Curtain"}
+"""
+APART = "done: {WORK: ok}, broken: {CURTAIN: cut}"
+JOIN = "write `join: any` in `SAFELY`: then the first branch that ends stops the others"
+
+
+@pytest.mark.parametrize(
+    ("join", "rules", "found"),
+    [
+        ("join: any", APART, []),
+        ("claims: []", APART, [("SM407", "SAFELY", JOIN)]),
+        ("claims: []", "done: {WORK: ok, CURTAIN: cut}, broken: {CURTAIN: cut}",
+         [("SM207", "CURTAIN", "write a time limit, as in `timeout: 20s`, for `CURTAIN`")]),
+    ],
+)  # fmt: skip
+def test_a_branch_that_waits_without_a_limit(join: str, rules: str, found: list[Row]) -> None:
+    text = SAFELY.replace("JOIN", join).replace("RULES", rules)
+    codes = ("SM207", "SM402", "SM407")
+    files = {"main.yml": text, "templates/Curtain.yml": CURTAIN}
+    assert [each for each in reported(files) if each[0] in codes] == found
+
+
+UNITS = """\
+name: weigh
+outcomes: [done]
+userdata: {weight: {type: "float<kg>", value: 0.3}, limit: {type: "float<UNIT>", value: 250.0}}
+states:
+  - A:
+      template: ConditionalOutcomeState
+      outcomes: [heavy]
+      input_keys: [weight, limit]
+      callbacks: {heavy: 'lambda ud: ud.weight > ud.limit'}
+      default_outcome: light
+      transitions: {heavy: done, light: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("unit", "help"),
+    [
+        ("kg", None),
+        ("g", "1 kg is 1000 g: write `ud.limit / 1000`, or write `limit: {type: float<kg>, value:"
+         " 0.25}` in the `userdata` of `weigh`"),
+        ("t", "1 t is 1000 kg: write `ud.limit * 1000`, or write `limit: {type: float<kg>, value:"
+         " 250000}` in the `userdata` of `weigh`"),
+        ("m", "use a number in `kg` in place of `ud.limit`, or correct the unit of one of the two"),
+    ],
+)  # fmt: skip
+def test_two_units(unit: str, help: str | None) -> None:
+    found = [each[2] for each in reported({"main.yml": UNITS.replace("UNIT", unit)})]
+    assert found == ([help] if help else [])
+
+
+STOPS = """\
+name: delivery
+outcomes: [done]
+types:
+  Stop: {room: str, floor: int, kind: "one_of[ward, lab]"}
+userdata:
+  stops:
+    type: "TYPE"
+    value:
+      - {room: A12, floor: 1, kind: ward}
+      - {room: A14, floor: FLOOR, kind: KIND}
+states:
+  - A: {template: PrintUserdataState, input_keys: [stops], transitions: {succeeded: done}}
+"""
+RECORD = "list[{room: str, floor: int}]"
+
+
+@pytest.mark.parametrize(
+    ("type_", "floor", "kind", "message"),
+    [
+        ("list[Stop]", "2", "lab", None),
+        ("list[Stop]", "ground", "lab", "`floor` of the second item of `stops` is the text"
+         " `ground`, but `Stop` has `floor: int`"),
+        ("list[Stop]", "1", "shop", "`kind` of the second item of `stops` is the text `shop`, but"
+         " `Stop` has `kind: one_of[ward, lab]`"),
+        (RECORD, "ground", "lab", "`floor` of the second item of `stops` is the text `ground`, but"
+         f" `delivery` holds `stops` as `{RECORD}`"),
+    ],
+)  # fmt: skip
+def test_a_wrong_part_of_a_value(type_: str, floor: str, kind: str, message: str | None) -> None:
+    text = STOPS.replace("TYPE", type_).replace("FLOOR", floor).replace("KIND", kind)
+    found = [item.message for item in analysed({"main.yml": text}).report if item.code == "SM304"]
+    assert found == ([message] if message else [])
