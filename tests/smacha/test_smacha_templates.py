@@ -699,6 +699,7 @@ states:
         ("method", 11),
         ("declared", 11),
         ("'`lambda ud: ud.n + 5`'", 6),
+        ("'lambda ud: ud.n + 6'", 7),
     ],
 )
 def test_callbacks_of_each_kind_are_called(built: Built, callback: str, result: int) -> None:

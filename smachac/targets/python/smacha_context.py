@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -9,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from smachac.frontend.loader import Ros
+from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.traversal import own_outcomes, remapping
 from smachac.targets.python import structure
@@ -199,8 +201,17 @@ def plain(data: Data) -> object:
 
 
 def written(variables: Iterable[Variable]) -> dict[str, object]:
-    """The values of variables by name."""
-    return {variable.name: plain(variable.value.data) for variable in variables}
+    """The values of variables by name. In `callbacks` the text of a lambda is code too."""
+    found = {variable.name: plain(variable.value.data) for variable in variables}
+    callbacks = found.get("callbacks")
+    if isinstance(callbacks, dict):
+        found["callbacks"] = {key: _function(each) for key, each in callbacks.items()}
+    return found
+
+
+def _function(value: object) -> object:
+    is_lambda = isinstance(value, ScriptText) and isinstance(python_tree(value), ast.Lambda)
+    return CodeText(value) if is_lambda else value
 
 
 def stable_id(path: str) -> str:
