@@ -86,7 +86,7 @@ def test_the_nearest_project_file_counts(tmp_path: Path) -> None:
     assert report == []
 
 
-@pytest.mark.parametrize("text", ["scripts = [no", "scripts = 'x'", "sripts = ['x']"])
+@pytest.mark.parametrize("text", ["scripts = [no", "scripts = 'x'", "sripts = ['.']"])
 def test_a_bad_project_file_is_told(tmp_path: Path, text: str) -> None:
     (tmp_path / "smachac.toml").write_text(text)
     report: Report = []
