@@ -140,7 +140,7 @@ def _read_interface(
         output_keys=_keys(sections["output_keys"], report),
         outcomes=tuple(
             as_outcome(word, value, report, "optional")
-            for word, value in _declared_words(sections["outcomes"])
+            for word, value in _outcome_words(sections["outcomes"], report)
         ),
         writes=_writes(sections, report),
         given=given,
@@ -425,6 +425,22 @@ def _declared_words(section: Section) -> list[tuple[Word, Tree]]:
     return [(Word(str(entry.key.value), entry.key.span), entry.value) for entry in named]
 
 
+def _outcome_words(section: Section, report: Report) -> list[tuple[Word, Tree]]:
+    """The names of outcomes with what is written below each. What is written beside them and
+    describes an outcome, as in `{lost: {}, failure: true}`, is reported and left out."""
+    found: list[tuple[Word, Tree]] = []
+    for word, tree in _declared_words(section):
+        if word.text not in ("doc", "failure", "optional") or not isinstance(tree, Scalar):
+            found.append((word, tree))
+            continue
+        text = f"{word.text}: {tree.span.text}"
+        owner = found[-1][0].text if found else "OUTCOME"
+        message = f"`{text}` stands beside the outcomes: it declares an outcome `{word.text}`"
+        help = f"write it below the outcome that it describes: `{owner}: {{{text}}}`"
+        report.append(wrong_shape(word.span, message, help, arguments=("outcomes", word.text)))
+    return found
+
+
 def _is_starred(section: Section) -> bool:
     """Whether a section has `"*"`: scripts add to it."""
     return any(entry.key.value == "*" for entry in section)
@@ -450,6 +466,11 @@ def _type(tree: Tree | None, report: Report) -> Type:
     if isinstance(tree, Map):
         entry = tree.get("type")
         tree = as_record(entry.value) if entry else None
+    if isinstance(tree, Scalar) and isinstance(tree.value, bool | int | float):
+        name, text = type(tree.value).__name__, tree.span.text
+        help = f"write `{name}`; a default value is written `{{type: {name}, default: {text}}}`"
+        message = f"`{text}` is a value, not a type"
+        report.append(wrong_shape(tree.span, message, help, arguments=("type", text)))
     if not isinstance(tree, Scalar) or not isinstance(tree.value, str):
         return ANY
     return read_type(tree.value, Word(tree.value, tree.span), report) or ANY

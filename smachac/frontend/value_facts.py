@@ -12,6 +12,7 @@ from smachac.diagnostics.spelling import Guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, kind_of
+from smachac.frontend.type_annotations import as_record
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.ir.nodes import Limits, is_number
 from smachac.ir.types import ANY, Type, parse_type, unknown_words
@@ -26,12 +27,26 @@ def check_fields(tree: Tree, owner: str, known: Collection[str], report: Report)
     """Reports the unknown fields of an entry of an interface, whose name in messages is `owner`.
     The result are the fields that they seem to mean."""
     meant = set()
+    if isinstance(tree, Map) and _is_record(tree, known):
+        text = tree.span.text
+        message = f"{owner} is a record, whose fields are written under `type`"
+        help = f"write `{{type: {text if chr(10) not in text else '{...}'}}}`"
+        report.append(wrong_shape(tree.span, message, help, arguments=("record", owner)))
+        return {"type"}
     for entry in tree.entries if isinstance(tree, Map) else ():
         word = Word(str(entry.key.value), entry.key.span)
         if word.text not in known:
             report.append(unknown_variable(word, Owner(owner, owner, "field"), known))
             meant.add(Guesser(known)(word.text) or "")
     return meant
+
+
+def _is_record(tree: Map, known: Collection[str]) -> bool:
+    """Whether a mapping has the form of a record type, and none of the known fields."""
+    names = {str(entry.key.value) for entry in tree.entries}
+    record = as_record(tree) if names and names.isdisjoint(known) else tree
+    type_ = parse_type(str(record.value)) if isinstance(record, Scalar) else None
+    return type_ is not None and not unknown_words(type_)
 
 
 def named(tree: Tree, report: Report) -> str:
