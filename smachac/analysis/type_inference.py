@@ -114,6 +114,7 @@ class _Inference:
         self.constants: list[TypeFlow] = []
         self.literals: set[tuple[Cell, Span, Type, Data]] = set()
         self.definitions: Definitions = {}
+        self.preset_lists: set[str] = set()
 
     def read(self, machine: Machine) -> None:
         self.definitions = machine.definitions
@@ -213,6 +214,8 @@ class _Inference:
         for preset in node.userdata:
             cell = scope.at(preset.key, preset.span)
             self.declare(cell, preset.type, preset.span)
+            if isinstance(preset.value.data, tuple):
+                self.preset_lists.add(preset.key)
             self.literal(cell, preset.value.data, preset.value.span)
         for key in node.outputs:
             inner = scope.at(key.name, place_of(node, key))
@@ -240,7 +243,9 @@ class _Inference:
                 )
                 self.computation(computation)
             elif isinstance(items, tuple):
-                for each in items:
+                is_key = len(items) == 1 and isinstance(items[0], str)
+                is_key = is_key and items[0] in self.preset_lists
+                for each in () if is_key else items:  # SM305 or SM306: the key is meant
                     self.literal(item, each, span)
             else:
                 self.unknown(item)

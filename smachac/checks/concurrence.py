@@ -24,7 +24,7 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Leaf, Node
+from smachac.ir.nodes import Concurrence, Condition, Leaf, Node, OutcomeRule
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
@@ -124,9 +124,23 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 related=calls(container, entry.span),
                 node=path,
             )
+        swapped = _swapped_outcomes(entry, children)
+        if swapped:
+            first, second = swapped
+            text = f"{first.child}: {second.outcome}, {second.child}: {first.outcome}"
+            yield Finding(
+                span=place_of_value(first.span, first.outcome),
+                message=f"`{first.child}` has no outcome `{first.outcome}`, and `{second.child}` no"
+                f" `{second.outcome}`: the two are swapped",
+                arguments=(entry.outcome, first.child, first.outcome),
+                help=f"write `{text}`",
+                effect=UNKNOWN_BRANCH,
+                related=calls(container, first.span),
+                node=path,
+            )
         for condition in entry.when:
-            if not condition.child:  # a rule of a wrong shape: SM004
-                continue
+            if not condition.child or condition in swapped:
+                continue  # a rule of a wrong shape: SM004
             child, span = children.get(condition.child), condition.span
             if child is None:
                 message = f"`{condition.child}` is not a state of `{container.name}`"
@@ -147,6 +161,26 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 related=related,
                 node=path,
             )
+
+
+def _swapped_outcomes(
+    entry: OutcomeRule, children: Mapping[str, Node]
+) -> tuple[Condition, Condition] | tuple[()]:
+    """Two conditions of a rule, each with an outcome that only the state of the other one has."""
+    wrong = [
+        each
+        for each in entry.when
+        if (child := children.get(each.child)) is not None
+        and not is_open(child)
+        and each.outcome not in outcome_names(child)
+    ]
+    if len(wrong) != 2:
+        return ()
+    first, second = wrong
+    crosswise = second.outcome in outcome_names(children[first.child]) and (
+        first.outcome in outcome_names(children[second.child])
+    )
+    return (first, second) if crosswise else ()
 
 
 def _example(container: Concurrence) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
@@ -92,6 +92,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
             continue
         read = context.of_container(_used_in, scope.path, scope)
+        yield from _loops_over_names_of_lists(scope, read)
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
                 continue
@@ -431,18 +432,29 @@ def _words_as_lists(path: str, loop: nodes.Iterator) -> Iterator[Finding]:
             yield _word_as_list(path, loop, key.name)
 
 
+def _loops_over_names_of_lists(scope: UserdataScope, read: Collection[str]) -> Iterator[Finding]:
+    """The findings on loops over one text, which is the name of a list of the userdata that other
+    states read."""
+    lists = {each.key for each in scope.container.userdata if isinstance(each.value.data, tuple)}
+    for key in lists.intersection(read):
+        loop = _loop_over_the_word(scope.container, key)
+        if loop is not None and (loop.sugar or key not in {each.name for each in loop.inputs}):
+            yield _word_as_list(f"{scope.path}/{loop.name}", loop, key)
+
+
 def _word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:
-    """The finding on a loop over one text, where nothing reads the key of that name."""
+    """The finding on a loop over one text, which is the name of a key."""
     field = "in" if loop.sugar else "it"
     help = f"write `{field}: {key}`"
     if not loop.sugar and key not in {each.name for each in loop.inputs}:
         help += f", and add `{key}` to the `input_keys` of `{loop.name}`"
     return Finding(
         span=loop.items_span,
-        message=f"`{loop.name}` runs once, for the text `{key}`: nothing reads the key `{key}`",
+        message=f"`{loop.name}` runs once, for the text `{key}`, not for the items of the key"
+        f" `{key}`",
         arguments=("items", key),
         help=help,
-        effect=f"the items in `{key}` are not used",
+        effect="the state gets the name of the key in place of an item",
         related=calls(loop, loop.items_span),
         node=path,
     )
@@ -488,6 +500,14 @@ def _names_as_text(context: Context, names: Collection[str]) -> dict[str, Span]:
     return {name: spans[0] for name, spans in found.items() if len(spans) == 1}
 
 
+def _param_meant(name: str, known: Sequence[str]) -> str | None:
+    """The param that is probably meant by an unused one: one of a similar name, or the only one
+    that has a word of its name, as `force` for `grip_force`."""
+    words = set(name.split("_"))
+    alike = [each for each in known if not words.isdisjoint(each.split("_"))]
+    return guesser(known)(name) or (alike[0] if len(alike) == 1 else None)
+
+
 def _unused_by_the_script(context: Context) -> Iterator[Finding]:
     """The params and types of the script that nothing uses."""
     machine = context.machine
@@ -496,7 +516,7 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
     in_code = _params_in_code(machine)
     names = {each.word.text for each in machine.unused if each.what == "param"}
     as_text = _names_as_text(context, names)
-    for what, word, via in machine.unused:
+    for what, word, via, known in machine.unused:
         if what == "param" and word.text in in_code:  # SM019
             continue
         if what == "param" and (place := as_text.get(word.text)) is not None:
@@ -515,7 +535,9 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
             span=word.span,
             message=f"the {what} `{word.text}` is defined, but nothing uses it",
             arguments=(what, word.text),
-            help="remove it, or correct its name",
+            help=did_you_mean(_param_meant(word.text, known))
+            or (f"the params that are used here are {listed(known)}" if known else None)
+            or "remove it, or correct its name",
             effect="its value has no effect" if what == "param" else None,
             related=tuple(Related(span=call, message=CALLED_HERE) for call in outside),
             node=machine.root.name,

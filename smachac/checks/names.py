@@ -23,7 +23,7 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
 from smachac.ir.traversal import PREEMPTED, outcome_names
@@ -190,17 +190,19 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
         why = "the branches of a concurrence start together"
         help = f"remove it; the rules in `outcome_map` decide how `{container.name}` ends"
     for child in container.children:
-        for step in child.transitions:
-            if step.origin == "written":
-                yield Finding(
-                    span=step.span,
-                    message=f"the transition for `{step.outcome}` is never taken: {why}",
-                    arguments=(own_name(child, step.span), step.target, step.outcome),
-                    help=help,
-                    related=calls(child, step.span),
-                    severity=Severity.WARNING,
-                    node=f"{path}/{child.name}",
-                )
+        steps = [step for step in child.transitions if step.origin == "written"]
+        if steps:
+            first, several = steps[0], len(steps) > 1
+            what = f"transition{'s' * several} for {both(step.outcome for step in steps)}"
+            yield Finding(
+                span=first.span,
+                message=f"the {what} {'are' if several else 'is'} never taken: {why}",
+                arguments=(own_name(child, first.span), first.target, first.outcome),
+                help=help.replace("it;", "them;", 1) if several else help,
+                related=calls(child, first.span),
+                severity=Severity.WARNING,
+                node=f"{path}/{child.name}",
+            )
 
 
 @rule(

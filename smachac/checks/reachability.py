@@ -163,7 +163,12 @@ def _wrong_connector(path: str, container: Sequence) -> Finding:
     outcomes = [name for child in container.children for name in outcome_names(child)]
     word = Word(container.connector_outcome, container.connector_span)
     guess = guesser(outcomes)
-    known = f"use an outcome of its states: {listed(outcomes)}"
+    good = [name for name in dict.fromkeys(outcomes)
+            if all(name in outcome_names(child) for child in container.children)
+            and not any(fails(child, name) for child in container.children)]  # fmt: skip
+    known = f"use an outcome of its states: {listed(good or outcomes)}"
+    if len(good) == 1:
+        known = f"write `{good[0]}`, with which each of its states can end"
     return Finding(
         span=word.span,
         message=f"no state of `{container.name}` ends with `{word.text}`, so the sequence never"

@@ -315,7 +315,7 @@ def _read(cell: Cell, aliases: Mapping[str, str]) -> str:
             return f"{_owner(cell)} writes `{cell.key}` as {wanted}"
         case "variable":
             return f"the variable `{cell.key}` of {_owner(cell)} has the type {wanted}"
-    return f"{_owner(cell)} holds `{cell.key}` as {wanted}"
+    return f"{_owner(cell)} declares `{cell.key}` as {wanted}"
 
 
 def written(flow: TypeFlow) -> str:
@@ -328,7 +328,7 @@ def written(flow: TypeFlow) -> str:
             case "scope" if is_promised(cell):
                 return f"the caller of {_owner(cell)} provides `{cell.key}` as `{flow.type}`"
             case "scope":
-                return f"{_owner(cell)} holds `{cell.key}` as `{flow.type}`"
+                return f"{_owner(cell)} declares `{cell.key}` as `{flow.type}`"
     what = in_words(flow.type)
     if flow.how == "value" and isinstance(flow.value, bool | float):
         return f"`{cell.key}` is `{json.dumps(flow.value)}`"

@@ -51,6 +51,7 @@ MEANT_PARTS: Mapping[str, str] = {
 
 SECONDS = {"": 1.0, "ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 _SENTENCE = re.compile(r"(?:for )?([A-Za-z_]\w*) in ([A-Za-z_]\w*)")
+_PARTS = re.compile(r"(\d+(?:\.\d+)?)\s*([a-z]+)")
 _DURATION = re.compile(r"(\d+(?:\.\d+)?|\.\d+)\s*([a-z]*)")
 
 
@@ -136,6 +137,10 @@ def _known(
             continue
         message = f"this state has no outcome `{word.text}`"
         known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
+        given = {each.text for each in on}
+        left = [name for name in outcomes if name not in led and name not in given]
+        if len(left) == 1:
+            known = f"write `{left[0]}`, which has no transition"
         help = did_you_mean(word.text, outcomes) or known
         arguments = ("outcome", word.text)
         report.append(wrong_shape(word.span, message, help, arguments=arguments))
@@ -164,7 +169,15 @@ def duration(tree: Tree, report: Report) -> float | None:
 
 
 def _duration_meant(tree: Tree) -> str | None:
-    """The help for a duration with another word for its unit, such as `20 sec`."""
+    """The help for a duration with another word for its unit, such as `20 sec`, and for one of
+    several parts, such as `1m30s`."""
+    parts = _PARTS.findall(tree.span.text) if isinstance(tree, Scalar) else []
+    if len(parts) > 1 and "".join(map("".join, parts)) == "".join(tree.span.text.split()):
+        units = [unit if unit in SECONDS else UNITS.get(unit, "") for _, unit in parts]
+        if all(units):
+            seconds = sum(float(number) * SECONDS[unit]
+                          for (number, _), unit in zip(parts, units, strict=True))  # fmt: skip
+            return f"write it with one unit: `{seconds:g}s`"
     found = _DURATION.fullmatch(tree.span.text) if isinstance(tree, Scalar) else None
     unit = UNITS.get(found.group(2)) if found is not None else None
     return f"write it as `{found.group(1)}{unit}`" if found is not None and unit else None

@@ -75,7 +75,11 @@ class Uses:
             if name in used:
                 self.defaults.add(entry.key.span)
                 continue
-            self.found.append(Unused("param", Word(name, entry.key.span), via))
+            # Those of a called sub-script are in another text: the call can give them.
+            given = {str(each.key.value) for each in own.value.entries
+                     if each.key.span.source is entry.key.span.source}  # fmt: skip
+            known = tuple(sorted(used - given))
+            self.found.append(Unused("param", Word(name, entry.key.span), via, known))
             self.anchored[entry.key.span] = [each.span for each in _inside(entry.value)]
 
     def replaced(self, inner: Mapping[str, Entry], call: Mapping[str, Entry]) -> None:

@@ -42,8 +42,11 @@ def check_fields(tree: Tree, owner: str, known: Collection[str], report: Report)
 
 
 def _is_record(tree: Map, known: Collection[str]) -> bool:
-    """Whether a mapping has the form of a record type, and none of the known fields."""
+    """Whether a mapping has the form of a record type, and none of the known fields, also
+    misspelt."""
     names = {str(entry.key.value) for entry in tree.entries}
+    if any(Guesser(known).sure(name) is not None for name in names):
+        return False
     record = as_record(tree) if names and names.isdisjoint(known) else tree
     type_ = parse_type(str(record.value)) if isinstance(record, Scalar) else None
     return type_ is not None and not unknown_words(type_)

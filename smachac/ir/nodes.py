@@ -371,12 +371,13 @@ ContainerKind = Literal["StateMachine", "Sequence", "Concurrence", "Iterator"]
 
 
 class Unused(NamedTuple):
-    """A declaration of the script that is not used, and the calls of sub-scripts that lead to
-    it."""
+    """A declaration of the script that is not used, and the calls of sub-scripts that lead to it.
+    `known` are the params that the state with an unused one uses and does not define."""
 
     what: Literal["param", "type"]
     word: Word
     via: tuple[Span, ...] = ()
+    known: tuple[str, ...] = ()
 
 
 class FixedParam(NamedTuple):

@@ -192,7 +192,7 @@ RECORD = "list[{room: str, floor: int}]"
         ("list[Stop]", "1", "shop", "`kind` of the second item of `stops` is the text `shop`, but"
          " `Stop` has `kind: one_of[ward, lab]`"),
         (RECORD, "ground", "lab", "`floor` of the second item of `stops` is the text `ground`, but"
-         f" `delivery` holds `stops` as `{RECORD}`"),
+         f" `delivery` declares `stops` as `{RECORD}`"),
     ],
 )  # fmt: skip
 def test_a_wrong_part_of_a_value(type_: str, floor: str, kind: str, message: str | None) -> None:

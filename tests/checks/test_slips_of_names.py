@@ -1,0 +1,127 @@
+"""Names, outcomes and durations that are wrong in one certain way: the help is what to write."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import PATROL, reported
+
+GRAB = "transitions: {held: BOTH, slipped: LET_GO}"
+RULE = "outcome_map: {ready: {LIGHT: done, DRIVE: done}}"
+
+
+def patrol(old: str, new: str) -> list[tuple[str, str, str | None]]:
+    assert old in PATROL
+    return reported({"main.yml": PATROL.replace(old, new)})
+
+
+@pytest.mark.parametrize(
+    ("limit", "help"),
+    [
+        ("1m30s", "write it with one unit: `90s`"),
+        ("1h 30min", "write it with one unit: `5400s`"),
+        ("20 sec", "write it as `20s`"),
+        ("5 apples", "write it as `20s`, `500ms`, `1.5min` or `1h`"),
+    ],
+)
+def test_a_duration_in_another_form(limit: str, help: str) -> None:
+    assert patrol(GRAB, f"timeout: {limit}\n      {GRAB}") == [("SM004", limit, help)]
+
+
+def test_the_only_outcome_without_a_transition_is_meant() -> None:
+    steps = "transitions: {held: BOTH, exhausted: LET_GO, preempted: aborted}"
+    found = patrol(GRAB, f"retry: {{on: [failed], max: 3}}\n      {steps}")
+    assert found == [("SM004", "failed", "write `slipped`, which has no transition")]
+
+
+def test_outcomes_of_two_branches_that_are_swapped() -> None:
+    branches = "- LIGHT: {template: ScriptedState, outcomes: [done]}"
+    assert branches in PATROL
+    main = PATROL.replace(branches, branches.replace("done", "lit, dark")).replace(
+        RULE, "outcome_map: {ready: {LIGHT: done, DRIVE: lit}}"
+    )
+    (found,) = (each for each in reported({"main.yml": main}) if each[0] == "SM403")
+    assert found == ("SM403", "done", "write `LIGHT: lit, DRIVE: done`")
+
+
+def test_transitions_of_a_branch_are_one_finding() -> None:
+    branch = "- DRIVE: {template: ScriptedState, outcomes: [done, lost]"
+    found = patrol(branch, f"{branch}, transitions: {{done: LIGHT, lost: LIGHT}}")
+    help = "remove them; the rules in `outcome_map` decide how `BOTH` ends"
+    assert [each for each in found if each[0] == "SM101"] == [("SM101", "done", help)]
+
+
+def test_the_only_outcome_of_all_states_of_a_sequence() -> None:
+    text = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - PREPARE:
+      template: Sequence
+      outcomes: [done, failed]
+      connector_outcome: finished
+      transitions: {done: done, failed: failed}
+      states:
+        - A: {template: ScriptedState, outcomes: [ok, failed]}
+        - B: {template: ScriptedState, outcomes: [ok, failed]}
+"""
+    found = reported({"main.yml": text})
+    help = "write `ok`, with which each of its states can end"
+    assert [each for each in found if each[0] == "SM201"] == [("SM201", "finished", help)]
+
+
+INTERFACE = """\
+name: Move
+variables: {VARIABLES}
+input_keys: {KEYS}
+outcomes: {OUTCOMES}
+code: {python: "cell.arm:Move"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("part", "text", "marked", "help"),
+    [
+        ("VARIABLES", "fast: true", "true",
+         "write `bool`; a default value is written `{type: bool, default: true}`"),
+        ("VARIABLES", "speed: {type: 0.5}", "0.5",
+         "write `float`; a default value is written `{type: float, default: 0.5}`"),
+        ("KEYS", "goal: {room: str, floor: int}", "{room: str, floor: int}",
+         "write `{type: {room: str, floor: int}}`"),
+        ("KEYS", "goal: {typ: str}", "typ", "did you mean `type`?"),
+        ("OUTCOMES", "moved: {}, blocked: {}, failure: true", "failure",
+         "write it below the outcome that it describes: `blocked: {failure: true}`"),
+    ],
+)  # fmt: skip
+def test_an_interface_with_one_slip(part: str, text: str, marked: str, help: str) -> None:
+    interface = INTERFACE.replace(part, text).replace("VARIABLES", "").replace("KEYS", "")
+    interface = interface.replace("OUTCOMES", "moved: {}, blocked: {}")
+    main = """\
+name: sm
+outcomes: [done, stuck]
+states:
+  - MOVE: {template: Move, transitions: {moved: done, blocked: stuck}}
+"""
+    found = reported({"main.yml": main, "templates/Move.yml": interface})
+    slips = [each for each in found if each[0] in ("SM003", "SM004")]
+    assert [(each[1], each[2]) for each in slips] == [(marked, help)]
+    assert {each[0] for each in found} <= {"SM003", "SM004", "SM301", "SM005"}
+
+
+def test_a_param_that_the_sub_script_has_under_another_name() -> None:
+    pick = """\
+- PICK:
+    template: StateMachine
+    outcomes: [succeeded]
+    params: {force: 1.0}
+    states:
+      - REST: {template: SleepState, time: [params, force], transitions: {succeeded: succeeded}}
+"""
+    main = """\
+name: sm
+outcomes: [succeeded]
+states:
+  - A: {script: pick, params: {grip_force: 2.0}, transitions: {succeeded: succeeded}}
+"""
+    found = reported({"main.yml": main, "pick.yml": pick})
+    assert ("SM306", "grip_force", "did you mean `force`?") in found
