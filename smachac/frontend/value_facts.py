@@ -42,10 +42,11 @@ def check_fields(tree: Tree, owner: str, known: Collection[str], report: Report)
 
 
 def _is_record(tree: Map, known: Collection[str]) -> bool:
-    """Whether a mapping has the form of a record type, and none of the known fields, also
-    misspelt."""
+    """Whether a mapping has the form of a record type, and none of the known fields; where
+    each of its names resembles one, it is probably misspelt."""
     names = {str(entry.key.value) for entry in tree.entries}
-    if any(Guesser(known).sure(name) is not None for name in names):
+    guess = Guesser(known)
+    if all(guess(name) is not None for name in names):
         return False
     record = as_record(tree) if names and names.isdisjoint(known) else tree
     type_ = parse_type(str(record.value)) if isinstance(record, Scalar) else None
