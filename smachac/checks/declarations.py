@@ -505,7 +505,7 @@ def _param_meant(name: str, known: Sequence[str]) -> str | None:
     that has a word of its name, as `force` for `grip_force`."""
     words = set(name.split("_"))
     alike = [each for each in known if not words.isdisjoint(each.split("_"))]
-    return guesser(known)(name) or (alike[0] if len(alike) == 1 else None)
+    return guesser(known).sure(name) or (alike[0] if len(alike) == 1 else None)
 
 
 def _unused_by_the_script(context: Context) -> Iterator[Finding]:

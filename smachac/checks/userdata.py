@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -30,7 +30,7 @@ from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
-from smachac.ir.nodes import Container, Node
+from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.types import ANY, Type
 
@@ -442,7 +442,10 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
             arguments=(reader.key,),
             help=help,
             related=(
-                *other_place(scope.container.span, f"`{between[-1]}` is defined here"),
+                *(
+                    _list_of(scope.container, scope.container.inputs, "input_keys")
+                    or other_place(scope.container.span, f"`{between[-1]}` is defined here")
+                ),
                 *(
                     related
                     for each in others[:MOST_RELATED]
@@ -453,6 +456,13 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
             node=reader.path,
             edits=_taken_in(flow, scope.path, missing.other, key),
         )
+
+
+def _list_of(container: Container, keys: Sequence[Key], field: str) -> tuple[Related, ...]:
+    """The last name in a list of keys of a container, where its text has the list."""
+    if not keys or keys[-1].span.source is not container.span.source:
+        return ()
+    return other_place(keys[-1].span, f"the `{field}` of `{container.name}`")
 
 
 def _taken_in(flow: DataFlow, path: str, holder: str, key: str) -> tuple[Edit, ...]:
@@ -533,22 +543,28 @@ def lost_output(context: Context) -> Iterator[Finding]:
         keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
         inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
         gets = "an unset key" if lost.is_missing else "an older value"
-        wrong = lost.misspelt
+        wrong, reader = lost.misspelt, lost.reader.node.name
+        itself = reader == keeper.name
+        happens = "it is lost at the end of each run" if itself else f"`{reader}` reads {gets}"
+        effect = f"`{reader}` works with a value that was set before"
+        if lost.is_missing:
+            effect = f"`{reader}` stops when it reads the key"
+        elif itself:
+            effect = f"each run of `{reader}` begins with the value that was set before the first"
         fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
             span=wrong.span if wrong is not None else keeper.span,
             message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
-            f" `{keeper.name}`: `{lost.reader.node.name}` reads {gets}",
+            f" `{keeper.name}`: {happens}",
             arguments=(lost.own,),
             help=fix or f"add `{lost.own}` to the `output_keys` of `{keeper.name}`",
             related=(
                 *other_place(written, f"`{lost.writer.name}` sets it here"),
                 *other_place(lost.reader.span, lost.reader.words),
+                *_list_of(keeper, keeper.outputs, "output_keys"),
                 *calls(keeper, keeper.span),
             ),
-            effect=f"`{lost.reader.node.name}` stops when it reads the key"
-            if lost.is_missing
-            else f"`{lost.reader.node.name}` works with a value that was set before",
+            effect=effect,
             severity=Severity.ERROR if lost.is_missing else None,
             node=lost.keeper.path,
             edits=with_output(keeper, lost.own) if lost.is_missing and wrong is None else (),
