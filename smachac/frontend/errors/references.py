@@ -292,10 +292,13 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
 def param_before_definition(item: Diagnostic, defined: Span) -> Diagnostic:
     """SM015 for a look-up in a param that names a later param of the same mapping."""
     (name,) = item.finding.arguments
+    help = f"move `{name}` before this param: a param can use only those above it"
+    if defined.source is not item.span.source:  # a call of the sub-script defines it
+        help = f"add `{name}: ...` above this param, as the default value that a call replaces"
     changed = replace(
         item.finding,
         message=f"the param `{name}` is used before it is defined",
-        help=f"move `{name}` before this param: a param can use only those above it",
+        help=help,
         related=(Related(span=defined, message="defined here"),),
     )
     return replace(item, finding=changed)
