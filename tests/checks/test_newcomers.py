@@ -187,3 +187,119 @@ def test_the_failure_of_an_item_is_declared_at_the_state() -> None:
     assert found[2].endswith("write `outcomes: {unreachable: {failure: false}}` at `HOVER`")
     declared = "{succeeded: {}, unreachable: {failure: false}, preempted: {}}"
     assert findings(EACH.replace("OUTCOMES", declared)) == []
+
+
+COUNT = {
+    "main.yml": """\
+name: count_parts
+outcomes: [succeeded]
+userdata: {count: 0}
+states:
+  - COUNT: {template: Count, transitions: {more: COUNT, enough: succeeded}}
+""",
+    "templates/Count.yml": """\
+name: Count
+input_keys: {count: int}
+outcomes: {more: {}, enough: {}}
+code: {python: "counter:Count"}
+""",
+    "counter.py": """\
+import smach
+
+
+class Count(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=['more', 'enough'], input_keys=['count'])
+
+    def on_enter(self, userdata):
+        self.start = 0
+
+    def execute(self, userdata):
+        CODE
+        if userdata.count < 5:
+            return 'more'
+        return 'enough'
+""",
+}
+
+
+def of_class(code: str, *changes: tuple[str, str]) -> list[tuple[str, str, str]]:
+    text = COUNT["counter.py"].replace("CODE", code)
+    for old, new in changes:
+        text = text.replace(old, new)
+    return findings({**COUNT, "counter.py": text})
+
+
+def test_a_key_is_added_to_the_interface_and_to_the_class() -> None:
+    help = "add `count` to the `output_keys` of the interface `Count` and of `__init__`"
+    assert of_class("userdata.count += 1") == [("SM308", "12 count", help)]
+    listed = ("input_keys=['count'])", "input_keys=['count'], output_keys=['count'])")
+    found = [each for each in of_class("userdata.count += 1", listed) if each[0] == "SM308"]
+    assert [help for _, _, help in found] == [
+        "add `count` to the `output_keys` of the interface `Count`"
+    ]
+
+
+def test_the_userdata_has_no_methods_of_a_dictionary() -> None:
+    files = {**COUNT, "counter.py": COUNT["counter.py"].replace("CODE", "userdata.get('count')")}
+    effects = [each.finding.effect for each in analysed(files).report if each.code == "SM310"]
+    assert effects == ["the userdata has no method `get`: AttributeError"]
+
+
+def test_a_state_of_flexbe_waits_in_execute() -> None:
+    words = "SMACH calls `execute` once and never `on_enter`: wait in `execute`"
+    last = ("        return 'enough'\n", "")
+    (help,) = [help for code, _, help in of_class("pass", last) if code == "SM309"]
+    assert help.endswith(f"; {words}")
+    called = of_class("self.on_enter(userdata)", last)
+    (help,) = [help for code, _, help in called if code == "SM309"]
+    assert words not in help
+
+
+def test_an_unknown_outcome_that_continues_a_loop() -> None:
+    loop = LOOP.replace("pose: poses", "pose: current").replace("[current, poses]", "[current]")
+    found = findings(loop.replace("loop_outcomes: [succeeded]", "loop_outcomes: [continue]"))
+    assert ("SM102", "15 continue", "write `succeeded` in place of `continue`") in found
+    found = findings(loop.replace("[succeeded]\n      ex", "[succeeded, continue]\n      ex"))
+    assert ("SM102", "15 continue", "use one of `aborted`, `succeeded`") in found
+
+
+FOLLOW = {
+    "main.yml": """\
+name: follow
+outcomes: [succeeded, aborted]
+states:
+  - FOLLOW:
+      template: Follow
+      timeout: 10s
+      transitions: {arrived: succeeded, timeout: aborted, preempted: aborted}
+""",
+    "templates/Follow.yml": """\
+name: Follow
+outcomes: {arrived: {}}
+blocking: true
+code: {python: "follow_state:Follow"}
+""",
+    "follow_state.py": """\
+import smach
+
+
+class Follow(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=['arrived'])
+        self.near = False
+
+    def execute(self, userdata):
+        while not self.near:
+            self.near = True
+        return 'arrived'
+""",
+}
+
+
+def test_a_time_limit_that_stops_nothing() -> None:
+    ((code, _, help),) = findings(FOLLOW)
+    assert code == "SM207"
+    assert "timeout:" not in help
+    answer = "if self.preempt_requested(): self.service_preempt(); return 'preempted'"
+    assert help.endswith(f"and in the loop of `execute` write `{answer}`")
