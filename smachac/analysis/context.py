@@ -14,6 +14,7 @@ from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.filled_lists import filled_loops
+from smachac.analysis.item_reads import ItemRead, item_reads
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
@@ -186,9 +187,23 @@ class Context:
         return infer(self.machine)
 
     @cached_property
-    def clashes(self) -> dict[MisfitKind, list[Clash]]:
-        """The type clashes whose value reaches its reader, by kind."""
+    def _reaching(self) -> dict[MisfitKind, list[Clash]]:
         return reaching_clashes(self.types.clashes)
+
+    @cached_property
+    def item_reads(self) -> tuple[ItemRead, ...]:
+        """The reads of the list of a loop that mean its item."""
+        found = [each for some in self._reaching.values() for each in some]
+        return tuple(item_reads(found, dict(self.containers))) if found else ()
+
+    @cached_property
+    def clashes(self) -> dict[MisfitKind, list[Clash]]:
+        """The type clashes whose value reaches its reader, by kind; not those of `item_reads`."""
+        taken = {id(each.clash) for each in self.item_reads}
+        return {
+            kind: [each for each in found if id(each) not in taken]
+            for kind, found in self._reaching.items()
+        }
 
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:

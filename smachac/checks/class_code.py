@@ -7,7 +7,7 @@ of a class is reported once, with the first state of its type as a related place
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
@@ -186,11 +186,26 @@ def _wrong_returns(
             arguments=(leaf.type,),
             help=f"write `return {alone.span.text}`"
             if alone
-            else f"{_after_loop(facts)}end each path with a `return`; {known}",
+            else f"{_after_loop(facts)}end each path with a `return`; {known}{_hooks(facts)}",
             related=(*_open_end(facts), *_used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
         )
+
+
+def _hooks(facts: ClassFacts) -> str:
+    """The part of a help about methods of FlexBE's states, which SMACH does not have."""
+    if not facts.hooks:
+        return ""
+    return f"; SMACH calls `execute` once and never `{facts.hooks[0]}`: wait in `execute`"
+
+
+def _in_the_class(facts: ClassFacts, field: Literal["input_keys", "output_keys"], key: str) -> str:
+    """The part of a help that adds a key to the list in the constructor, where it has its own."""
+    declared = facts.inputs if field == "input_keys" else facts.outputs
+    if declared is None or field in dict(facts.passed) or key in {word.text for word in declared}:
+        return ""
+    return " and of `__init__`"
 
 
 def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> Word | None:
@@ -289,12 +304,14 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
         around = containers[path.rpartition("/")[0]]
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
         for word in _first_of_each(facts.reads, known):
+            effect: str | None = None
             message = (
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
                 " key of its interface"
             )
             help = did_you_mean(guesser(inputs)(word.text)) or (
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
+                + _in_the_class(facts, "input_keys", word.text)
             )
             if word.text in DICTIONARY_METHODS and _is_called(word):
                 name = _owner(word)
@@ -303,11 +320,13 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                     " state has no methods of a dictionary"
                 )
                 help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
+                effect = f"the userdata has no method `{word.text}`: AttributeError"
             yield Finding(
                 span=word.span,
                 message=message,
                 arguments=(word.text,),
                 help=help,
+                effect=effect,
                 related=_used_here(leaf),
                 node=path,
             )
@@ -335,7 +354,8 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 f" is discarded{never}",
                 arguments=(word.text,),
                 help=guess
-                or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`",
+                or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`"
+                + _in_the_class(facts, "output_keys", word.text),
                 related=_used_here(leaf),
                 node=path,
             )

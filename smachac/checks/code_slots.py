@@ -10,7 +10,6 @@ from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import (
     CodeSlot,
     accepts,
-    code_slots,
     free_names,
     is_value,
     means,
@@ -26,6 +25,16 @@ from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.message_code import content_of
 from smachac.analysis.type_inference import TypeFlow
 from smachac.checks.class_values import none_writes
+from smachac.checks.function_results import (
+    NONE_EFFECTS,
+    WAIT_FAILS,
+    always_true,
+    named_functions,
+    overwritten_keys,
+    readable_slots,
+    silent_functions,
+    slot_owner,
+)
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import number_meant
 from smachac.checks.rule import rule
@@ -40,26 +49,6 @@ from smachac.ir.message_types import TEXTS, FieldType
 from smachac.ir.nodes import Expression, Leaf, Node, VariableRole
 from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
-
-
-def _functions(context: Context) -> Iterator[tuple[str, Node, CodeSlot, FunctionFacts]]:
-    """The code slots of a machine that name a function of the user, with the facts about it."""
-    machine = context.machine
-    for path, node in context.states if machine.functions else ():
-        for slot in code_slots(node, machine.state_types):
-            facts = machine.functions.get(slot.code.text)
-            if facts is not None and slot.arguments is not None and not slot.quoted:
-                yield path, node, slot, facts
-
-
-def _slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
-    """The code slots of a machine whose code Python can read."""
-    types = context.machine.state_types
-    for path, node in context.states:
-        for slot in code_slots(node, types):
-            tree = slot.tree
-            if tree is not None:
-                yield path, node, slot, tree
 
 
 @rule(
@@ -106,7 +95,7 @@ def not_a_function(context: Context) -> Iterator[Finding]:
               default_outcome: high
               transitions: {low: low, high: high}
     """
-    for path, node, slot, tree in _slots(context):
+    for path, node, slot, tree in readable_slots(context):
         text = slot.code.text
         if slot.quoted:
             yield Finding(
@@ -129,7 +118,7 @@ def not_a_function(context: Context) -> Iterator[Finding]:
         function = f"lambda {_arguments(slot, name)}: {_with_keys(slot, tree, name, node)}"
         yield Finding(
             span=node_place(slot.code, read) if read is not None else slot.code.span,
-            message=f"{_owner(slot, node)} {what}",
+            message=f"{slot_owner(slot, node)} {what}",
             arguments=(slot.name, text),
             help=_as_key(slot) or f"write {_as_code(slot, function)}",
             related=calls(node, slot.code.span),
@@ -166,16 +155,6 @@ def _as_key(slot: CodeSlot) -> str | None:
         case "it", ast.Attribute(value=ast.Name(), attr=key):
             return f"write the name of the key: `{key}`"
     return None
-
-
-def _owner(slot: CodeSlot, node: Node) -> str:
-    """The place of a slot, as part of a message."""
-    match slot.role:
-        case "callbacks":
-            return f"the callback `{slot.name}` of `{node.name}`"
-        case "conditions":
-            return f"the condition `{slot.name}` of `{node.name}`"
-    return f"`{slot.name}` of `{node.name}`"
 
 
 def _backticks(slot: CodeSlot) -> tuple[Edit, ...]:
@@ -246,7 +225,7 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
               callbacks: {n: 'lambda ud: ud.n + 1'}
               transitions: {succeeded: succeeded}
     """
-    for path, node, slot, tree in _slots(context):
+    for path, node, slot, tree in readable_slots(context):
         if not isinstance(tree, ast.Lambda) or slot.arguments is None or slot.quoted:
             continue
         due = slot.arguments
@@ -265,7 +244,7 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             effect = None
         yield Finding(
             span=_head(slot, tree),
-            message=f"the function of {_owner(slot, node)} {what}",
+            message=f"the function of {slot_owner(slot, node)} {what}",
             arguments=(slot.name, slot.code.text),
             help=_head_help(node, tree, due),
             effect=effect,
@@ -273,13 +252,13 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             node=path,
         )
 
-    for path, node, slot, facts in _functions(context):
+    for path, node, slot, facts in named_functions(context):
         if slot.arguments is not None and not facts.accepts(len(slot.arguments)):
             due, own = slot.arguments, len(facts.parameters)
             names = ", ".join(map(_short, due))
             yield Finding(
                 span=facts.word.span,
-                message=f"`{facts.word.text}`, the function of {_owner(slot, node)}, has"
+                message=f"`{facts.word.text}`, the function of {slot_owner(slot, node)}, has"
                 f" {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
                 f" argument{'s' * (len(due) != 1)}: {_names(due)}",
                 arguments=(slot.name, slot.code.text),
@@ -362,7 +341,8 @@ def wrong_result(context: Context) -> Iterator[Finding]:
     method that changes a value, and that of a function of the project without `return`); text as a
     duration; a text that is not an outcome of the state in a function that returns its outcome, or
     there a field of the message that is no text by its definition (SM512). A warning if only some
-    runs give this result, or if the type of the value is not known.
+    runs give this result, or if the type of the value is not known, and for a condition whose
+    results are all texts, which count as true.
 
     Wrong:
         name: sm
@@ -392,7 +372,7 @@ def wrong_result(context: Context) -> Iterator[Finding]:
               callbacks: {seen: 'lambda ud: ud.seen + [2]'}
               transitions: {succeeded: succeeded}
     """
-    for path, node, slot, tree in _slots(context):
+    for path, node, slot, tree in readable_slots(context):
         if not isinstance(tree, ast.Lambda) or slot.quoted or not slot.returns:
             continue
         found = results(tree)
@@ -405,7 +385,7 @@ def wrong_result(context: Context) -> Iterator[Finding]:
             what, help, sure, effect = fault
             yield Finding(
                 span=node_place(slot.code, result),
-                message=f"the function of {_owner(slot, node)} returns {what}",
+                message=f"the function of {slot_owner(slot, node)} returns {what}",
                 arguments=(slot.name, ast.unparse(result)),
                 help=help,
                 effect=effect,
@@ -422,44 +402,14 @@ def wrong_result(context: Context) -> Iterator[Finding]:
             )
     yield from none_writes(context)
 
-    yield from _silent_functions(context)
-
-
-def _silent_functions(context: Context) -> Iterator[Finding]:
-    """The functions of the user that return no value, although the state uses their result. A
-    callback that sets keys itself may return nothing."""
-    for path, node, slot, facts in _functions(context):
-        used = slot.role != "callbacks" or (
-            not facts.writes
-            and isinstance(node, Leaf)
-            and slot.name in {key.name for key in node.outputs}
-        )
-        if facts.silent and slot.returns == "value" and used:
-            yield Finding(
-                span=facts.word.span,
-                message=f"`{facts.word.text}`, the function of {_owner(slot, node)}, never returns"
-                " a value",
-                arguments=(slot.name, slot.code.text),
-                help=f"end `{facts.word.text}` with `return ...`",
-                effect=NONE_EFFECTS.get(slot.role, ""),
-                related=(*other_place(slot.code.span, "its result is used here"),
-                         *calls(node, slot.code.span)),
-                node=path,
-            )  # fmt: skip
+    yield from silent_functions(context)
+    yield from overwritten_keys(context)
+    yield from always_true(context)
 
 
 SECONDS = Type("float", ("s",))
 
-WAIT_FAILS = "the state fails when it begins to wait"
-
 OUTCOME_EFFECT = "no other outcome is accepted: the state ends with `aborted`, or the machine stops"
-
-NONE_EFFECTS: Mapping[VariableRole, str] = {
-    "callbacks": "the key of this name gets the value None",
-    "conditions": "the condition is never true",
-    "duration": WAIT_FAILS,
-}
-"""What happens with None as the result of code of a role."""
 
 RESULT_HELP: Mapping[VariableRole, str] = {
     "conditions": "return a comparison, as in `lambda ud: ud.n > 0`",
@@ -607,7 +557,7 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
     """The keys that a function of the user reads, and that no state which calls it has as an input
     (SM310)."""
     calls_of: dict[str, list[tuple[str, Node, CodeSlot, FunctionFacts]]] = {}
-    for call in _functions(context):
+    for call in named_functions(context):
         _, node, slot, facts = call
         if slot.arguments is not None and slot.arguments[:1] == ("userdata",) and facts.reads:
             calls_of.setdefault(slot.code.text, []).append(call)

@@ -373,6 +373,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
     kept |= _swapped_lists(context)
+    kept |= {place for each in context.item_reads for place in each.declared}
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     yield from _unwritten_outputs(context)

@@ -36,6 +36,7 @@ from smachac.ir.outcome_names import (
     fails,
     successes,
 )
+from smachac.ir.script_paths import name_in_script, sugared_child
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 
@@ -112,6 +113,8 @@ def masked_failure(context: Context) -> Iterator[Finding]:
 def _masked(context: Context, each: Judged, around: Container) -> Iterator[Finding]:
     """The failures that the default outcome hides, and those that each rule for a success hides."""
     concurrence, node = each.concurrence, each.concurrence.node
+    if len(outcome_names(node)) == 1 and _is_ignored(node, around):
+        return
     spaces = each.unstopped
     if not any(concurrence.failures(*ends) for space, _ in spaces for ends in space.items()):
         return
@@ -137,6 +140,12 @@ def _masked(context: Context, each: Judged, around: Container) -> Iterator[Findi
             yield from _masked_finding(
                 context, each, entry.outcome, entry.span, given, hidden, help
             )
+
+
+def _is_ignored(node: Node, around: Container) -> bool:
+    """Whether a Concurrence around a state has a rule in which its outcome does not matter."""
+    rules = around.rules if isinstance(around, nodes.Concurrence) else ()
+    return any(word.text == node.name for entry in rules for word in entry.ignored)
 
 
 def _ignored(entry: OutcomeRule, children: Collection[str]) -> Iterator[str]:
@@ -280,15 +289,32 @@ def _masked_in_loop(
             span = loop.loop_spans[number] if loop.loop_spans else loop.span
             yield Finding(
                 span=span,
-                message=f"`{child.name}` fails with `{outcome}`, but the loop continues and ends"
-                f" with `{end}`",
+                message=f"`{name_in_script(child)}` fails with `{outcome}`, but the loop continues"
+                f" and ends with `{end}`",
                 arguments=(own_name(loop, span), outcome, end),
-                help=f"{_ending(loop, outcome)}; if the failure of an item does not matter, write"
-                f" `outcomes: {{{outcome}: {{failure: false}}}}` at `{child.name}`",
+                help=_ending(loop, outcome) + _meant_help(child, outcome),
                 related=calls(loop, span),
                 path=_exit_steps(context, path, loop, step) if step else (),
                 node=path,
             )
+
+
+def _meant_help(child: Node, outcome: str) -> str:
+    """The rest of the help, for a failure that is intended: the declaration of the outcome at the
+    state of the script. `exhausted` of a retry comes from the outcomes that it repeats."""
+    causes: tuple[str, ...] = (outcome,)
+    while (inner := None if isinstance(child, Leaf) else sugared_child(child)) is not None:
+        if isinstance(child, nodes.Iterator) and child.sugar == "retry":
+            causes = child.loop_outcomes if outcome == child.exhausted_outcome else causes
+        child = inner
+    own = [each for each in causes if each in outcome_names(child)]
+    if not own:
+        return ""
+    declared = ", ".join(f"{each}: {{failure: false}}" for each in own)
+    return (
+        "; if the failure of an item does not matter, write"
+        f" `outcomes: {{{declared}}}` at `{child.name}`"
+    )
 
 
 def _ending(loop: nodes.Iterator, outcome: str) -> str:

@@ -26,6 +26,7 @@ from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
+from smachac.ir.outcome_names import GOOD, SUCCESSES
 from smachac.ir.traversal import PREEMPTED, outcome_names
 
 
@@ -324,19 +325,32 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     if any(is_open(child) for child in container.children):
         return
     known = {name for child in container.children for name in outcome_names(child)}
-    for name in container.loop_outcomes if known else ():
+    never = known.isdisjoint(container.loop_outcomes)
+    for number, name in enumerate(container.loop_outcomes if known else ()):
         if name not in known:
+            span = container.loop_spans[number] if container.loop_spans else container.span
             yield Finding(
-                span=container.span,
+                span=span,
                 message=f"`loop_outcomes` of `{container.name}` lists `{name}`, which is not an"
                 f" outcome of `{container.children[0].name}`",
-                arguments=(container.name, name),
-                help=did_you_mean(guesser(sorted(known))(name))
-                or f"use one of {listed(sorted(known))}",
-                effect="an entry that is no outcome of the child has no effect",
-                related=calls(container, container.span),
+                arguments=(own_name(container, span), name),
+                help=_loop_help(name, container, sorted(known)),
+                effect="the loop ends after its first item"
+                if never
+                else "an entry that is no outcome of the child has no effect",
+                related=calls(container, span),
                 node=path,
             )
+
+
+def _loop_help(name: str, container: nodes.Iterator, known: list[str]) -> str:
+    """The help for an entry of `loop_outcomes` that the child does not end with: the outcome that
+    is near it, or the only success of the child, where the list has none of its outcomes."""
+    near = did_you_mean(guesser(known)(name))
+    good = [each for each in known if each.lower() in SUCCESSES | GOOD]
+    if near is None and len(good) == 1 and good[0] not in container.loop_outcomes:
+        return f"write `{good[0]}` in place of `{name}`"
+    return near or f"use one of {listed(known)}"
 
 
 @rule(

@@ -27,7 +27,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import PREEMPTED, fails, successes
+from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, successes
 from smachac.ir.traversal import outcome_names
 
 
@@ -172,9 +172,13 @@ def endings(container: nodes.Iterator) -> Iterator[tuple[str, str, str]]:
 
 def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     declared = frozenset(outcome_names(container))
+    known = {name for child in container.children for name in outcome_names(child)}
+    misnamed = not container.sugar and not known.issuperset(container.loop_outcomes)
     for child, outcome, result in endings(container):
         if result in declared:
             continue
+        if misnamed and child and outcome.lower() in SUCCESSES | GOOD:
+            continue  # SM102: an entry of `loop_outcomes` is meant for it
         when = f"when `{child}` ends with `{outcome}`" if child else "after the last item"
         others = f", write `loop_outcomes: [{outcome}]` to continue on it" if child else ""
         mapped = next(reversed(outcome_names(container)), "")

@@ -104,12 +104,26 @@ def no_timeout(context: Context) -> Iterator[Finding]:
                 span=node.span,
                 message=_unlimited(node, outer),
                 arguments=(node.name,),
-                help=_time_limit(node, answers, limits.get(node.type, ())),
+                help=_stop_help(node, context)
+                if timed and not answers
+                else _time_limit(node, answers, limits.get(node.type, ())),
                 effect=None if answers or not timed else "the task waits until the state ends",
                 related=calls(node, node.span),
                 severity=Severity.WARNING if outer is not None else None,
                 node=path,
             )
+
+
+def _stop_help(leaf: Leaf, context: Context) -> str:
+    """The help for a wait that its time limit cannot stop: the outcome and, where the class is not
+    known to check for preempt requests, the code for its loop."""
+    type_ = context.machine.state_types.get(leaf.type)
+    facts = type_.class_facts if type_ is not None else None
+    help = f"add the outcome `preempted` to the interface and the code of `{leaf.type}`"
+    if facts is None or facts.checks_stop:
+        return help
+    answer = "if self.preempt_requested(): self.service_preempt(); return 'preempted'"
+    return f"{help}, and in the loop of `execute` write `{answer}`"
 
 
 def _time_limit(leaf: Leaf, answers: bool, limits: Collection[VariableType]) -> str:

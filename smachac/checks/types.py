@@ -95,12 +95,41 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
     """
     clashes = [each for each in context.clashes["type"] if not _is_function(each)]
     yield from clash_findings(clashes, context.machine.aliases)
+    yield from _lists_for_items(context)
     yield from _without_items(context)
     yield from _wrong_steps(context)
     yield from wrong_writes(context)
     yield from wrong_loops(context)
     for type_ in context.machine.state_types.values():
         yield from _wrong_defaults(type_)
+
+
+def _lists_for_items(context: Context) -> Iterator[Finding]:
+    """The states in a loop that read its list where they need its item."""
+    seen: set[tuple[str, str]] = set()
+    for each in context.item_reads:
+        if (each.path, each.key) in seen:
+            continue
+        seen.add((each.path, each.key))
+        help = f"write `{each.key}: {each.item}`"
+        for name in each.lacking:
+            help += f", and add `{each.item}` to the `input_keys` of `{name}`"
+        cell = each.clash.cell
+        yield Finding(
+            span=each.span,
+            message=f"`{each.node.name}` reads the list `{each.items}` as `{each.key}`, but the"
+            f" loop gives its item under `{each.item}`",
+            arguments=(each.key, each.items, "item"),
+            help=help,
+            effect=f"`{_owner(cell)[1:-1]}` gets the whole list in place of {named_item(cell)}",
+            related=calls(each.node, each.span),
+            node=each.path,
+        )
+
+
+def named_item(cell: Cell) -> str:
+    """The value that a reader needs, in words."""
+    return f"one `{widened(cell.declared)}`"
 
 
 def _without_items(context: Context) -> Iterator[Finding]:

@@ -148,10 +148,25 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         values=written_values(own, execute, library) if execute is not None else (),
         unused=_unused(own, execute) if execute is not None else (),
         loops=loops(own) if whole else (),
+        hooks=_hooks(own),
         parts=parts_read(_text_of(own, execute), execute)
         if execute is not None and flow.reads
         else (),
     )
+
+
+HOOKS = ("on_enter", "on_exit", "on_start", "on_stop", "on_pause", "on_resume")
+"""The methods that FlexBE calls around `execute`."""
+
+
+def _hooks(own: OwnClass) -> tuple[str, ...]:
+    """The methods with a name of FlexBE's that no code of the class uses."""
+    found = [name for name in HOOKS if own.method(name) is not None]
+    if not found or own.root != "state":
+        return ()
+    used = {each.attr for _, node in own.classes for each in ast.walk(node)
+            if isinstance(each, ast.Attribute)}  # fmt: skip
+    return tuple(name for name in found if name not in used)
 
 
 def _text_of(own: OwnClass, function: ast.FunctionDef) -> PythonText:

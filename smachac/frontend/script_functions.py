@@ -113,9 +113,24 @@ def _function(module: Module, function: ast.FunctionDef, library: Library) -> Fu
         least=len(positional) - len(given.defaults),
         most=None if given.vararg is not None else len(positional),
         silent=not values and ends and not _is_sketch(function),
+        texts=_texts(module, values),
         reads=flow.reads if flow is not None else (),
         writes=flow.writes if flow is not None else (),
     )
+
+
+def _texts(module: Module, values: Iterable[ast.Return]) -> tuple[Word, ...]:
+    """The constant texts in return statements; empty if one returns something else."""
+    found: list[Word] = []
+    for each in values:
+        match each.value:
+            case ast.Constant(value=str() as text) if text and not module.text.is_filled(
+                module.text.span(each.value)
+            ):
+                found.append(Word(text, module.text.span(each.value)))
+            case _:
+                return ()
+    return tuple(found)
 
 
 def _is_sketch(function: ast.FunctionDef) -> bool:

@@ -158,7 +158,8 @@ class ClassFacts:
     parameter of the constructor that it is. `unused` are the local variables, and the attributes of
     `self`, that it assigns and does not use, each with the userdata key of that name. `parts` are
     the parts of userdata keys that it reads itself: `userdata.pose.x`. `state_call`: the built-in
-    `State.tpl.py` makes the state.
+    `State.tpl.py` makes the state. `hooks` are the methods of FlexBE's states, such as `on_enter`,
+    that nothing in the class calls.
     """
 
     name: Word | None = None
@@ -184,6 +185,7 @@ class ClassFacts:
     parts: tuple[Part, ...] = ()
     loops: tuple[tuple[str, Word], ...] = ()
     state_call: StateCall | None = None
+    hooks: tuple[str, ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

@@ -13,8 +13,9 @@ class FunctionFacts:
 
     `word` is its name at the definition. It accepts from `least` to `most` positional arguments;
     `most` is None if it accepts any number. `parameters` are the names of these. `silent`: no path
-    returns a value. `reads` and `writes` are the userdata keys that it accesses if its first
-    argument is the userdata.
+    returns a value. `texts` are the texts that it returns, at their places, if it returns nothing
+    but constant texts that are not empty. `reads` and `writes` are the userdata keys that it
+    accesses if its first argument is the userdata.
     """
 
     word: Word
@@ -22,6 +23,7 @@ class FunctionFacts:
     least: int
     most: int | None
     silent: bool
+    texts: tuple[Word, ...] = ()
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
 

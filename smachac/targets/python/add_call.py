@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass
 
-from smachac.ir.nodes import Concurrence, Container, Iterator, Node
+from smachac.ir.nodes import Concurrence, Container, Iterator, Node, Sequence, StateMachine
 from smachac.targets.python import structure
 from smachac.targets.python.formatter import flat
 
@@ -17,6 +17,18 @@ from smachac.targets.python.formatter import flat
 class NotAddedError(Exception):
     """The call is not in the text, or lacks an argument; the message completes a sentence about the
     template."""
+
+
+class OtherContainerError(Exception):
+    """The call adds the state to a container of another kind; `words` is its function."""
+
+    def __init__(self, words: str) -> None:
+        super().__init__(words)
+        self.words = words
+
+
+_ADDING = ("StateMachine", "Sequence", "Concurrence")
+"""The classes of SMACH with a function `add`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +43,8 @@ class _AddCall:
 
 def adapted(text: str, node: Node, parent: Container, depth: int) -> str:
     """The text that a template prints for a state, completed for an Iterator and for a state that
-    catches its exceptions. Raises NotAddedError."""
+    catches its exceptions. Raises NotAddedError and OtherContainerError."""
+    _check_owner(text, node, parent)
     in_iterator = isinstance(parent, Iterator)
     if not in_iterator and not node.catches:
         return text
@@ -49,6 +62,31 @@ def adapted(text: str, node: Node, parent: Container, depth: int) -> str:
             raise NotAddedError(f"does not print the transition of `{node.catches}`")
     start, end = found.state.start, found.state.stop
     return f"{text[:start]}{flat(made)}{text[end:]}"
+
+
+def _check_owner(text: str, node: Node, parent: Container) -> None:
+    """Raises OtherContainerError if the call in a text is one for another kind of container.
+
+    SMACH accepts `StateMachine.add` in a Sequence, where no outcome then leads to the next state:
+    that is right if the script writes where each outcome leads.
+    """
+    own = structure.kind(parent)
+    others = [each for each in _ADDING if each != own and f"smach.{each}.add(" in text]
+    if isinstance(parent, Iterator) or not others:
+        return
+    if isinstance(parent, Sequence) and all(each.origin == "written" for each in node.transitions):
+        others = [each for each in others if each != StateMachine.__name__]
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return
+    for call in ast.walk(tree):
+        if isinstance(call, ast.Call) and _state_of(call, node.name) is not None:
+            match call.func:
+                case ast.Attribute(
+                    value=ast.Attribute(value=ast.Name(id="smach"), attr=kind), attr="add"
+                ) if kind in others:
+                    raise OtherContainerError(f"smach.{kind}.add")
 
 
 def _find(text: str, name: str) -> _AddCall:

@@ -100,7 +100,14 @@ def module_text(machine: Machine, context: BuildContext, report: Report) -> str 
     ros = version(context)
     find = template_finder(context.library, ros)
     action = action_type(machine, context)
-    blocks = Blocks(find, filters=filters(ros), tests=TESTS, shown=shown)
+    library = context.library
+    blocks = Blocks(
+        find,
+        filters=filters(ros),
+        tests=TESTS,
+        shown=shown,
+        is_own=lambda file: library.own_template(file) is not None,
+    )
     text, faults = None, report[:0]
     for plan in (functions, one_function):
         module = ModuleParts(blocks, context, machine.state_types, ros)

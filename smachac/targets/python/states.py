@@ -10,23 +10,26 @@ from textwrap import indent
 
 from smachac.analysis.code_slots import called_with_userdata
 from smachac.diagnostics.diagnostic import Diagnostic, did_you_mean
+from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_error
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import (
+    Concurrence,
     Container,
     Data,
     Expression,
     Iterator,
     Leaf,
     Node,
+    Sequence,
     StateType,
     Variable,
 )
 from smachac.ir.traversal import own_outcomes
 from smachac.targets.python import structure
-from smachac.targets.python.add_call import NotAddedError, adapted
+from smachac.targets.python.add_call import NotAddedError, OtherContainerError, adapted
 from smachac.targets.python.buffers import (
     KEYED,
     PREPENDED,
@@ -188,7 +191,7 @@ def children(inside: EmittedContainer, module: ModuleParts) -> str:
             else:
                 states.append(container(child, inside, below, module))
         except BlockError as error:
-            module.fault(error, child)
+            module.fault(_in_container(error, inside.node), child)
     return "\n\n".join(states)
 
 
@@ -244,7 +247,7 @@ def _by_template(
             if name not in page.names or lost("\n".join(lines), "\n".join(own)):
                 module.buffers[name] = {**lines, **own}
         _headers(page, parent, node, module)
-        text = _adapted(module.code(page, "body", node), node, parent)
+        text = _adapted(module.code(page, "body", node), node, parent, page)
         if lost(states, text):
             span = module.blocks.block_span(template, "body") or node.span
             raise BlockError(template_error(span, *NO_BODY, ("body",)))
@@ -521,13 +524,15 @@ def _whole(
     _headers(page, inside, leaf, module)
     text = module.code(page, "body", leaf)
     notes = structure.notes(leaf, inside.depth + 1)
-    return f"{notes}\n{_adapted(text, leaf, inside) if own else text}"
+    return f"{notes}\n{_adapted(text, leaf, inside, page) if own else text}"
 
 
-def _adapted(text: str, node: Node, inside: EmittedContainer) -> str:
+def _adapted(text: str, node: Node, inside: EmittedContainer, page: Page) -> str:
     """The text of a template of the user, completed for an Iterator and for caught exceptions."""
     try:
         return adapted(text, node, inside.node, inside.depth + 1)
+    except OtherContainerError as error:
+        raise BlockError(_other_container(error.words, node, inside.node, page)) from error
     except NotAddedError as error:
         message = f"the template of `{node.type}` {error}, so `{node.name}` cannot"
         message += " be in an Iterator" if isinstance(inside.node, Iterator) else ""
@@ -538,6 +543,47 @@ def _adapted(text: str, node: Node, inside: EmittedContainer) -> str:
         raise BlockError(
             template_error(node.span, message, help, (node.type, node.name))
         ) from error
+
+
+def _other_container(words: str, node: Node, parent: Container, page: Page) -> Diagnostic:
+    """A template that adds its state to one kind of container, used in another."""
+    kind = structure.kind(parent)
+    found = template_error(
+        page.blocks.text_span(page.file, words) or node.span,
+        f"the template adds the state to a `{words.split('.')[1]}`, but `{node.name}` is in the"
+        f" {kind} `{parent.name}`",
+        "write `smach.{{ parent_type }}.add`",
+        ("container", words, kind),
+    )
+    effect = f"the program stops with InvalidStateError: the open container is a {kind}"
+    if isinstance(parent, Sequence) and "StateMachine" in words:
+        effect = "the outcome that links the states of the sequence leads to no state"
+    return replace(found, finding=replace(found.finding, effect=effect))
+
+
+def _in_container(error: BlockError, parent: Container) -> BlockError:
+    """An error in the template of a state; one for `transitions`, which a state in a Concurrence
+    does not have, with the help for that."""
+    found = error.diagnostic
+    if found.finding.arguments != ("undefined", "transitions"):
+        return error
+    if not isinstance(parent, Concurrence):
+        return error
+    shown = _printed(found.span)
+    finding = replace(
+        found.finding,
+        message="the template uses `transitions`, which a branch of a Concurrence does not have",
+        help=f"write `{{% if transitions is defined %}}{shown}{{% endif %}}`",
+    )
+    return BlockError(replace(found, finding=finding))
+
+
+def _printed(word: Span) -> str:
+    """The expression of a template, with its braces, around a word; `...` if it is not clear."""
+    text = word.source.text
+    start, end = text.rfind("{{", 0, word.start), text.find("}}", word.end)
+    inside = text[start : end + 2] if start >= 0 <= end else ""
+    return inside if inside.count("{{") == inside.count("}}") == 1 and "\n" not in inside else "..."
 
 
 def _headers(page: Page, inside: EmittedContainer, node: Node, module: ModuleParts) -> None:

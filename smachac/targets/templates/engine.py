@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Find = Callable[[str], Source | None]
 Names = Callable[[], Mapping[str, object]]
+IsOwn = Callable[[str], bool]
 
 SKIPPED = ("meta", "upper_comments", "lower_comments", "introspection_server", "spin")
 """Blocks that are printed only on request."""
@@ -35,7 +36,8 @@ class BlockError(Exception):
 
 
 class Blocks:
-    """The templates of one build, by file name. `shown` are those of SKIPPED to be printed."""
+    """The templates of one build, by file name. `shown` are those of SKIPPED to be printed;
+    `is_own`: whether a template is the user's, in which errors are reported."""
 
     def __init__(
         self,
@@ -44,6 +46,7 @@ class Blocks:
         filters: Mapping[str, Callable[..., Any]] | None = None,
         tests: Mapping[str, Callable[..., Any]] | None = None,
         shown: frozenset[str] = frozenset(),
+        is_own: IsOwn = bool,
     ) -> None:
         from jinja2.loaders import FunctionLoader
 
@@ -51,6 +54,7 @@ class Blocks:
 
         self._sources: dict[str, Source | None] = {}
         self._find = find
+        self._is_own = is_own
         self._chains: dict[str, list[Template]] = {}
         self._names: dict[str, frozenset[str]] = {}
         self._page: Page | None = None
@@ -128,6 +132,15 @@ class Blocks:
                 text = source.line(number)
                 if text.strip() == line.strip():
                     return Span(source, start + len(text) - len(text.lstrip()), start + len(text))
+        return None
+
+    def text_span(self, file: str, text: str) -> Span | None:
+        """The first place of a text in a template, or in one that it extends."""
+        for template in self._chain(file):
+            source = self.source(str(template.name))
+            start = source.text.find(text) if source is not None else -1
+            if source is not None and start >= 0:
+                return Span(source, start, start + len(text))
         return None
 
     def _load(self, file: str) -> tuple[str, str, Callable[[], bool]] | None:
@@ -264,6 +277,7 @@ class Page:
 _HAS_TOP_LEVEL = re.compile(r"\{%[-+]?\s*(?:set|import|from|do|macro|include)\b")
 
 
+_EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)")
 _INNERMOST = re.compile(r"innermost block that needs to be closed is '(\w+)'")
 _UNKNOWN = re.compile(r"No (filter|test) named '(\w+)'")
 _UNEXPECTED = re.compile(r"unexpected '(.{1,20})'$")
@@ -324,7 +338,8 @@ class _ErrorConverter:
         raise BlockError(template_error(span, message, help, names)) from error
 
     def _place(self, error: Exception, trace: Any) -> Span:
-        """The line of the template that an exception comes from."""
+        """The line of the template that an exception comes from: in a template of the user, if one
+        of them has called the code with the error."""
         from jinja2 import TemplateError
 
         file, line = self.file, 1
@@ -332,12 +347,25 @@ class _ErrorConverter:
             file = getattr(error, "name", None) or file
             line = int(getattr(error, "lineno", 1))
         else:
+            own = False
             while trace is not None:
                 name = trace.tb_frame.f_code.co_filename
-                if self.blocks.source(name) is not None:
+                if self.blocks.source(name) is not None and own <= self.blocks._is_own(name):
+                    own = self.blocks._is_own(name)
                     template = self.blocks._environment.get_template(name)
                     file, line = name, template.get_corresponding_lineno(trace.tb_lineno)
                 trace = trace.tb_next
+            if not own and self.blocks._is_own(self.file):
+                return self._extending() or self._line(file, line)
+        return self._line(file, line)
+
+    def _extending(self) -> Span | None:
+        """The place at which the template names the one that it extends."""
+        source = self.blocks.source(self.file)
+        found = _EXTENDS.search(source.text) if source is not None else None
+        return Span(source, *found.span(1)) if source is not None and found is not None else None
+
+    def _line(self, file: str, line: int) -> Span:
         source = self.blocks.source(file) or Source(file, "")
         starts = source.line_starts
         start = starts[min(line, len(starts)) - 1]
