@@ -38,7 +38,7 @@ from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.message_types import TEXTS, FieldType
 from smachac.ir.nodes import Expression, Leaf, Node, VariableRole
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -427,10 +427,11 @@ def wrong_result(context: Context) -> Iterator[Finding]:
 
 def _silent_functions(context: Context) -> Iterator[Finding]:
     """The functions of the user that return no value, although the state uses their result. A
-    callback that sets keys itself may return nothing."""
+    callback that sets keys itself may return nothing, except where the state writes its result to
+    the same key afterwards."""
     for path, node, slot, facts in _functions(context):
         used = slot.role != "callbacks" or (
-            not facts.writes
+            (not facts.writes or _overwrites(context, node, slot, facts))
             and isinstance(node, Leaf)
             and slot.name in {key.name for key in node.outputs}
         )
@@ -446,6 +447,14 @@ def _silent_functions(context: Context) -> Iterator[Finding]:
                          *calls(node, slot.code.span)),
                 node=path,
             )  # fmt: skip
+
+
+def _overwrites(context: Context, node: Node, slot: CodeSlot, facts: FunctionFacts) -> bool:
+    """Whether a state writes the result of a function to a key that the function sets itself, as
+    the built-in `CallbacksState` does; the templates of SMACHA's kind drop the result."""
+    type_ = context.machine.state_types.get(node.type) if isinstance(node, Leaf) else None
+    built_in = type_ is not None and type_.built_in and type_.name == "CallbacksState"
+    return built_in and slot.name in {word.text for word in facts.writes}
 
 
 SECONDS = Type("float", ("s",))
@@ -601,6 +610,18 @@ def _field_type(context: Context, leaf: Leaf, slot: CodeSlot, result: ast.expr) 
 
 def _is_text(field: FieldType) -> bool:
     return field.name in TEXTS and not field.array
+
+
+def function_reads(context: Context) -> Mapping[str, set[str]]:
+    """The keys that functions of the user read in the states of each container, by its path: also
+    those that are not input keys of the state (SM310)."""
+    found: dict[str, set[str]] = {}
+    for path, node, slot, facts in _functions(context):
+        if slot.arguments is not None and slot.arguments[:1] == ("userdata",):
+            names = remapping(node)
+            keys = found.setdefault(path.rpartition("/")[0], set())
+            keys.update(names.get(word.text, word.text) for word in facts.reads)
+    return found
 
 
 def unknown_function_reads(context: Context) -> Iterator[Finding]:
