@@ -149,6 +149,22 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`==` compares, and nothing uses the result: `{word}` is not set",
         "write `{near}`",
     ),
+    "lost outcome": (
+        "the result of `{word}` ({more}) is not used",
+        "write `{near}`",
+    ),
+    "lost text": (
+        "the line `{word}` does nothing: `execute` goes on",
+        "write `return {word}`",
+    ),
+    "no value": (
+        "`{word}` has no value here if `{more}` was taken",
+        "end the `{more}` with `{near}`, or set `{word}` in it",
+    ),
+    "no member": (
+        "`{owner}`{file} has no `{word}`",
+        "{more}",
+    ),
     "defined twice": (
         "`{word}` is defined twice: only the last definition counts",
         "remove one of them, or give it another name",
@@ -262,6 +278,9 @@ CHECKED_ONLY = frozenset[FaultKind](
         "identity",
         "comparison",
         "no result",
+        "lost outcome",
+        "lost text",
+        "no value",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -286,6 +305,10 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no answer": "the request stays set: when the state runs again, it is stopped at once",
     "identity": "the comparison can be false for equal values",
     "comparison": "the line has no effect: the old value stays, or there is none",
+    "lost outcome": "`execute` goes on, and the outcome is lost",
+    "lost text": "",
+    "no value": "the code raises UnboundLocalError when the state runs: the machine stops",
+    "no member": "the code raises AttributeError when the state runs: the machine stops",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
     "skipped output": "a state that reads the key afterwards gets an old value, or fails",
@@ -350,6 +373,8 @@ WRITTEN = frozenset[FaultKind](
         "no answer",
         "identity",
         "comparison",
+        "lost outcome",
+        "no value",
     ]
 )
 """Faults whose words contain what was probably meant."""
@@ -366,6 +391,8 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
             lists=lists,
             near=fault.near,
             file=fault.file,
+            more=fault.more,
+            owner=fault.owner,
         )
         for text in WORDS[fault.kind]
     )
