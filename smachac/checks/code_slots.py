@@ -453,8 +453,9 @@ def _overwrites(context: Context, node: Node, slot: CodeSlot, facts: FunctionFac
     """Whether a state writes the result of a function to a key that the function sets itself, as
     the built-in `CallbacksState` does; the templates of SMACHA's kind drop the result."""
     type_ = context.machine.state_types.get(node.type) if isinstance(node, Leaf) else None
-    built_in = type_ is not None and type_.built_in and type_.name == "CallbacksState"
-    return built_in and slot.name in {word.text for word in facts.writes}
+    if type_ is None or not type_.built_in or type_.name != "CallbacksState":
+        return False
+    return slot.name in {word.text for word in facts.writes}
 
 
 SECONDS = Type("float", ("s",))

@@ -51,7 +51,7 @@ from smachac.frontend.python_modules import (
     with_bases,
 )
 from smachac.frontend.python_source import PythonText, name_span
-from smachac.frontend.userdata_parts import parts_read
+from smachac.frontend.userdata_parts import parts_of_arguments, parts_read
 from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
 
 PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
@@ -150,7 +150,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         values=written_values(own, execute, library) if execute is not None else (),
         unused=_unused(own, execute) if execute is not None else (),
         loops=loops(own) if whole else (),
-        parts=parts_read(_text_of(own, execute), execute)
+        parts=(*parts_read(_text_of(own, execute), execute), *parts_of_arguments(own, execute))
         if execute is not None and flow.reads
         else (),
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator
 
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed
 from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
@@ -171,8 +171,7 @@ def _unbound(
             use = _first_use(block[at + 1 :], names) if names else None
             if use is None or module.text.is_filled(module.text.span(execute)):
                 continue
-            span = module.text.span(open_[0])
-            head = _head(span, open_[0], module)
+            head = _head(open_[0], module)
             place = Word(use.id, module.text.span(use))
             yield ClassFault(kind="no value", name=place, near=near, more=head, outcomes=rest)
             return
@@ -183,7 +182,7 @@ def _leaves(node: ast.AST) -> bool:
     return any(isinstance(each, _Leaves) for each in ast.walk(node))
 
 
-def _head(span: Span, handler: ast.ExceptHandler, module: Module) -> str:
+def _head(handler: ast.ExceptHandler, module: Module) -> str:
     if handler.type is None:
         return "except"
     return f"except {module.text.span(handler.type).text}"
@@ -256,8 +255,8 @@ def _certain(node: ast.stmt) -> Iterator[ast.AST]:
         match each:
             case ast.BoolOp(values=[first, *_]) | ast.IfExp(test=first):
                 todo.append(first)
-            case ast.AnnAssign(value=value):
-                todo += [value] if value is not None else []
+            case ast.AnnAssign(value=given):
+                todo += [given] if given is not None else []
             case _:
                 todo += reversed([*ast.iter_child_nodes(each)])
 

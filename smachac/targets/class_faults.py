@@ -60,49 +60,47 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "give the attribute another name, such as `self.own_{word}`",
     ),
     "undefined name": (
-        "`{word}` is used in `{name}`, but nothing defines it: Python stops here",
+        "`{word}` is used in `{name}`, but nothing defines it",
         "define it in the module, or import it",
     ),
     "other scope": (
-        "`{word}` is not visible here: only another function of the file defines it, and Python"
-        " stops here",
+        "`{word}` is not visible here: only another function of the file defines it",
         "write `self.{word}` in both places, or define `{word}` in this method",
     ),
     "other userdata": (
-        "the parameter of `execute` is `{word}`, but its code uses `{near}`: Python stops",
+        "the parameter of `execute` is `{word}`, but its code uses `{near}`",
         "write `def execute(self, {near}):`",
     ),
     "lost argument": (
-        "`{word}` is a parameter of `__init__`, which this method cannot use: Python stops here",
+        "`{word}` is a parameter of `__init__`, which this method cannot use",
         "write `self.{word} = {word}` in `__init__`, and `self.{word}` here",
     ),
     "lost userdata": (
-        "`{word}` is a parameter of `execute`, which this method cannot use: Python stops here",
+        "`{word}` is a parameter of `execute`, which this method cannot use",
         "write `{near}`, and pass `{word}` in `execute`",
     ),
     "no self parameter": (
-        "the method `{word}` uses `self`, but has no parameter `self`: Python stops when it is"
-        " called",
+        "the method `{word}` uses `self`, but has no parameter `self`",
         "write `{near}`",
     ),
     "no import": (
-        "`{word}` is used in this file, but not imported: Python stops here",
+        "`{word}` is used in this file, but not imported",
         "write `import {word}` at the top of the file",
     ),
     "wrong import": (
-        "the file imports `{word}`, but uses `{near}`: Python stops here",
+        "the file imports `{word}`, but uses `{near}`",
         "write `import {near}`",
     ),
     "undefined method": (
-        "neither `{name}` nor `smach.State` defines `{word}`: Python stops here",
+        "neither `{name}` nor `smach.State` defines `{word}`",
         "define `{word}` in the class, or correct the name",
     ),
     "no attribute": (
-        "the module `{file}` of Python has no `{word}`: Python stops here",
+        "the module `{file}` of Python has no `{word}`",
         "correct the name",
     ),
     "unset attribute": (
-        "`self.{word}` of `{name}` is never set: Python stops here",
+        "`self.{word}` of `{name}` is never set",
         "write `self.{word} = {word}` in `__init__`",
     ),
     "no list": (
@@ -287,19 +285,19 @@ CHECKED_ONLY = frozenset[FaultKind](
 
 EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
-    "undefined name": "",
-    "undefined method": "",
-    "no attribute": "",
+    "undefined name": "the code raises NameError when the state runs: the machine stops",
+    "undefined method": "the code raises AttributeError when the state runs: the machine stops",
+    "no attribute": "the code raises AttributeError when the state runs: the machine stops",
     "no result": "",
     "no tuple": "each letter of the text counts as a name",
-    "unset attribute": "",
-    "no import": "",
-    "other scope": "",
-    "other userdata": "",
-    "lost argument": "",
-    "lost userdata": "",
-    "no self parameter": "",
-    "wrong import": "",
+    "unset attribute": "the code raises AttributeError when the state runs: the machine stops",
+    "no import": "the code raises NameError when the state runs: the machine stops",
+    "other scope": "the code raises NameError when the state runs: the machine stops",
+    "other userdata": "the code raises NameError when the state runs: the machine stops",
+    "lost argument": "the code raises NameError when the state runs: the machine stops",
+    "lost userdata": "the code raises NameError when the state runs: the machine stops",
+    "no self parameter": "the call raises TypeError when the state runs: the machine stops",
+    "wrong import": "the code raises NameError when the state runs: the machine stops",
     "not called": "the value is the method itself, which is true in every condition",
     "no effect": "",
     "no answer": "the request stays set: when the state runs again, it is stopped at once",
