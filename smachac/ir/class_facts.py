@@ -45,6 +45,7 @@ FaultKind = Literal[
     "no number",
     "unused outcome",
     "no answer to stops",
+    "other answer",
     "unset output",
     "skipped output",
     "undefined name",

@@ -207,6 +207,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " it",
         "add where it waits: `if (stop.requested()) {{ stop.service(); return Outcome::{word}; }}`",
     ),
+    "other answer": (
+        "`execute` of `{name}` returns `Outcome::{word}` after a stop request",
+        "write `return Outcome::{near};`",
+    ),
     "unset output": (
         "`execute` of `{name}` never sets its output key `{word}`",
         "write `out.{word} = ...` before a `return`, or remove the key from the interface and from"
@@ -267,6 +271,7 @@ CHECKED_ONLY = frozenset[FaultKind](
     [
         "unused outcome",
         "no answer to stops",
+        "other answer",
         "unset output",
         "skipped output",
         "parameter order",
@@ -285,19 +290,19 @@ CHECKED_ONLY = frozenset[FaultKind](
 
 EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
-    "undefined name": "the code raises NameError when the state runs: the machine stops",
-    "undefined method": "the code raises AttributeError when the state runs: the machine stops",
-    "no attribute": "the code raises AttributeError when the state runs: the machine stops",
+    "undefined name": "the code raises NameError when it runs: the machine stops",
+    "undefined method": "the code raises AttributeError when it runs: the machine stops",
+    "no attribute": "the code raises AttributeError when it runs: the machine stops",
     "no result": "",
     "no tuple": "each letter of the text counts as a name",
-    "unset attribute": "the code raises AttributeError when the state runs: the machine stops",
-    "no import": "the code raises NameError when the state runs: the machine stops",
-    "other scope": "the code raises NameError when the state runs: the machine stops",
-    "other userdata": "the code raises NameError when the state runs: the machine stops",
-    "lost argument": "the code raises NameError when the state runs: the machine stops",
-    "lost userdata": "the code raises NameError when the state runs: the machine stops",
-    "no self parameter": "the call raises TypeError when the state runs: the machine stops",
-    "wrong import": "the code raises NameError when the state runs: the machine stops",
+    "unset attribute": "the code raises AttributeError when it runs: the machine stops",
+    "no import": "the code raises NameError when it runs: the machine stops",
+    "other scope": "the code raises NameError when it runs: the machine stops",
+    "other userdata": "the code raises NameError when it runs: the machine stops",
+    "lost argument": "the code raises NameError when it runs: the machine stops",
+    "lost userdata": "the code raises NameError when it runs: the machine stops",
+    "no self parameter": "the call raises TypeError when it runs: the machine stops",
+    "wrong import": "the code raises NameError when it runs: the machine stops",
     "not called": "the value is the method itself, which is true in every condition",
     "no effect": "",
     "no answer": "the request stays set: when the state runs again, it is stopped at once",
@@ -305,13 +310,13 @@ EFFECTS: Mapping[FaultKind, str] = {
     "comparison": "the line has no effect: the old value stays, or there is none",
     "lost outcome": "`execute` goes on, and the outcome is lost",
     "lost text": "",
-    "no value": "the code raises UnboundLocalError when the state runs: the machine stops",
-    "no member": "the code raises AttributeError when the state runs: the machine stops",
+    "other answer": "a stop or a time limit counts as `{word}`: a transition for `{near}` is never"
+    " taken",
+    "no value": "the code raises UnboundLocalError when it runs: the machine stops",
+    "no member": "the code raises AttributeError when it runs: the machine stops",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
     "skipped output": "a state that reads the key afterwards gets an old value, or fails",
-    "parameter order": "the program passes the variables in the order of the interface: a value"
-    " gets to another parameter than the one of its name",
     "unset output": "a state that reads the key afterwards gets an old value, or fails",
 }
 """What happens, where it differs from most faults; empty if the message contains it."""
@@ -373,6 +378,7 @@ WRITTEN = frozenset[FaultKind](
         "comparison",
         "lost outcome",
         "no value",
+        "other answer",
     ]
 )
 """Faults whose words contain what was probably meant."""
@@ -410,8 +416,10 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
 
 def class_effect(fault: ClassFault, target: str) -> str | None:
     """The effect of a fault of a class; empty if its message contains it."""
+    if fault.kind == "parameter order":
+        return fault.more
     if fault.kind in EFFECTS:
-        return EFFECTS[fault.kind]
+        return EFFECTS[fault.kind].format(word=fault.name.text, near=fault.near)
     if target == "cpp":
         return "the C++ compiler refuses the class"
     return PYTHON_EFFECTS.get(fault.kind)
