@@ -636,6 +636,7 @@ def never_returned(context: Context) -> Iterator[Finding]:
         alone = _text_alone(facts, outcome_names(leaf))  # SM309
         if alone is not None:
             returned.add(alone.text)
+        returned.update(name for each in facts.faults for name in each.outcomes)  # SM609
         names = [each.name for each in type_.outcomes]
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant

@@ -47,7 +47,7 @@ from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.message_types import TEXTS, FieldType
 from smachac.ir.nodes import Expression, Leaf, Node, VariableRole
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -551,6 +551,18 @@ def _field_type(context: Context, leaf: Leaf, slot: CodeSlot, result: ast.expr) 
 
 def _is_text(field: FieldType) -> bool:
     return field.name in TEXTS and not field.array
+
+
+def function_reads(context: Context) -> Mapping[str, set[str]]:
+    """The keys that functions of the user read in the states of each container, by its path: also
+    those that are not input keys of the state (SM310)."""
+    found: dict[str, set[str]] = {}
+    for path, node, slot, facts in named_functions(context):
+        if slot.arguments is not None and slot.arguments[:1] == ("userdata",):
+            names = remapping(node)
+            keys = found.setdefault(path.rpartition("/")[0], set())
+            keys.update(names.get(word.text, word.text) for word in facts.reads)
+    return found
 
 
 def unknown_function_reads(context: Context) -> Iterator[Finding]:

@@ -17,7 +17,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name, reader_at
 from smachac.checks.class_code import dropped_writes, unknown_reads
-from smachac.checks.code_slots import unknown_function_reads
+from smachac.checks.code_slots import function_reads, unknown_function_reads
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key
@@ -87,6 +87,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
         unset.setdefault(each.scope.path, set()).add(each.key)
     reported |= {(path, preset.key) for path, (_, preset, *_) in meant_presets(context).items()}
     reported |= _swapped_lists(context)
+    in_functions = function_reads(context)
     for scope in flow.scopes.values():
         container = scope.container
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
@@ -96,6 +97,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
                 continue
+            if key in in_functions.get(scope.path, ()):
+                continue  # SM310
             if any(guesser([key])(name) for name in unset.get(scope.path, ())):
                 continue  # SM301 or SM302 is about the same slip
             if any(_remaps_unknown(child, key) for child in container.children):

@@ -57,10 +57,10 @@ NONE_EFFECTS: Mapping[VariableRole, str] = {
 
 def silent_functions(context: Context) -> Iterator[Finding]:
     """The functions of the user that return no value, although the state uses their result. A
-    callback that sets keys itself may return nothing."""
+    callback that sets other keys itself may return nothing; its own key gets its result."""
     for path, node, slot, facts in named_functions(context):
         used = slot.role != "callbacks" or (
-            not facts.writes
+            (not facts.writes or slot.name in {word.text for word in facts.writes})
             and isinstance(node, Leaf)
             and slot.name in {key.name for key in node.outputs}
         )

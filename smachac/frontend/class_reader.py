@@ -34,6 +34,8 @@ from smachac.frontend.class_values import (
 )
 from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
+from smachac.frontend.lost_outcomes import lost_outcomes
+from smachac.frontend.own_objects import missing_members
 from smachac.frontend.python_flow import Flow, Flows, is_plain
 from smachac.frontend.python_imports import missing_imports
 from smachac.frontend.python_modules import (
@@ -49,7 +51,7 @@ from smachac.frontend.python_modules import (
     with_bases,
 )
 from smachac.frontend.python_source import PythonText, name_span
-from smachac.frontend.userdata_parts import parts_read
+from smachac.frontend.userdata_parts import parts_of_arguments, parts_read
 from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
 
 PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
@@ -149,7 +151,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         unused=_unused(own, execute) if execute is not None else (),
         loops=loops(own) if whole else (),
         hooks=_hooks(own),
-        parts=parts_read(_text_of(own, execute), execute)
+        parts=(*parts_read(_text_of(own, execute), execute), *parts_of_arguments(own, execute))
         if execute is not None and flow.reads
         else (),
     )
@@ -217,6 +219,8 @@ def _undefined(
     yield from undefined_in_base(own)
     yield from slips(own)
     yield from lost_results(own)
+    yield from lost_outcomes(own, library)
+    yield from missing_members(own, library)
     yield from texts_as_lists(own)
 
 

@@ -6,6 +6,8 @@ import ast
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
+from smachac.frontend.python_flow import is_plain
+from smachac.frontend.python_modules import OwnClass
 from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import Part, Step
 
@@ -16,15 +18,69 @@ TESTS = frozenset(["hasattr", "isinstance", "type"])
 def parts_read(text: PythonText, function: ast.FunctionDef) -> tuple[Part, ...]:
     """The attributes, constant indexes and fields of userdata keys that `execute` reads, without
     those of keys that it writes, of fields that it sets or tests, and without code in `try`."""
-    userdata = function.args.args[1].arg
+    return _parts(text, function, function.args.args[1].arg, {})
+
+
+def parts_of_arguments(own: OwnClass, execute: ast.FunctionDef) -> Iterator[Part]:
+    """The parts of userdata keys that helpers of the class read, where `execute` passes the value
+    of the key as an argument: `self._log(userdata.parcel)`."""
+    userdata = execute.args.args[1].arg
+    every = [*ast.walk(execute)]
+    calls = [each for each in every if isinstance(each, ast.Call)]
+    if not calls or any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
+        return
+    tried, written, known = _tried(every), _written(every, userdata), _fields_known(every)
+    done = set[tuple[str, int, str]]()
+    for call in calls:
+        match call.func:
+            case ast.Attribute(value=ast.Name(id="self"), attr=name) if call not in tried:
+                found = own.method(name)
+            case _:
+                continue
+        if found is None or not is_plain(found[1]) or name in own.assigned():
+            continue
+        for at, value in enumerate(call.args):
+            match value, [*found[1].args.posonlyargs, *found[1].args.args][at + 1 : at + 2]:
+                case ast.Attribute(value=ast.Name(id=owner), attr=key), [ast.arg(arg=given)]:
+                    pass
+                case ast.Starred(), _:
+                    break
+                case _:
+                    continue
+            if owner != userdata or key in written or (name, at, key) in done:
+                continue
+            done.add((name, at, key))
+            if not _is_rebound(found[1], given):
+                read = _parts(found[0].text, found[1], "", {given: (key, ())})
+                yield from (each for each in read if each.steps[-1] not in known)
+
+
+def _is_rebound(function: ast.FunctionDef, name: str) -> bool:
+    """Whether a function binds the name of a parameter again."""
+    binds = [each for each in ast.walk(function)
+             if (isinstance(each, ast.Name) and each.id == name and not _is_read(each))
+             or (isinstance(each, ast.arg) and each.arg == name)]  # fmt: skip
+    return len(binds) > 1
+
+
+def _tried(every: Sequence[ast.AST]) -> set[ast.AST]:
+    """The code in the body of a `try`."""
+    return {inner for each in every if isinstance(each, ast.Try)
+            for line in each.body for inner in ast.walk(line)}  # fmt: skip
+
+
+def _parts(
+    text: PythonText, function: ast.FunctionDef, userdata: str, given: Mapping[str, Way]
+) -> tuple[Part, ...]:
+    """The parts that a function reads of the userdata of a name, and of its parameters in `given`,
+    which are values of keys."""
     every = [*ast.walk(function)]
-    tried = {inner for each in every if isinstance(each, ast.Try)
-             for line in each.body for inner in ast.walk(line)}  # fmt: skip
+    tried = _tried(every)
     if any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
         return ()
     written = _written(every, userdata)
     known = _fields_known(every)
-    names = _names(every, userdata)
+    names = _names(every, userdata, given)
     found: list[Part] = []
     for each in every:
         way = _way(each, names, userdata)
@@ -74,11 +130,11 @@ def _fields_known(every: Sequence[ast.AST]) -> frozenset[Step]:
     return frozenset(found)
 
 
-def _names(every: Sequence[ast.AST], userdata: str) -> Mapping[str, Way]:
+def _names(every: Sequence[ast.AST], userdata: str, given: Mapping[str, Way]) -> Mapping[str, Way]:
     """The local names that are bound once, to a part of userdata or to each item of one."""
     bound = Counter(each.id for each in every if isinstance(each, ast.Name) and not _is_read(each))
     bound.update(each.arg for each in every if isinstance(each, ast.arg))
-    names: dict[str, Way] = {}
+    names: dict[str, Way] = {**given}
     # An outer loop comes before an inner one, and `ast.walk` gives it first.
     for each in every:
         for target, value, more in _bindings(each):

@@ -45,6 +45,7 @@ FaultKind = Literal[
     "no number",
     "unused outcome",
     "no answer to stops",
+    "other answer",
     "unset output",
     "skipped output",
     "undefined name",
@@ -69,6 +70,10 @@ FaultKind = Literal[
     "no answer",
     "identity",
     "comparison",
+    "lost outcome",
+    "lost text",
+    "no value",
+    "no member",
 ]
 
 
@@ -77,13 +82,18 @@ class ClassFault:
     """A certain fault in the structure of a class, at the name that it is about.
 
     For `syntax`, the text of `name` is the message of the parser. `near` is the name that was
-    probably meant. `file` is the module that lacks the name.
+    probably meant. `file` is the module that lacks the name,
+    `owner` the class that lacks it, and `more` another part of the words. `outcomes` are those that
+    `execute` does not return because of the fault.
     """
 
     kind: FaultKind
     name: Word
     near: str | None = None
     file: str = ""
+    more: str = ""
+    owner: str = ""
+    outcomes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -60,49 +60,47 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "give the attribute another name, such as `self.own_{word}`",
     ),
     "undefined name": (
-        "`{word}` is used in `{name}`, but nothing defines it: Python stops here",
+        "`{word}` is used in `{name}`, but nothing defines it",
         "define it in the module, or import it",
     ),
     "other scope": (
-        "`{word}` is not visible here: only another function of the file defines it, and Python"
-        " stops here",
+        "`{word}` is not visible here: only another function of the file defines it",
         "write `self.{word}` in both places, or define `{word}` in this method",
     ),
     "other userdata": (
-        "the parameter of `execute` is `{word}`, but its code uses `{near}`: Python stops",
+        "the parameter of `execute` is `{word}`, but its code uses `{near}`",
         "write `def execute(self, {near}):`",
     ),
     "lost argument": (
-        "`{word}` is a parameter of `__init__`, which this method cannot use: Python stops here",
+        "`{word}` is a parameter of `__init__`, which this method cannot use",
         "write `self.{word} = {word}` in `__init__`, and `self.{word}` here",
     ),
     "lost userdata": (
-        "`{word}` is a parameter of `execute`, which this method cannot use: Python stops here",
+        "`{word}` is a parameter of `execute`, which this method cannot use",
         "write `{near}`, and pass `{word}` in `execute`",
     ),
     "no self parameter": (
-        "the method `{word}` uses `self`, but has no parameter `self`: Python stops when it is"
-        " called",
+        "the method `{word}` uses `self`, but has no parameter `self`",
         "write `{near}`",
     ),
     "no import": (
-        "`{word}` is used in this file, but not imported: Python stops here",
+        "`{word}` is used in this file, but not imported",
         "write `import {word}` at the top of the file",
     ),
     "wrong import": (
-        "the file imports `{word}`, but uses `{near}`: Python stops here",
+        "the file imports `{word}`, but uses `{near}`",
         "write `import {near}`",
     ),
     "undefined method": (
-        "neither `{name}` nor `smach.State` defines `{word}`: Python stops here",
+        "neither `{name}` nor `smach.State` defines `{word}`",
         "define `{word}` in the class, or correct the name",
     ),
     "no attribute": (
-        "the module `{file}` of Python has no `{word}`: Python stops here",
+        "the module `{file}` of Python has no `{word}`",
         "correct the name",
     ),
     "unset attribute": (
-        "`self.{word}` of `{name}` is never set: Python stops here",
+        "`self.{word}` of `{name}` is never set",
         "write `self.{word} = {word}` in `__init__`",
     ),
     "no list": (
@@ -149,6 +147,22 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`==` compares, and nothing uses the result: `{word}` is not set",
         "write `{near}`",
     ),
+    "lost outcome": (
+        "the result of `{word}` ({more}) is not used",
+        "write `{near}`",
+    ),
+    "lost text": (
+        "the line `{word}` does nothing: `execute` goes on",
+        "write `return {word}`",
+    ),
+    "no value": (
+        "`{word}` has no value here if `{more}` was taken",
+        "end the `{more}` with `{near}`, or set `{word}` in it",
+    ),
+    "no member": (
+        "`{owner}`{file} has no `{word}`",
+        "{more}",
+    ),
     "defined twice": (
         "`{word}` is defined twice: only the last definition counts",
         "remove one of them, or give it another name",
@@ -192,6 +206,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`execute` of `{name}` never returns `Outcome::{word}`: a time limit or a stop cannot end"
         " it",
         "add where it waits: `if (stop.requested()) {{ stop.service(); return Outcome::{word}; }}`",
+    ),
+    "other answer": (
+        "`execute` of `{name}` returns `Outcome::{word}` after a stop request",
+        "write `return Outcome::{near};`",
     ),
     "unset output": (
         "`execute` of `{name}` never sets its output key `{word}`",
@@ -253,6 +271,7 @@ CHECKED_ONLY = frozenset[FaultKind](
     [
         "unused outcome",
         "no answer to stops",
+        "other answer",
         "unset output",
         "skipped output",
         "parameter order",
@@ -262,35 +281,42 @@ CHECKED_ONLY = frozenset[FaultKind](
         "identity",
         "comparison",
         "no result",
+        "lost outcome",
+        "lost text",
+        "no value",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
 
 EFFECTS: Mapping[FaultKind, str] = {
     "defined twice": "",
-    "undefined name": "",
-    "undefined method": "",
-    "no attribute": "",
+    "undefined name": "the code raises NameError when it runs: the machine stops",
+    "undefined method": "the code raises AttributeError when it runs: the machine stops",
+    "no attribute": "the code raises AttributeError when it runs: the machine stops",
     "no result": "",
     "no tuple": "each letter of the text counts as a name",
-    "unset attribute": "",
-    "no import": "",
-    "other scope": "",
-    "other userdata": "",
-    "lost argument": "",
-    "lost userdata": "",
-    "no self parameter": "",
-    "wrong import": "",
+    "unset attribute": "the code raises AttributeError when it runs: the machine stops",
+    "no import": "the code raises NameError when it runs: the machine stops",
+    "other scope": "the code raises NameError when it runs: the machine stops",
+    "other userdata": "the code raises NameError when it runs: the machine stops",
+    "lost argument": "the code raises NameError when it runs: the machine stops",
+    "lost userdata": "the code raises NameError when it runs: the machine stops",
+    "no self parameter": "the call raises TypeError when it runs: the machine stops",
+    "wrong import": "the code raises NameError when it runs: the machine stops",
     "not called": "the value is the method itself, which is true in every condition",
     "no effect": "",
     "no answer": "the request stays set: when the state runs again, it is stopped at once",
     "identity": "the comparison can be false for equal values",
     "comparison": "the line has no effect: the old value stays, or there is none",
+    "lost outcome": "`execute` goes on, and the outcome is lost",
+    "lost text": "",
+    "other answer": "a stop or a time limit counts as `{word}`: a transition for `{near}` is never"
+    " taken",
+    "no value": "the code raises UnboundLocalError when it runs: the machine stops",
+    "no member": "the code raises AttributeError when it runs: the machine stops",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
     "skipped output": "a state that reads the key afterwards gets an old value, or fails",
-    "parameter order": "the program passes the variables in the order of the interface: a value"
-    " gets to another parameter than the one of its name",
     "unset output": "a state that reads the key afterwards gets an old value, or fails",
 }
 """What happens, where it differs from most faults; empty if the message contains it."""
@@ -350,6 +376,9 @@ WRITTEN = frozenset[FaultKind](
         "no answer",
         "identity",
         "comparison",
+        "lost outcome",
+        "no value",
+        "other answer",
     ]
 )
 """Faults whose words contain what was probably meant."""
@@ -366,6 +395,8 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
             lists=lists,
             near=fault.near,
             file=fault.file,
+            more=fault.more,
+            owner=fault.owner,
         )
         for text in WORDS[fault.kind]
     )
@@ -385,8 +416,10 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
 
 def class_effect(fault: ClassFault, target: str) -> str | None:
     """The effect of a fault of a class; empty if its message contains it."""
+    if fault.kind == "parameter order":
+        return fault.more
     if fault.kind in EFFECTS:
-        return EFFECTS[fault.kind]
+        return EFFECTS[fault.kind].format(word=fault.name.text, near=fault.near)
     if target == "cpp":
         return "the C++ compiler refuses the class"
     return PYTHON_EFFECTS.get(fault.kind)

@@ -603,3 +603,34 @@ def test_a_class_reads_fields_correctly(body: str) -> None:
 def test_a_misspelt_field_in_a_class() -> None:
     (found,) = fields_missed('print(userdata.pad["nmae"])')
     assert found == ('"nmae"', "did you mean `name`?")
+
+
+HELPED = """
+import smach
+
+class Reader(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["done"], input_keys=["pad", "pads"])
+
+    def execute(self, userdata):
+        self.log("pad", userdata.pad)
+        return "done"
+
+    def log(self, text, pad):
+        BODY
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ('print(pad["volume"])', ['"volume"']),
+        ('for each in pad["at"]:\n            print(each, pad["volume"])', ['"volume"']),
+        ('print(pad["name"])', []),
+        ('pad = {}\n        print(pad["volume"])', []),
+        ('if "volume" in pad:\n            print(pad["volume"])', []),
+    ],
+)
+def test_a_helper_reads_a_field_of_its_argument(body: str, found: list[str]) -> None:
+    report = analysed(FIELD_FILES | {"own.py": HELPED.replace("BODY", body)}).report
+    assert [item.span.text for item in report if item.code == "SM311"] == found

@@ -93,7 +93,6 @@ TESTED = "    if 'other' in userdata:\n        return userdata.other\n"
         (RETURN, '    raise ValueError("not written yet")\n'),
         (RETURN, '    """Not written yet."""\n'),
         (RETURN, TESTED + RETURN),
-        (RETURN, "    userdata.best = max(userdata.parts)\n"),
         (RETURN, "    yield max(userdata.parts)\n"),
         ("def best_part", "@cached\ndef best_part"),
         ("(userdata):\n    return max(userdata.", "(*given, **more):\n    return max(given[0]."),
@@ -128,3 +127,23 @@ def test_a_function_in_the_template_itself() -> None:
     assert findings(RULES, base=base) == [
         ("SM318", "templates/BinBase.tpl.py:7 best_part", "end `best_part` with `return ...`")
     ]
+
+
+def test_a_key_that_a_function_reads_is_no_dead_key() -> None:
+    main = MAIN.replace("      input_keys: [parts]\n", "      input_keys: []\n")
+    ((code, place, help),) = findings(RULES, main)
+    assert (code, place) == ("SM310", "bin/rules.py:2 parts")
+    assert help == "add `parts` to the `input_keys` of `CHOOSE`"
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("userdata.best = userdata.parts[0]", ["end `best_part` with `return ...`"]),
+        ("userdata.best = 1; return userdata.parts[0]", []),
+    ],
+)
+def test_a_callback_that_sets_the_key_of_its_own_result(body: str, found: list[str]) -> None:
+    old = 'return max(userdata.parts, key=lambda part: part["score"])'
+    helps = [help for code, _, help in findings(RULES.replace(old, body)) if code == "SM318"]
+    assert helps == found

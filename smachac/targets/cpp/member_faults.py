@@ -32,6 +32,9 @@ _RETURN = re.compile(r"\breturn\b([^;]*);")
 _JUMP = re.compile(r"\b(?:for|while|do|goto|try|switch)\b|#|\[[&=\w, ]*\]\s*[({]")
 """Code whose paths are not read: loops, jumps, exceptions, and functions inside."""
 _BRANCH = re.compile(r"\b(?:if|else)\b")
+_NUMBER = re.compile(r"(?:const\s+)?(?:double|float|bool|int|(?:std::)?u?int\d+_t)\b")
+_ANSWER = re.compile(r"\.\s*service\s*\(\s*\)\s*;\s*(return\s+Outcome\s*::\s*(\w+))\s*;")
+"""A stop request that is answered, and the outcome that is returned then."""
 _IF = re.compile(r"\bif\s*\([^{};]*\)\s*$")
 
 Words = tuple[Word, ...]
@@ -131,7 +134,8 @@ def _constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
             if len(heads) == 1 and names != own and sorted(names) == sorted(own):
                 word = body.word(name, head.start(), head.start() + len(name))
                 near = f"{name}({', '.join(wanted)})"
-                yield ClassFault(kind="parameter order", name=word, near=near)
+                more = _exchanged(names, wanted)
+                yield ClassFault(kind="parameter order", name=word, near=near, more=more)
             return
     first = _first_argument(code, heads, body, len(wanted)) if not code.parameters else None
     if first is not None:
@@ -142,6 +146,18 @@ def _constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
     word = body.word(name, heads[0].start(), heads[0].start() + len(name))
     near = f"{name}({', '.join(wanted)})"
     yield ClassFault(kind="wrong constructor", name=word, near=near)
+
+
+def _exchanged(names: list[str], wanted: list[str]) -> str:
+    """What happens with parameters of these names, to which a program passes the wanted ones."""
+    pairs = [(name, each) for name, each in zip(names, wanted, strict=True)
+             if name != _parameter_name(each)]  # fmt: skip
+    gets = " and ".join(
+        f"`{name}` gets the value of `{_parameter_name(each)}`" for name, each in pairs
+    )
+    if all(_NUMBER.match(each) for _, each in pairs):
+        return f"it compiles, but {gets}"
+    return f"the program passes the variables in the order of the interface: {gets}"
 
 
 def _first_argument(
@@ -199,6 +215,11 @@ def _unused(whole: Part, body: Part, run: Part, outcomes: Words) -> Iterator[Cla
     for word in outcomes:
         if word not in used:
             stop = word.text == PREEMPTED
+            answer = _ANSWER.search(run.text) if stop else None
+            if answer is not None:
+                place = run.word(answer[2], *answer.span(1))
+                yield ClassFault(kind="other answer", name=place, near=identifier(word.text))
+                continue
             yield ClassFault(kind="no answer to stops" if stop else "unused outcome", name=word)
 
 
@@ -229,7 +250,28 @@ def _unset(code: ClassCode, body: Part, run: Part, parameters: str) -> Iterator[
         inside = re.search(rf"\b{re.escape(name)}\b", fields.text)
         used = re.search(rf"\b{re.escape(named[1])}\s*\.\s*{re.escape(name)}\b", run.text)
         if inside is not None and used is None:
+            promised = _promised(code, run, key.name)
+            if promised is not None:
+                yield promised
+                continue
             yield ClassFault(kind="unset output", name=fields.word(key.name, *inside.span()))
+
+
+def _promised(code: ClassCode, run: Part, key: str) -> ClassFault | None:
+    """The only `return` of an outcome that promises an output key in `writes:`."""
+    found = [
+        (outcome, end)
+        for outcome, keys in code.type.writes
+        if key in keys
+        for end in re.finditer(
+            rf"\breturn\s+Outcome\s*::\s*{re.escape(identifier(outcome))}\s*;", run.text
+        )
+    ]
+    if len(found) != 1:
+        return None
+    ((outcome, end),) = found
+    place = run.word(key, end.start(), end.end() - 1)
+    return ClassFault(kind="skipped output", name=place, near=outcome)
 
 
 def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault]:

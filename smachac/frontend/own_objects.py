@@ -1,0 +1,140 @@
+"""Objects of plain classes of the project that a state keeps: attributes that they do not have."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.frontend.loader import Library
+from smachac.frontend.python_modules import (
+    Module,
+    OwnClass,
+    file_of,
+    find_class,
+    of_other_objects,
+)
+from smachac.ir.class_facts import ClassFault
+
+LATE = frozenset(["__getattr__", "__getattribute__", "__slots__", "__new__", "__class__"])
+"""Names by which a class can have attributes that its text does not show."""
+
+WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
+"""Exceptions that a missing attribute raises."""
+
+
+def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
+    """The attributes of objects of plain classes that these do not define, each once."""
+    kept = {name: entries[0] for name, entries in own.assigned().items() if len(entries) == 1}
+    done = set[tuple[str, str]]()
+    classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
+    for module, node in own.classes:
+        others = of_other_objects(node) | _caught(node)
+        every = [*ast.walk(module.text.tree)]
+        set_here = {each.attr for each in every if isinstance(each, ast.Attribute)
+                    and not isinstance(each.ctx, ast.Load)}  # fmt: skip
+        quoted = {each.value for each in every if isinstance(each, ast.Constant)}
+        for each in ast.walk(node):
+            match each:
+                case ast.Attribute(
+                    value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=member,
+                    ctx=ast.Load(),
+                ) if name in kept and each not in others:  # fmt: skip
+                    pass
+                case _:
+                    continue
+            if name not in classes:
+                classes[name] = _plain_class(kept[name], library)
+            found = classes[name]
+            span = module.text.span(each)
+            if found is None or (name, member) in done or module.text.is_filled(span):
+                continue
+            names, methods = _members(found[1])
+            if member in names | set_here or member in quoted or hasattr(object, member):
+                continue
+            done.add((name, member))
+            place = Word(member, Span(span.source, span.end - len(member), span.end))
+            where = f" in `{file_of(found[0])}`" if found[0].name else ""
+            near = guesser(sorted(names))(member)
+            if near is None:
+                near = next((one for one in methods if _is_part(one, member)), None)
+            yield ClassFault(kind="no member", name=place, near=near, file=where,
+                             more=_help(methods), owner=found[1].name)  # fmt: skip
+
+
+def _is_part(name: str, member: str) -> bool:
+    """Whether a name is a word of another one: `read` of `read_weight`."""
+    one, other = name.split("_"), member.split("_")
+    return one == other[: len(one)] or other == one[: len(other)]
+
+
+def _help(methods: list[str]) -> str:
+    return f"its methods are {listed(methods)}" if methods else "define it in the class"
+
+
+def _plain_class(
+    entry: tuple[Module, ast.expr | None, Span], library: Library
+) -> tuple[Module, ast.ClassDef] | None:
+    """The class of the object that an attribute keeps, if it has no base class and its text shows
+    all its attributes."""
+    match entry:
+        case (module, ast.Call(func=ast.Name(id=name)), _):
+            found = find_class(module, name, library)
+        case _:
+            return None
+    if not isinstance(found, tuple):
+        return None
+    other, node = found
+    plain = all(isinstance(each, ast.Name) and each.id == "object" for each in node.bases)
+    if (
+        not plain
+        or node.keywords
+        or node.decorator_list
+        or other.text.fillings(other.text.span(node))
+    ):
+        return None
+    used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
+    used |= {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)}
+    bound = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
+    late = {"setattr", "vars", "__dict__", "locals", "exec", "globals"} & used
+    outside = any(  # `Scale.read_weight = ...`
+        isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store)
+        and isinstance(each.value, ast.Name) and each.value.id == name
+        for text in {id(one.text.tree): one.text.tree for one in (module, other)}.values()
+        for each in ast.walk(text)
+    )  # fmt: skip
+    return found if not (late or outside or LATE & bound) else None
+
+
+def _members(node: ast.ClassDef) -> tuple[set[str], list[str]]:
+    """The names of a class and of the attributes of its objects, and its public methods."""
+    names = set[str]()
+    for each in ast.walk(node):
+        match each:
+            case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
+                names.add(name)
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+                names.add(name)
+            case ast.ClassDef(name=name) | ast.alias(asname=str(name)) | ast.alias(name=name):
+                names.add(name)
+    methods = [each.name for each in node.body
+               if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]  # fmt: skip
+    return names, methods
+
+
+def _caught(node: ast.ClassDef) -> set[ast.AST]:
+    """The nodes in a `try` that catches the error of a missing attribute."""
+    found: set[ast.AST] = set()
+    for each in ast.walk(node):
+        if isinstance(each, ast.Try) and any(map(_is_wide, each.handlers)):
+            found.update(inner for line in each.body for inner in ast.walk(line))
+    return found
+
+
+def _is_wide(handler: ast.ExceptHandler) -> bool:
+    if handler.type is None:
+        return True
+    names = {each.id for each in ast.walk(handler.type) if isinstance(each, ast.Name)}
+    return bool(names & WIDE)
