@@ -216,6 +216,10 @@ def _if_container(kind: str) -> Schema:
     return {"if": {"anyOf": cases}, "then": {"$ref": f"#/definitions/{kind}"}}
 
 
+FLAGS = ("blocking", "stand_in", "simulation", "checks_grasp")
+"""The fields of an interface that are true or false."""
+
+
 def interface_schema() -> Schema:
     """The schema of the interfaces of state types."""
 
@@ -280,9 +284,7 @@ def interface_schema() -> Schema:
         "outcomes": {"anyOf": [outcomes, names]},
         "writes": {"type": "object", "additionalProperties": names},
         "claims": names,
-        **dict.fromkeys(
-            ("blocking", "stand_in", "simulation", "checks_grasp"), flag | {"default": False}
-        ),
+        **dict.fromkeys(FLAGS, flag | {"default": False}),
         "adds_frames": names,
         "code": {"type": "object", "additionalProperties": {"anyOf": [text, class_]}},
     }
