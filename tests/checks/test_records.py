@@ -128,3 +128,52 @@ def test_a_record_in_an_interface() -> None:
         ("SM304", "hihg"),
         ("SM304", "{wide: 1.0}"),
     ]
+
+
+CLASS = """
+from smachac.runtime import smach
+
+class Pick(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["ok"], input_keys=["item"])
+
+    def execute(self, userdata):
+        item = userdata.item
+        print({code})
+        return "ok"
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "help"),
+    [
+        ("item.shelf", 'write `item["shelf"]`'),
+        ("userdata.item.shelf", 'write `userdata.item["shelf"]`'),
+        ("item.shlef", 'write `item["shelf"]`'),
+        ("item.weight", "use one of its fields"),
+        ('item["box"].wide', 'write `item["box"]["wide"]`'),
+        ("item.get('shelf')", ""),
+        ('item["shelf"].strip()', ""),
+        ("hasattr(item, 'shelf') and item.shelf", ""),
+        ("self.item.shelf", ""),
+    ],
+)
+def test_a_record_in_a_class_is_a_dictionary(code: str, help: str) -> None:
+    script = """
+    name: sm
+    outcomes: [done]
+    userdata: {item: {name: bolt, shelf: a, box: {wide: 1}}}
+    states:
+      - PICK: {template: Pick, transitions: {ok: done}}
+    """
+    interface = """
+    name: Pick
+    input_keys: {item: {type: {name: str, shelf: str, box: {wide: int}}}}
+    outcomes: {ok: {}}
+    code: {python: "robot:Pick"}
+    """
+    files = {"main.yml": script, "templates/Pick.yml": interface}
+    report = analysed({**files, "robot.py": CLASS.format(code=code)}).report
+    found = [each.help or "" for each in report if each.code == "SM311"]
+    assert len(found) == bool(help)
+    assert all(each.startswith(help) for each in found)
