@@ -256,9 +256,7 @@ def _wrong_attribute(type_: Type, name: str, owner: str, which: str) -> tuple[st
     return f"{which} has no attribute `{name}`", help
 
 
-def _attribute_of_record(
-    type_: Type, name: str, owner: str, which: str
-) -> tuple[str, str] | None:
+def _attribute_of_record(type_: Type, name: str, owner: str, which: str) -> tuple[str, str] | None:
     """What is wrong with an attribute of a record, which is a dictionary in Python."""
     if hasattr(dict, name):
         return None

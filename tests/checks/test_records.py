@@ -177,3 +177,37 @@ def test_a_record_in_a_class_is_a_dictionary(code: str, help: str) -> None:
     found = [each.help or "" for each in report if each.code == "SM311"]
     assert len(found) == bool(help)
     assert all(each.startswith(help) for each in found)
+
+
+PART = """
+name: sm
+outcomes: [done]
+types: {{Seam: {{id: str, passes: int}}}}
+userdata: {{seam: {{type: Seam, value: {value}}}}}
+states:
+  - SHOW: {{template: PrintUserdataState, input_keys: [seam], transitions: {{succeeded: done}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "message", "help"),
+    [
+        (
+            "{id: A, passes: 1.5}",
+            "`passes` of `seam` is `1.5`, but `Seam` has",
+            "or write `passes:",
+        ),
+        (
+            "{id: A, pases: 1}",
+            "`seam` has no field `passes`, which its type `Seam` requires",
+            "did",
+        ),
+        ("{id: A, passes: 1}", "", ""),
+    ],
+)
+def test_a_part_of_a_record_is_named_with_its_type(value: str, message: str, help: str) -> None:
+    report = analysed({"main.yml": PART.format(value=value)}).report
+    found = [each for each in report if each.code == "SM304"]
+    assert len(found) == bool(message)
+    assert all(each.finding.message.startswith(message) for each in found)
+    assert all(help in (each.help or "") for each in found)
