@@ -162,6 +162,9 @@ def _in_degrees(flow: TypeFlow, faults: list[tuple[int, Joint, Data]]) -> Findin
     number, joint, angle = faults[0]
     names = ", ".join(f"joint {each} is {given}" for each, _, given in faults[:MOST_LISTED])
     message = f"`{flow.origin.cell.key}` is outside the limits of the joints, in rad: {names}"
+    if len(faults) == len(flow.value):
+        message = f"`{flow.origin.cell.key}` seems to be in degrees: all {len(faults)} angles are"
+        message += " outside the limits of the joints, in rad"
     if len(faults) == 1:
         limits = f"outside its limits {joint.lower:g} to {joint.upper:g}"
         message = f"joint {number} of `{flow.origin.cell.key}` is {angle} rad, {limits}"
@@ -467,8 +470,9 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             if name.removeprefix("/") in known or not name or _begins_with_slash(context, flow):
                 continue
             where = "the simulation" if simulated else f"the robot `{robot.name}`"
-            help = f"write one of the robot's frames: {listed(sorted(known))}; if another program"
-            help += f" provides `{name}`, add it to `frames: [...]` of the script"
+            help = f"write one of the robot's frames: {listed(robot.frames | robot.added)}"
+            help += f"{_or_default(context, flow)}; if another program provides `{name}`, add it"
+            help += " to `frames: [...]` of the script"
             if simulated:
                 help = f"its frames are {', '.join(f'`{each}`' for each in sorted(known))}"
             message = f"{where} has no frame `{name}`"
@@ -478,6 +482,17 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             yield at(flow, message, help, (name,), severity=severity, part=part)
     if simulated:
         yield from _late_frames(context, robot)
+
+
+def _or_default(context: Context, flow: TypeFlow) -> str:
+    """The end of a help for a variable whose interface has another value as its default."""
+    cell = flow.cell
+    type_ = context.machine.state_types.get(cell.node.type) if cell.node is not None else None
+    held = type_.variables.get(cell.key) if type_ and cell.role == "variable" else None
+    default = held.default.data if held is not None and held.default is not None else None
+    if not isinstance(default, str) or default == flow.value or flow.origin.cell is not cell:
+        return ""
+    return f"; or remove `{cell.key}`: its default is `{default}`"
 
 
 def _begins_with_slash(context: Context, flow: TypeFlow) -> bool:
