@@ -9,7 +9,7 @@ from smachac.analysis.type_inference import TypeFlow
 from smachac.checks.messages import calls, other_place
 from smachac.checks.robot import names_in, part_named, reader, role_of
 from smachac.checks.value_places import place_of_part
-from smachac.diagnostics.diagnostic import Finding
+from smachac.diagnostics.diagnostic import Finding, Related
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.nodes import Leaf
 
@@ -31,7 +31,7 @@ def misnamed_body(
     held = next((each for each in leaf.variables if each.name == "body"), None)
     given = held is not None and held.value.data is not None
     span = held.value.span if held is not None and given else leaf.span
-    related = []
+    related: list[Related] = []
     for flow in about:
         part, key = part_named(flow.value, name)
         place = place_of_part(flow.origin.span, part, key=key)
