@@ -246,12 +246,25 @@ def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:
 
 def _wrong_attribute(type_: Type, name: str, owner: str, which: str) -> tuple[str, str] | None:
     """What is wrong with an attribute of a value with the text `owner`, and what to write."""
+    if type_.name == "record":
+        return _attribute_of_record(type_, name, owner, which)
     if type_.name not in ("list", "array", "int", "float", "bool", "str") or name not in FIELDS:
         return None
     help = f"correct the type of the key in the interface, or write `{owner}`"
     if type_.name in ("list", "array") and name in COORDINATES:
         help = f"write `{owner}[{COORDINATES[name]}]`, or correct the type in the interface"
     return f"{which} has no attribute `{name}`", help
+
+
+def _attribute_of_record(type_: Type, name: str, owner: str, which: str) -> tuple[str, str] | None:
+    """What is wrong with an attribute of a record, which is a dictionary in Python."""
+    if hasattr(dict, name):
+        return None
+    meant = name if name in fields(type_) else guesser(list(fields(type_)))(name)
+    what = f"{which} is a dictionary: it has no attribute `{name}`"
+    if meant is None:
+        return what, f"use one of its fields: {listed(list(fields(type_)))}"
+    return what, f'write `{owner}["{meant}"]`'
 
 
 def _owner_text(part: Part) -> str:

@@ -20,9 +20,10 @@ from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.code_slots import function_reads, unknown_function_reads
 from smachac.checks.edits import with_output
 from smachac.checks.expressions import unknown_endings
-from smachac.checks.message_fields import TYPE_KEY, lacks_type_key
+from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.rule import rule
+from smachac.checks.unsent_keys import unsent_keys
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_finding, unwritten_keys
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -94,6 +95,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
             continue
         read = context.of_container(_used_in, scope.path, scope)
         yield from _loops_over_names_of_lists(scope, read)
+        untyped = any(map(lacks_type_key, container.children))
+        types = (TYPE_KEY, type_key_meant(container)) if untyped else ()
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
                 continue
@@ -103,7 +106,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 continue  # SM301 or SM302 is about the same slip
             if any(_remaps_unknown(child, key) for child in container.children):
                 continue  # SM302
-            if key == TYPE_KEY and any(map(lacks_type_key, container.children)):
+            if key in types:
                 continue  # SM515
             # The userdata of the machine can be read after the run.
             loop = _loop_over_the_word(container, key)
@@ -380,6 +383,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     yield from _unwritten_outputs(context)
+    yield from unsent_keys(context)
     for scope in flow.scopes.values():
         container = scope.container
         if isinstance(container, nodes.Iterator):

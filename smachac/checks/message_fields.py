@@ -18,10 +18,10 @@ from smachac.analysis.message_code import (
 )
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.message_values import value_faults
-from smachac.checks.messages import calls, did_you_mean
+from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.robot import at
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -39,7 +39,18 @@ from smachac.ir.message_types import (
     MissingDefinitions,
     userdata_type,
 )
-from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf, Node, Struct, Variable
+from smachac.ir.nodes import (
+    DEFINITION_KINDS,
+    Container,
+    Data,
+    Expression,
+    Leaf,
+    Node,
+    Struct,
+    Variable,
+    is_number,
+)
+from smachac.ir.traversal import remapping
 from smachac.ir.types import Type
 
 TYPE_KEY = "msg_type"
@@ -57,6 +68,9 @@ METHODS = frozenset(
     ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy"]  # ROS 1
 ) | {"SLOT_TYPES", "get_fields_and_field_types"}
 """The names of a message in Python that are no fields."""
+
+_TYPE_NAME = re.compile(r"[a-z]\w*[/.](msg[/.])?[A-Z]\w*")
+"""The name of a message type with its package: `std_msgs/Bool`."""
 
 _SHORT_VALUE = re.compile(r"""['"]?\s*:\s*('[^'\n]*'|"[^"\n]*"|\[[^\[\]\n]*\]|[^\s,\[\]{}#]+)""")
 """A text in quotes, a list or a word after the name of a field."""
@@ -134,6 +148,7 @@ def unknown_field(context: Context) -> Iterator[Finding]:
         if not isinstance(node, Leaf):
             continue
         yield from _missing_types(path, node, missing)
+        yield from _type_in_place_of_part(path, node)
         if not found:
             continue
         yield from _wrong_messages(context, path, node, found)
@@ -214,6 +229,28 @@ def lacks_type_key(node: Node) -> bool:
     return bool(names) and TYPE_KEY not in [key.name for key in node.inputs]
 
 
+def type_key_meant(container: Node | None) -> str | None:
+    """The only key in the userdata of a container that holds the name of a message type and that
+    none of its states reads."""
+    if not isinstance(container, Container):
+        return None
+    held = [
+        each.key
+        for each in container.userdata
+        if isinstance(each.value.data, str) and _TYPE_NAME.fullmatch(each.value.data)
+    ]
+    if not held:
+        return None
+    outside = {remapping(container).get(key.name, key.name) for key in container.outputs}
+    read = {
+        remapping(child).get(key.name, key.name)
+        for child in container.children
+        for key in child.inputs
+    }
+    unread = [key for key in held if key not in read | outside]
+    return unread[0] if len(unread) == 1 else None
+
+
 def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Finding]:
     """SM515 for the mappings that a state reads as messages."""
     names = key_names(leaf.inputs, "message")
@@ -226,13 +263,15 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
         flows = [each for alike in cell.flows.values() for each in alike] if cell else []
         for flow in flows:
             if flow.how == "value" and isinstance(flow.value, Struct):
-                yield at(
-                    flow,
-                    f"`{leaf.name}` makes a message of a mapping, but has no key `{TYPE_KEY}`",
-                    f"add `{TYPE_KEY}` to the `input_keys` of `{leaf.name}`, with the type as its"
-                    " value, as in `std_msgs/Bool`",
-                    (leaf.name,),
-                )
+                add = f"add `{TYPE_KEY}` to the `input_keys` of `{leaf.name}`"
+                meant = type_key_meant(context.routes.nodes.get(path.rpartition("/")[0]))
+                help = f"{add}, and set the key to the type, as in `{TYPE_KEY}: std_msgs/Bool`"
+                if meant is not None:
+                    help = add
+                    if meant != TYPE_KEY:
+                        help += f" and `{TYPE_KEY}: {meant}` to its `remapping`"
+                message = "gets a mapping as its message, but no type: it lacks the key"
+                yield at(flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,))
 
 
 def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterator[Finding]:
@@ -268,6 +307,40 @@ def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterat
             related=calls(leaf, named.value.span),
             node=path,
         )
+
+
+def _type_in_place_of_part(path: str, leaf: Leaf) -> Iterator[Finding]:
+    """Calls of the class of a service or an action where its request or its goal is needed:
+    `SetBool(data=True)`. In Python this class of a service takes no arguments."""
+    for role, kind in DEFINITION_KINDS.items():
+        named = variable_of(leaf, role)
+        parts = re.split(r"[/.]", type_text(named).strip()) if named is not None else []
+        if kind == "msg" or len(parts) < 2:
+            continue
+        part = PARTS[kind][0]
+        name = parts[-1].removesuffix("Action") if kind == "action" else parts[-1]
+        for held in leaf.variables:
+            code = held.value.data
+            if held.role != part or not isinstance(code, Expression):
+                continue
+            call = _call(code.text)
+            if call is None or not isinstance(call.func, ast.Name | ast.Attribute):
+                continue
+            called = ast.unparse(call.func).rpartition(".")[2]
+            if called not in (name, parts[-1]):
+                continue
+            new = f"{name}.{part.capitalize()}" if len(parts) > 2 else f"{name}{part.capitalize()}"
+            given = ", ".join(ast.unparse(each) for each in (*call.args, *call.keywords))
+            what = kind_word(kind)
+            yield Finding(
+                span=_word(called, held.value.span).span,
+                message=f"`{called}` is the class of the {what}, not of its {part}",
+                arguments=(held.name, called),
+                help=f"write `{new}({given})`",
+                effect=f"it has no fields of the {part}: the program stops when it makes the state",
+                related=calls(leaf, held.value.span),
+                node=path,
+            )
 
 
 KIND_WORDS: Mapping[DefinitionKind, str] = {
@@ -316,11 +389,40 @@ def _wrong_messages(
                 text = f"{_described(message)} has no field `{steps[-1]}`"
                 help = did_you_mean(guesser(fields)(steps[-1]))
                 help = help or f"use one of its fields: {listed(fields)}"
+                help = _level_above(flow.value, steps, message, found) or help
                 if wanted is not None:
                     text = f"the value of `{steps[-1]}` does not fit: the field of"
                     text += f" {_described(message)} is `{wanted}`"
                     help = f"write a value of the type `{wanted}`{_example(wanted)}"
-                yield at(flow, text, help, (message.name, *steps), part=steps, key=wanted is None)
+                yield at(
+                    flow,
+                    text,
+                    help,
+                    (message.name, *steps),
+                    part=steps,
+                    key=wanted is None,
+                    effect=f"`{leaf.name}` ends with `aborted`: the message is never used",
+                )
+
+
+def _level_above(
+    data: Data, steps: Sequence[str], message: Message, found: Definitions
+) -> str | None:
+    """The help for a field that belongs to a field of the message: `x` of a Twist is one of its
+    field `linear`. The first field of this kind that the mapping does not set is meant."""
+    *first, name = steps
+    for step in first:
+        data = dict(data.entries).get(step) if isinstance(data, Struct) else None
+    given = dict(data.entries) if isinstance(data, Struct) else {}
+    value = given.get(name)
+    if not is_number(value):
+        return None
+    for field in message.fields:
+        if field.name not in given and not field.type.array:
+            inner = [one.part("message") for one in found.get(("msg", field.type.name), ())]
+            if inner and all(each.field(name) is not None for each in inner):
+                return f"write `{field.name}: {{{name}: {value}}}`"
+    return None
 
 
 def _wrong_comparisons(
@@ -388,14 +490,17 @@ def _wrong_values(
         yield _finding(path, leaf, Word("", span), f"the list has {counts}", help, messages)
         return
     faults = [list(value_faults(data, each, found)) for each in messages]
+    effect = f"the program stops when it makes the state: the {held.role} is never sent"
     for names, message, wanted in faults[0] if all(faults) else ():
         if wanted is None:
-            yield _unknown_field(path, leaf, _field_word(names, span), (message,))
+            word = _field_word(names, span)
+            yield _unknown_field(path, leaf, word, (message,), effect=effect)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {_described(message)} is"
         word = Word(names[-1], _value_span(_field_word(names, span).span, span))
         help = f"write a value of the type `{wanted}`"
-        yield _finding(path, leaf, word, f"{text} `{wanted}`", help + _example(wanted), (message,))
+        help += _example(wanted)
+        yield _finding(path, leaf, word, f"{text} `{wanted}`", help, (message,), effect)
 
 
 EXAMPLES: Mapping[str, str] = {
@@ -408,7 +513,12 @@ EXAMPLES: Mapping[str, str] = {
 
 
 def _unknown_field(
-    path: str, leaf: Leaf, word: Word, messages: Sequence[Message], also: str = ""
+    path: str,
+    leaf: Leaf,
+    word: Word,
+    messages: Sequence[Message],
+    also: str = "",
+    effect: str | None = None,
 ) -> Finding:
     """`also`: the other place of the script that has the name."""
     names = sorted({each.name for message in messages for each in message.fields})
@@ -418,7 +528,7 @@ def _unknown_field(
     if guess and also:
         help += f" Write it here{also}, and remap it: `remapping: {{{guess}: {word.text}}}`"
     message = f"{_described(messages[0])} has no field `{word.text}`"
-    return _finding(path, leaf, word, message, help, messages)
+    return _finding(path, leaf, word, message, help, messages, effect)
 
 
 def _field_word(names: Sequence[str], span: Span) -> Word:
@@ -483,7 +593,13 @@ def _described(message: Message) -> str:
 
 
 def _finding(
-    path: str, leaf: Leaf, word: Word, message: str, help: str | None, messages: Sequence[Message]
+    path: str,
+    leaf: Leaf,
+    word: Word,
+    message: str,
+    help: str | None,
+    messages: Sequence[Message],
+    effect: str | None = None,
 ) -> Finding:
     places = [each.fields[0].span for each in messages if each.fields][:1]
     return Finding(
@@ -492,10 +608,11 @@ def _finding(
         arguments=(messages[0].name, word.text),
         help=help,
         related=(
-            *(Related(span=span, message="its fields are defined here") for span in places),
+            *(each for span in places for each in other_place(span, "its fields are defined here")),
             *calls(leaf, word.span),
         ),
         node=path,
+        effect=effect,
     )
 
 
@@ -515,21 +632,27 @@ def _uses(held: Variable, messages: Sequence[Message]) -> Iterator[_Use]:
 def _keywords(text: str, messages: Sequence[Message]) -> Iterator[str]:
     """The names of the arguments in a call of the class of a message: `TestGoal(goal=1)` in ROS 1,
     `Test.Goal(goal=1)` in ROS 2."""
-    if len(text) > MOST_CODE:
-        return
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return
-    if not isinstance(tree, ast.Call) or tree.args:
+    tree = _call(text)
+    if tree is None or tree.args:
         return
     definition, _, part = messages[0].name.rpartition("/")[2].partition(".")
     called = ast.unparse(tree.func).split(".")
     joined = f"{definition}{part.capitalize()}"
     if called[-1] == joined or called[-2:] == [definition, part.capitalize()]:
         yield from (each.arg for each in tree.keywords if each.arg is not None)
+
+
+def _call(text: str) -> ast.Call | None:
+    """The call that code is; None for other code."""
+    if len(text) > MOST_CODE:
+        return None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree = ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    return tree if isinstance(tree, ast.Call) else None
 
 
 def _word(name: str, span: Span, after: str = "") -> Word:

@@ -12,11 +12,11 @@ from smachac.checks.messages import other_place
 from smachac.checks.property_turns import Turn, turn_of
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
-from smachac.diagnostics.source import Word, assert_never
+from smachac.diagnostics.source import Span, Word, assert_never
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import reachable
-from smachac.ir.nodes import Concurrence, Leaf, Node
+from smachac.ir.nodes import Concurrence, Data, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.properties import (
     After,
@@ -96,12 +96,13 @@ def property_fails(context: Context) -> Iterator[Finding]:
 
     script = shlex.quote(context.machine.root.span.source.name)
     for number, given, example, shown, turn in _failures(context):
+        longer = _longer_answer(context, given, example)
         yield Finding(
-            span=given.span,
+            span=given.span if longer is None else longer[0],
             message=f"{_named(given)} does not hold: {_violation(given.form, example)}",
             arguments=(given.name, in_words(given.form)),
-            help=f"{_cure(given.form, example, turn)}{_swap_help(context, given)}"
-            f"\n{_replayed(shown, number, script)}",
+            help=(_swap_help(context, given) if longer is None else longer[1])
+            + f"{_cure(given.form, example, turn)}\n{_replayed(shown, number, script)}",
             related=_turn_place(turn),
             path=witness(example._replace(visits=_shown(context, example.visits))),
             node=example.node or context.machine.root.name,
@@ -167,7 +168,7 @@ def _violation(form: Form, example: Counterexample) -> str:
 
 
 def _swap_help(context: Context, given: Property) -> str:
-    """The end of a help line if a property holds with two of its events swapped; else empty."""
+    """The line of help if a property holds with two of its events swapped; else empty."""
     from smachac.analysis.properties import judge
 
     form = given.form
@@ -185,7 +186,42 @@ def _swap_help(context: Context, given: Property) -> str:
     found = judge([other], context.machine.root, context.claims)
     if not found or found[0].verdict != "holds":
         return ""
-    return f"; with `{words}` the property holds: are the two names swapped?"
+    return f"write `{words}`: with it the property holds; are the two names swapped?\n"
+
+
+def _longer_answer(
+    context: Context, given: Property, example: Counterexample
+) -> tuple[Span, str] | None:
+    """The answer of an `after` to which a state on the path of its counterexample can be added, so
+    that the property holds, with the line of help: its type and variables are those of one of the
+    answer."""
+    from smachac.analysis.properties import judge
+
+    form = given.form
+    if not isinstance(form, After) or any(each.subject != "path" for each in form.answer):
+        return None
+    nodes = context.routes.nodes
+    ends = tuple(f"/{each.name}" for each in form.answer)
+    alike = [_work(node) for path, node in nodes.items()
+             if isinstance(node, Leaf) and f"/{path}".endswith(ends)]  # fmt: skip
+    for visit in example.visits:
+        node = nodes.get(visit.path)
+        if not isinstance(node, Leaf) or not node.variables or _work(node) not in alike:
+            continue
+        atom = replace(form.answer[0], name=node.name, outcome=None)
+        more = replace(form, answer=(*form.answer, atom))
+        found = judge([replace(given, form=more)], context.machine.root, context.claims)
+        if found and found[0].verdict == "holds":
+            first, last = form.answer[0].span, form.answer[-1].span
+            place = Span(first.source, first.start, last.end)
+            like = f"`{node.name}`, a `{node.type}` too, has the same variables"
+            return place, f"{like}: write `{_names(more.answer)}`\n"
+    return None
+
+
+def _work(leaf: Leaf) -> tuple[str, list[tuple[str, Data]]]:
+    """The type of a state and the values of its variables."""
+    return leaf.type, sorted(((each.name, each.value.data) for each in leaf.variables), key=repr)
 
 
 def _names(events: Atoms) -> str:
@@ -360,7 +396,7 @@ def _premise(given: Property) -> str:
     "SM703",
     "unknown-event",
     Severity.ERROR,
-    effect="a property whose names are not clear is not checked",
+    effect="this property is not checked until the name is right",
 )
 def unknown_event(context: Context) -> Iterator[Finding]:
     """A property names no state of the script, or several, or an outcome that the state never has.

@@ -162,6 +162,9 @@ def _in_degrees(flow: TypeFlow, faults: list[tuple[int, Joint, Data]]) -> Findin
     number, joint, angle = faults[0]
     names = ", ".join(f"joint {each} is {given}" for each, _, given in faults[:MOST_LISTED])
     message = f"`{flow.origin.cell.key}` is outside the limits of the joints, in rad: {names}"
+    if len(faults) == len(flow.value):
+        message = f"`{flow.origin.cell.key}` seems to be in degrees: all {len(faults)} angles are"
+        message += " outside the limits of the joints, in rad"
     if len(faults) == 1:
         limits = f"outside its limits {joint.lower:g} to {joint.upper:g}"
         message = f"joint {number} of `{flow.origin.cell.key}` is {angle} rad, {limits}"
@@ -415,8 +418,9 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
     `frame_id`, and the frame of a PoseStamped. In the simulation the frames are `base`, `world` and
     the loaded bodies, and an unknown one is an error; so is the frame of a body that no path loads
     before a state of the simulation uses it, unless the state leads to the loading one when it
-    fails. The rule also checks the joint names in mappings of joint names to angles, and the values
-    of variables and keys with `names: joint` or `names: frame` in the interface.
+    fails. A frame with a leading slash is reported where a built-in state looks it up in tf2, which
+    refuses it. The rule also checks the joint names in mappings of joint names to angles, and the
+    values of variables and keys with `names: joint` or `names: frame` in the interface.
 
     Wrong:
         name: sm
@@ -449,6 +453,9 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
         == arm.urdf ==
         <robot name="arm"><link name="base"/><link name="hand"/></robot>
     """
+    slashed = [flow for flow in context.types.constants if _begins_with_slash(context, flow)]
+    for flow in reaching_flows(slashed):
+        yield _frame_with_slash(flow)
     robot = context.machine.robot
     if robot is None:
         return
@@ -460,11 +467,12 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
     guess = guesser(sorted(known))
     for flow in context.types.constants:
         for name in _frames_in(flow):
-            if name.removeprefix("/") in known or not name:
+            if name.removeprefix("/") in known or not name or _begins_with_slash(context, flow):
                 continue
             where = "the simulation" if simulated else f"the robot `{robot.name}`"
-            help = f"write one of the robot's frames: {listed(sorted(known))}; if another program"
-            help += f" provides `{name}`, add it to `frames: [...]` of the script"
+            help = f"write one of the robot's frames: {listed(robot.frames | robot.added)}"
+            help += f"{_or_default(context, flow)}; if another program provides `{name}`, add it"
+            help += " to `frames: [...]` of the script"
             if simulated:
                 help = f"its frames are {', '.join(f'`{each}`' for each in sorted(known))}"
             message = f"{where} has no frame `{name}`"
@@ -474,6 +482,40 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
             yield at(flow, message, help, (name,), severity=severity, part=part)
     if simulated:
         yield from _late_frames(context, robot)
+
+
+def _or_default(context: Context, flow: TypeFlow) -> str:
+    """The end of a help for a variable whose interface has another value as its default."""
+    cell = flow.cell
+    type_ = context.machine.state_types.get(cell.node.type) if cell.node is not None else None
+    held = type_.variables.get(cell.key) if type_ and cell.role == "variable" else None
+    default = held.default.data if held is not None and held.default is not None else None
+    if not isinstance(default, str) or default == flow.value or flow.origin.cell is not cell:
+        return ""
+    return f"; or remove `{cell.key}`: its default is `{default}`"
+
+
+def _begins_with_slash(context: Context, flow: TypeFlow) -> bool:
+    """Whether a literal is a frame with a leading slash for a built-in state that looks it up in
+    tf2, which refuses such names (geometry2, tf2/src/buffer_core.cpp, stripSlash and
+    validateFrameId)."""
+    value, node = flow.value, flow.cell.node
+    if not isinstance(value, str) or not value.startswith("/") or value.strip("/") == "":
+        return False
+    tf2 = isinstance(node, Leaf) and node.built_in != "" and not uses_simulation(context, flow.cell)
+    return tf2 and flow.cell.role in ("input", "variable") and role_of(flow.cell) == "frame"
+
+
+def _frame_with_slash(flow: TypeFlow) -> Finding:
+    """SM505 for a frame with a leading slash, as the tf of old versions of ROS 1 accepted it."""
+    name = str(flow.value)
+    return at(
+        flow,
+        f"the frame `{name}` begins with a slash",
+        f"write `{name.lstrip('/')}`",
+        (name,),
+        effect=f"tf2 refuses such a name: {reader(flow)} ends with `aborted` in each run",
+    )
 
 
 def _known(robot: Robot) -> frozenset[str]:

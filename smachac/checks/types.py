@@ -30,7 +30,7 @@ from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
 from smachac.checks.rule import rule
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
-from smachac.checks.value_places import place_of_part, steps_to_misfit, type_at
+from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit, type_at
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import guesser
@@ -278,29 +278,50 @@ def _finding(group: list[Clash], aliases: Mapping[str, str], *, at_origin: bool)
             show(where, message)
         if at_origin:
             show(each.cell.span, _read(each.cell, aliases))
-    first = _without_fields(clash) or written(origin) + _part(clash)
+    lacking = _without_fields(clash)
+    first = lacking or written(origin) + _part(clash)
     second = _read(cell, aliases)
     message = f"{first}, but {second}" if at_origin else f"{second}, but {first}"
+    owner = named(clash.misfit.wanted, aliases)
+    if lacking and at_origin and owner in aliases:
+        message = f"{lacking}, which its type `{owner}` requires"
     special = _wrong_rotation(clash, aliases) or _wrong_part(clash, aliases) if at_origin else ""
     return Finding(
         span=span,
         message=special or message,
         arguments=(about.key, str(widened(clash.misfit.given)), str(clash.misfit.wanted)),
-        help=_help(clash),
+        help=_field_type_help(clash, aliases) or _help(clash),
         effect=_effect(clash),
         related=(*related, *(calls(about.node, span) if about.node is not None else ())),
         node=about.path,
     )
 
 
+def _field_type_help(clash: Clash, aliases: Mapping[str, str]) -> str | None:
+    """The help for a number with a fraction in a record of a type of the script, whose field is a
+    whole number."""
+    value, (given, wanted) = clash.flow.value, (clash.misfit.given, clash.misfit.wanted)
+    if (given.name, wanted.name) != ("float", "int") or not isinstance(value, (tuple, Struct)):
+        return None
+    steps = steps_to_misfit(value, clash.cell.declared)
+    data = part_at(value, steps)
+    if not isinstance(data, float) or not math.isfinite(data):
+        return None
+    help = f"write a whole number, such as `{round(data)}`"
+    owner = named(type_at(clash.cell.declared, steps[:-1]), aliases)
+    return f"{help}; or write `{steps[-1]}: float` in `{owner}`" if owner in aliases else help
+
+
 def _effect(clash: Clash) -> str | None:
     """What the type leads to in Python, where that is certain."""
     wanted, given = present(clash.misfit.wanted), clash.misfit.given
+    for name in _missing_fields(clash):
+        return f"Python raises a KeyError where code reads the field `{name}`"
     if wanted.name == "one_of":
         return "the interface allows these values only: the code may fail with another one"
     if wanted.name in ("int", "float") and kinds(given) == {"text"}:
-        return "arithmetic with a text raises a TypeError, or repeats the text"
-    if wanted.name == "int" and kinds(given) == {"number"}:
+        return "the state gets a text, not a number: arithmetic with it raises a TypeError"
+    if wanted.name == "int" and kinds(given) == {"number"} and clash.flow.type == given:
         return "a number with a fraction raises a TypeError as an index and in `range`"
     if wanted.name == "str" and kinds(given) == {"number"}:
         return "a number has no operations of a text: they raise an error in the run"
@@ -396,13 +417,16 @@ def _wrong_part(clash: Clash, aliases: Mapping[str, str]) -> str:
     """The message for a literal of which a part does not fit; empty for other clashes."""
     value, (given, wanted) = clash.flow.value, (clash.misfit.given, clash.misfit.wanted)
     is_part = isinstance(value, (tuple, Struct)) and clash.flow.origin is clash.flow
-    if not is_part or not _part(clash) or given.name != "literal" or len(given.args) != 1:
+    one = given.name in ("float", "int", "bool") or (
+        given.name == "literal" and len(given.args) == 1
+    )
+    if not is_part or not _part(clash) or not one:
         return ""
     steps = steps_to_misfit(value, clash.cell.declared)
-    if not steps:
+    data = part_at(value, steps)
+    if not steps or not isinstance(data, str | int | float):
         return ""
-    (data,) = given.args
-    what = f"the text `{data}`" if isinstance(data, str) else f"`{data}`"
+    what = f"the text `{data}`" if isinstance(data, str) else f"`{json.dumps(data)}`"
     owner = named(type_at(clash.cell.declared, steps[:-1]), aliases)
     first = f"{place_in_words(clash.flow.cell.key, steps)} is {what}"
     if owner in aliases:

@@ -81,6 +81,16 @@ def steps_to_misfit(data: Data, wanted: Type) -> tuple[int | str, ...]:
     return ()
 
 
+def part_at(data: Data, steps: Sequence[int | str]) -> Data:
+    """The part of a literal to which the steps lead; None if it has none."""
+    for step in steps:
+        if isinstance(data, tuple) and isinstance(step, int):
+            data = data[step] if step < len(data) else None
+        else:
+            data = dict(data.entries).get(str(step)) if isinstance(data, Struct) else None
+    return data
+
+
 def type_at(wanted: Type, steps: Sequence[int | str]) -> Type:
     """The type of a part of a literal of a type, by the steps to it."""
     type_ = present(wanted)

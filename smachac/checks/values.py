@@ -11,6 +11,7 @@ from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.checks.messages import calls, did_you_mean, own_name
+from smachac.checks.misnamed_bodies import misnamed_body
 from smachac.checks.robot import (
     at,
     is_simulated,
@@ -241,7 +242,13 @@ def unknown_name(context: Context) -> Iterator[Finding]:
         if any(name not in known[role] for name in names_in(flow.value) if role in known):
             wrong.append(flow)
     severity = Severity.ERROR if is_simulated(context) else None
-    for flow in reaching_flows(wrong):
+    arriving = [*reaching_flows(wrong)]
+    misnamed = misnamed_body(context, arriving, known.get("body", frozenset()))
+    if misnamed is not None:
+        finding, about = misnamed
+        yield replace(finding, severity=severity)
+        arriving = [flow for flow in arriving if flow not in about]
+    for flow in arriving:
         role = role_of(flow.cell)
         guess = guesser(sorted(known[role]))
         for name in dict.fromkeys(names_in(flow.value)):

@@ -17,10 +17,11 @@ def plain(tree: Tree) -> Any:
     return tree.value
 
 
-def span_at(tree: Tree, place: tuple[str | int, ...]) -> Span:
+def span_at(tree: Tree, place: tuple[str | int, ...], *, key: bool = False) -> Span:
     """The span of the value at a place, or of the deepest value on the way to it.
 
-    A place that ends with a key of a mapping whose value is a mapping or a list is that key.
+    A place that ends with a key of a mapping whose value is a mapping or a list is that key, with
+    `key` each key is.
     """
     span = tree.span
     for step in place:
@@ -29,7 +30,7 @@ def span_at(tree: Tree, place: tuple[str | int, ...]) -> Span:
             if entry is None:
                 return span
             tree = entry.value
-            span = entry.key.span if isinstance(tree, Map | Seq) else tree.span
+            span = entry.key.span if key or isinstance(tree, Map | Seq) else tree.span
         elif isinstance(tree, Seq) and isinstance(step, int) and step < len(tree.items):
             tree = tree.items[step]
             span = tree.span

@@ -9,7 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, cast
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
-from smachac.diagnostics.source import Source
+from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import wrong_shape
@@ -71,7 +71,7 @@ def properties_of(
     if not isinstance(tree, Seq):
         if not is_known_wrong(tree):
             message = f"`properties` must be a list, not {kind_of(tree)}"
-            help = f"write a list: `- {EXAMPLES['before'].strip('`')}`"
+            help = _dashes(tree) or f"write a list: `- {EXAMPLES['before'].strip('`')}`"
             report.append(_fault(tree, message, help, "properties", kind_of(tree)))
         return ()
     return tuple(found for item in tree.items for found in _Reader(report).item(item))
@@ -96,8 +96,20 @@ def _file(word: Scalar, source: Source, library: Library, report: Report) -> Tre
     return None
 
 
+def _dashes(tree: Tree) -> str | None:
+    """The help for properties that are written as one mapping, without the dashes of a list."""
+    if not isinstance(tree, Map) or not tree.entries:
+        return None
+    if any(str(each.key.value) not in FORMS for each in tree.entries):
+        return None
+    first = tree.entries[0]
+    text = Span(first.key.span.source, first.key.span.start, first.value.span.end).text
+    shown = f"- {text}" if "\n" not in text else f"- {first.key.value}: ..."
+    return f"begin each property with a dash: `{shown}`"
+
+
 def _fault(tree: Tree | Scalar, message: str, help: str | None, *arguments: str) -> Any:
-    effect = "a property that cannot be read is not checked, so no program is generated"
+    effect = "no program is generated"
     if arguments[:1] == ("file",):
         effect = "without the file, none of its properties is checked, so no program is generated"
     return wrong_shape(tree.span, message, help, arguments=arguments, effect=effect)

@@ -164,7 +164,7 @@ class _Reader:
         try:
             return self.simulated(read_urdf(text))
         except UrdfError as error:
-            message = f"`{word.text}` does not describe a robot: {error.message}"
+            message = f"the robot file `{word.text}` has a mistake: {error.message}"
             arguments = ("urdf", word.text, error.span.text)
             self.wrong(word, message, error.help, arguments, error.span)
             return None
@@ -186,7 +186,7 @@ class _Reader:
         tree = self.library.parse(source, self.report)
         if tree is None:
             if len(self.report) == before:
-                message = f"`{word.text}` does not describe a {what}: the file is empty"
+                message = f"the {what} file `{word.text}` has a mistake: the file is empty"
                 self.wrong(word, message, None, (what, word.text, ""), Span(source, 0, 0))
             return None
         try:
@@ -196,8 +196,8 @@ class _Reader:
             return None
 
     def mistake(self, word: Word, tree: Tree, error: DataError, what: str) -> None:
-        message = f"`{word.text}` does not describe a {what}: {error.message}"
-        span = span_at(tree, error.place)
+        message = f"the {what} file `{word.text}` has a mistake: {error.message}"
+        span = span_at(tree, error.place, key=error.key)
         arguments = (what, word.text, ".".join(map(str, error.place)))
         if span.source.name == self.source.name:  # a file checked in itself
             self.wrong(Word(word.text, span), message, error.help, arguments)
@@ -284,7 +284,7 @@ class _Reader:
                             f"the joint `{name}` does not turn", ("arms", limb.name, "joints", k)
                         )
         except UrdfError as error:
-            message = f"`{data.urdf}` does not describe a robot: {error.message}"
+            message = f"the robot file `{data.urdf}` has a mistake: {error.message}"
             arguments = ("urdf", data.urdf, error.span.text)
             self.wrong(word, message, error.help, arguments, error.span)
             return None

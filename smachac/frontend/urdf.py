@@ -7,6 +7,7 @@ refer to other files; size, depth and number of elements are bounded.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from xml.parsers import expat
@@ -27,6 +28,9 @@ JointChain = tuple[Joint, ...]
 """Consecutive joints, each a child of the previous one."""
 
 XACRO = "expand the macro file with `xacro`, and name the resulting file"
+
+
+_LOWER = re.compile(r"""\blower\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 
 class UrdfError(Exception):
@@ -218,8 +222,19 @@ def _limited(link: _Link) -> Joint:
     low, high = numbers
     if low > high:
         message = f"the lower limit {low} of joint `{joint.name}` is above its upper limit {high}"
-        raise UrdfError(message, joint.span)
+        given = link.limits.get("upper", "0"), link.limits.get("lower", "0")
+        help = f'write `lower="{given[0]}" upper="{given[1]}"`: are the two'
+        raise UrdfError(message, _limit_span(joint.span), f"{help} swapped?")
     return replace(joint, lower=low, upper=high, velocity=_speed(link))
+
+
+def _limit_span(joint: Span) -> Span:
+    """The place of the lower limit in a joint, by the place of its name; that of the name if the
+    text has another form."""
+    text = joint.source.text
+    end = text.find("</joint>", joint.end)
+    found = _LOWER.search(text, joint.end, end if end >= 0 else joint.end)
+    return Span(joint.source, *found.span()) if found is not None else joint
 
 
 def _speed(link: _Link) -> float:

@@ -30,11 +30,14 @@ FARTHEST = 20.0
 
 
 class DataError(ValueError):
-    """A mistake in a file of data: the message, its place, and a line of help."""
+    """A mistake in a file of data: the message, its place, and a line of help. `key`: the last key
+    of the place is wrong, not its value."""
 
-    def __init__(self, message: str, place: Place = (), help: str | None = None) -> None:
+    def __init__(
+        self, message: str, place: Place = (), help: str | None = None, *, key: bool = False
+    ) -> None:
         super().__init__(message)
-        self.message, self.place, self.help = message, place, help
+        self.message, self.place, self.help, self.key = message, place, help, key
 
     def __str__(self) -> str:
         where = ".".join(map(str, self.place))

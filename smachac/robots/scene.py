@@ -178,8 +178,10 @@ def _scene(given: Fields) -> tuple[Body, ...]:
             raise DataError(message, (*place, "frame"), guess(body.frame, above))
         for name, _ in body.apart:
             if name not in above[2:]:
-                message = f"there is no body `{name}` above this body"
-                raise DataError(message, (*place, "apart", name), guess(name, above[2:]))
+                message = f"`apart` of `{body.name}` names `{name}`, but no body before it in the"
+                message += " file has this name"
+                help = guess(name, above[2:])
+                raise DataError(message, (*place, "apart", name), help, key=True)
         above.append(body.name)
     return bodies
 

@@ -174,7 +174,7 @@ def untyped(script: str) -> list[tuple[str, str]]:
 )
 def test_a_mapping_as_a_message_needs_its_type(type: str, action: str) -> None:
     script = MESSAGE.format(type=type, action=action, keys="msg", message="{data: true}")
-    words = "`SAY` makes a message of a mapping, but has no key `msg_type`"
+    words = "`SAY` gets a mapping as its message, but no type: it lacks the key `msg_type`"
     assert untyped(script) == [("{data: true}", words)]
     script = script.replace("[msg]", "[msg, msg_type]")
     assert untyped(script) == []
@@ -279,3 +279,43 @@ def test_a_number_compared_with_a_text(condition: str, found: str) -> None:
     script = ACTION.format(type="cell_msgs/Tidy", goal="{room: hall}")
     script = script.replace("      goal", f'      result_cb: "{function}"\n      goal')
     assert [each[0] for each in faults(script)] == ([found] if found else [])
+
+
+STOP = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {{stop_msg: {msg}, stop_type: geometry_msgs/Twist}}
+states:
+  - HALT:
+      template: PublishMsgState
+      action: once
+      input_keys: {keys}
+      remapping: {remapping}
+      transitions: {{succeeded: done, aborted: failed}}
+"""
+TYPED = ("[msg, msg_type]", "{msg: stop_msg, msg_type: stop_type}")
+
+
+def test_the_unread_key_with_a_type_is_the_missing_one() -> None:
+    script = STOP.format(msg="{linear: {x: 0.0}}", keys="[msg]", remapping="{msg: stop_msg}")
+    report = analyse(Source("main.yml", script), memory_library({}, BUILT_IN), []).report
+    assert [each.code for each in report if each.code in ("SM305", "SM515")] == ["SM515"]
+    (found,) = [each for each in report if each.code == "SM515"]
+    assert "`msg_type: stop_type` to its `remapping`" in (found.help or "")
+
+
+@pytest.mark.parametrize(
+    ("msg", "help"),
+    [
+        ("{x: 0.0, angular: {z: 0.0}}", "write `linear: {x: 0.0}`"),
+        ("{linear: {x: 0.0}, z: 0.5}", "write `angular: {z: 0.5}`"),
+        ("{spin: 0.5}", "use one of its fields"),
+        ("{linear: {x: 0.0}}", None),
+    ],
+)
+def test_a_field_one_level_too_high(msg: str, help: str | None) -> None:
+    script = STOP.format(msg=msg, keys=TYPED[0], remapping=TYPED[1])
+    found = [text or "" for _, _, text in faults(script, {})]
+    assert len(found) == (help is not None)
+    assert all(each.startswith(help or "") for each in found)

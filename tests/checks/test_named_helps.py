@@ -36,7 +36,9 @@ states:
 def test_a_property_with_two_names_swapped(written: str, meant: str | None) -> None:
     found = helps(PATH.replace("PROPERTY", f"properties: [{written}]"), "SM701")
     ends = (
-        "" if meant is None else f"; with `{meant}` the property holds: are the two names swapped?"
+        ""
+        if meant is None
+        else f"write `{meant}`: with it the property holds; are the two names swapped?"
     )
     assert all((ends in each) if ends else ("swapped" not in each) for each in found)
     assert found or meant is None
@@ -147,3 +149,42 @@ def test_a_policy_in_place_of_a_preset(value: str, policy: str) -> None:
     (found,) = helps(QOS.replace("VALUE", value), "SM004")
     assert found == f"`{value}` is a value of `{policy}`: write `{{{policy}: {value}}}`"
     assert helps(QOS.replace("VALUE", f"{{{policy}: {value}}}"), "SM004") == []
+
+
+LIGHTS = """
+name: sm
+template: Base
+outcomes: [succeeded, aborted]
+properties:
+  - after: {LIT: DARK}
+states:
+  - LIT: {template: ScriptedState, outcomes: [done, slip], transitions: {done: DARK, slip: OTHER}}
+  - DARK: {template: SleepState, time: 1.0, transitions: {succeeded: succeeded}}
+  - OTHER: {template: KIND, transitions: {succeeded: aborted}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "place", "start"),
+    [
+        ("SleepState, time: 2.0", "after", "write `slip: DARK` in `LIT`"),
+        (
+            "SleepState, time: 1.0",
+            "DARK",
+            "`OTHER`, a `SleepState` too, has the same variables: write `[DARK, OTHER]`\n",
+        ),
+        ("PrintUserdataState, input_keys: []", "after", "write `slip: DARK` in `LIT`"),
+    ],
+)
+def test_an_answer_without_another_state_of_its_type(kind: str, place: str, start: str) -> None:
+    report = analysed({"main.yml": LIGHTS.replace("KIND", kind)}).report
+    (found,) = [each for each in report if each.code == "SM701"]
+    assert found.span.text == place
+    assert (found.help or "").startswith(start)
+
+
+def test_properties_without_dashes() -> None:
+    text = LIGHTS.replace("  - after: {LIT: DARK}", "  after: {LIT: DARK}\n  at_most: {LIT: 3}")
+    report = analysed({"main.yml": text.replace("KIND", "SleepState, time: 1.0")}).report
+    (found,) = [each for each in report if each.code == "SM004"]
+    assert found.help == "begin each property with a dash: `- after: {LIT: DARK}`"

@@ -128,3 +128,86 @@ def test_a_record_in_an_interface() -> None:
         ("SM304", "hihg"),
         ("SM304", "{wide: 1.0}"),
     ]
+
+
+CLASS = """
+from smachac.runtime import smach
+
+class Pick(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["ok"], input_keys=["item"])
+
+    def execute(self, userdata):
+        item = userdata.item
+        print({code})
+        return "ok"
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "help"),
+    [
+        ("item.shelf", 'write `item["shelf"]`'),
+        ("userdata.item.shelf", 'write `userdata.item["shelf"]`'),
+        ("item.shlef", 'write `item["shelf"]`'),
+        ("item.weight", "use one of its fields"),
+        ('item["box"].wide', 'write `item["box"]["wide"]`'),
+        ("item.get('shelf')", ""),
+        ('item["shelf"].strip()', ""),
+        ("hasattr(item, 'shelf') and item.shelf", ""),
+        ("self.item.shelf", ""),
+    ],
+)
+def test_a_record_in_a_class_is_a_dictionary(code: str, help: str) -> None:
+    script = """
+    name: sm
+    outcomes: [done]
+    userdata: {item: {name: bolt, shelf: a, box: {wide: 1}}}
+    states:
+      - PICK: {template: Pick, transitions: {ok: done}}
+    """
+    interface = """
+    name: Pick
+    input_keys: {item: {type: {name: str, shelf: str, box: {wide: int}}}}
+    outcomes: {ok: {}}
+    code: {python: "robot:Pick"}
+    """
+    files = {"main.yml": script, "templates/Pick.yml": interface}
+    report = analysed({**files, "robot.py": CLASS.format(code=code)}).report
+    found = [each.help or "" for each in report if each.code == "SM311"]
+    assert len(found) == bool(help)
+    assert all(each.startswith(help) for each in found)
+
+
+PART = """
+name: sm
+outcomes: [done]
+types: {{Seam: {{id: str, passes: int}}}}
+userdata: {{seam: {{type: Seam, value: {value}}}}}
+states:
+  - SHOW: {{template: PrintUserdataState, input_keys: [seam], transitions: {{succeeded: done}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "message", "help"),
+    [
+        (
+            "{id: A, passes: 1.5}",
+            "`passes` of `seam` is `1.5`, but `Seam` has",
+            "or write `passes:",
+        ),
+        (
+            "{id: A, pases: 1}",
+            "`seam` has no field `passes`, which its type `Seam` requires",
+            "did",
+        ),
+        ("{id: A, passes: 1}", "", ""),
+    ],
+)
+def test_a_part_of_a_record_is_named_with_its_type(value: str, message: str, help: str) -> None:
+    report = analysed({"main.yml": PART.format(value=value)}).report
+    found = [each for each in report if each.code == "SM304"]
+    assert len(found) == bool(message)
+    assert all(each.finding.message.startswith(message) for each in found)
+    assert all(help in (each.help or "") for each in found)

@@ -92,7 +92,7 @@ def test_a_mistake_is_a_diagnostic_with_its_place(
     assert old in texts[file]
     path = project(tmp_path, **{file.replace(".", "_"): texts[file].replace(old, new, 1)})
     (found,) = [item for item in smachac.check(path) if item.code == "SM018"]
-    assert found.finding.message == f"`{file}` does not describe a {message}"
+    assert found.finding.message == in_file(file, message)
     span = found.finding.span
     assert Path(span.source.name).name == file
     assert (span.line, span.column) == place
@@ -147,7 +147,9 @@ def test_a_mistake_between_files(
 ) -> None:
     path = project(tmp_path, **{file.replace(".", "_"): text})
     found = [item.finding for item in smachac.check(path) if item.code == "SM018"]
-    assert [each.message.partition("does not describe a ")[2] for each in found] == [message]
+    assert [each.message.partition(" has a mistake: ")[2] for each in found] == [
+        message.partition(": ")[2]
+    ]
     span = found[0].span
     assert (Path(span.source.name).name, span.line, span.column) == place
 
@@ -185,3 +187,9 @@ def test_a_file_with_nearly_the_name(
     assert item.help is not None
     assert item.help.startswith(help)
     assert (item.finding.effect or item.kind.effect).startswith(effect)
+
+
+def in_file(name: str, fault: str) -> str:
+    """The message on a fault with its kind of file, such as `scene: there is no frame`."""
+    what, _, message = fault.partition(": ")
+    return f"the {what} file `{name}` has a mistake: {message}"

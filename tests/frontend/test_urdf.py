@@ -138,7 +138,9 @@ def test_limits_that_are_none(limit: str, message: str) -> None:
     )
     with pytest.raises(UrdfError, match=message.replace("$", r"\$")) as error:
         robot("a b", text)
-    assert error.value.span.text == "x"
+    assert error.value.span.text == ('lower="2"' if "above" in message else "x")
+    swapped = 'write `lower="1" upper="2"`: are the two swapped?'
+    assert "above" not in message or error.value.help == swapped
 
 
 PIECES = st.sampled_from(
@@ -193,7 +195,7 @@ states:
         (
             "sub/broken.urdf",
             [
-                "`sub/broken.urdf` does not describe a robot: "
+                "the robot file `sub/broken.urdf` has a mistake: "
                 + "the file is not valid XML: mismatched tag"
             ],
         ),

@@ -234,7 +234,7 @@ def test_a_mistake_is_reported_in_its_file(
     assert session.kind(path) == kind
     (found,) = session.check(path)[path]
     name = Path(path).name
-    assert found.finding.message == f"`{name}` does not describe a {message}"
+    assert found.finding.message == in_file(name, message)
     assert found.finding.related == ()
     assert text[found.span.start : found.span.end].startswith(word)
 
@@ -338,3 +338,9 @@ def test_findings_in_a_pyproject(tmp_path: Path) -> None:
     assert (found.code, text[found.span.start : found.span.end]) == ("SM007", "rso")
     session.change(path, PYPROJECT.replace("[tool.smachac]", "[tool.other]"))
     assert session.check(path) == {path: []}
+
+
+def in_file(name: str, fault: str) -> str:
+    """The message on a fault with its kind of file, such as `scene: there is no frame`."""
+    what, _, message = fault.partition(": ")
+    return f"the {what} file `{name}` has a mistake: {message}"
