@@ -35,6 +35,8 @@ FaultKind = Literal[
     "missing argument",
     "not passed",
     "not accepted",
+    "argument order",
+    "no quotes",
     "other guard",
     "no outcome",
     "wrong result",

@@ -260,6 +260,16 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " another class",
         "write `{near}` here, and where the template adds the name to `defined_headers`",
     ),
+    "argument order": (
+        "the template passes its arguments in another order than `__init__` of `{name}` has its"
+        " parameters",
+        "write `{near}`",
+    ),
+    "no quotes": (
+        "the template prints the text of `{word}` without quotes: here the name `{more}`, which"
+        " nothing defines",
+        "write `{near}`",
+    ),
     "not accepted": (
         "`State.tpl.py` passes `{word}`, which `__init__` of `{name}` does not accept",
         "remove the line `{{% extends ... %}}`, or add the parameter `{word}=None` to `__init__`",
@@ -345,6 +355,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "missing argument": _CALLED,
     "not passed": _CALLED,
     "other guard": "the program stops with a NameError when it makes the state",
+    "argument order": "each parameter gets the value of another one",
+    "no quotes": "the program stops with a NameError when it makes the state",
     "not accepted": "the call raises a TypeError when the program makes the state",
 }
 """What happens in a program in Python, where it is certain."""
@@ -379,6 +391,8 @@ WRITTEN = frozenset[FaultKind](
         "lost outcome",
         "no value",
         "other answer",
+        "argument order",
+        "no quotes",
     ]
 )
 """Faults whose words contain what was probably meant."""

@@ -505,8 +505,10 @@ def bad_class(
     script sets, passed by their names. `check` reports a warning; a build for the language of the
     class fails. Found are also misspelt names, names that only another function defines, usual
     modules that are not imported, methods of `self` that no class defines, methods without `()`,
-    `is` with a text or a number, `==` in place of `=`, and keys that are not in a list. Where a
-    name can be defined elsewhere, nothing is reported.
+    `is` with a text or a number, `==` in place of `=`, and keys that are not in a list; outcomes
+    that `execute` makes and does not return, names without a value after an `except`, and methods
+    that a plain class of the project lacks. Where a name can be defined elsewhere, nothing is
+    reported.
 
     Wrong:
         name: sm

@@ -27,6 +27,7 @@ from smachac.targets.errors import (
     stale_code,
 )
 from smachac.targets.smacha_templates import call_faults, guard_faults
+from smachac.targets.template_bodies import body_faults
 
 NOT_FOUND = ("no module", "no class", "syntax", "no imported module", "no imported name")
 """The kinds of faults of code that does not exist (SM608)."""
@@ -101,6 +102,7 @@ def _smacha_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
     """The faults of templates of SMACHA's kind."""
     yield from guard_faults(machine, library)
     yield from call_faults(machine)
+    yield from body_faults(machine, library)
 
 
 def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:

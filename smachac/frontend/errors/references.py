@@ -451,7 +451,8 @@ def template_error(
 
     A state whose template fails would be missing in the generated program.
 
-    Exactly: a warning for a misspelt block, whose text no program contains.
+    Exactly: a warning for a misspelt block, whose text no program contains, and for a misspelt
+    variable in a test `is defined`, whose part no program contains.
 
     Wrong:
         name: sm

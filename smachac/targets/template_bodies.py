@@ -1,0 +1,150 @@
+"""Faults in the block `body` of a template of SMACHA's kind: the line that makes the state, and
+tests of variables that nothing defines."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import keyword
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.frontend.errors.references import template_error
+from smachac.frontend.jinja_tags import tags
+from smachac.frontend.loader import Library
+from smachac.frontend.python_modules import template_module
+from smachac.ir.class_facts import ClassFault
+from smachac.ir.leaf import variable
+from smachac.ir.nodes import Leaf, Machine, StateType
+from smachac.ir.traversal import walk
+from smachac.targets.errors import bad_class
+
+_BODY = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)
+_ARGUMENT = re.compile(
+    r"(?P<quote>['\"]?)\{\{\s*(?P<name>\w+)\s*\}\}(?P=quote)\s*(?P<end>[,)]|(?=\{%))\s*"
+)
+_TEST = re.compile(
+    r"\{%[-+]?\s*if\s+(\w+)\s+is\s+defined\s*[-+]?%\}(.*?)\{%[-+]?\s*endif\b", re.DOTALL
+)
+_WORD = re.compile(r"[^\W\d]\w*")
+
+
+def body_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
+    """The faults in the block `body` of the user's templates, at the first state of each type."""
+    done = set[str]()
+    for _, leaf in walk(machine.root):
+        if not isinstance(leaf, Leaf) or leaf.type in done:
+            continue
+        done.add(leaf.type)
+        type_ = machine.state_types.get(leaf.type)
+        file = type_.code.get("python", "") if type_ is not None else ""
+        template = library.own_template(file) if file and ":" not in file else None
+        body = _BODY.search(template.text) if template is not None else None
+        if type_ is None or template is None or body is None:
+            continue
+        yield from _tests(template, body, type_, leaf)
+        fault = _call_fault(template, body, leaf, _names(machine, library))
+        if fault is not None:
+            used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")
+            yield bad_class(fault[0], "python", leaf.type, fault[1], (used,))
+
+
+def _tests(
+    template: Source, body: re.Match[str], type_: StateType, leaf: Leaf
+) -> Iterator[Diagnostic]:
+    """Tests `is defined` of a name that stands nowhere else, one slip away from a name that the
+    tested part uses."""
+    words: dict[str, int] = {}
+    for start, end in tags(template.text, "%{"):
+        for word in _WORD.findall(template.text[start + 2 : end - 2]):
+            words[word] = words.get(word, 0) + 1
+    known = {*type_.variables, *(each.name for each in leaf.written)}
+    known |= {each.name for each in leaf.variables}
+    for found in _TEST.finditer(template.text, *body.span(1)):
+        name, inside = found[1], found[2]
+        if words.get(name) != 1 or name in known:
+            continue
+        used = {word for start, end in tags(inside, "%{")
+                for word in _WORD.findall(inside[start + 2 : end - 2])}  # fmt: skip
+        near = guesser(sorted(used)).sure(name)
+        if near is not None:
+            message = f"`{name}` is tested here, but nothing defines it: the part is never printed"
+            place = Span(template, *found.span(1))
+            fault = template_error(place, message, f"did you mean `{near}`?", (name,))
+            effect = f"the program of `{leaf.name}` lacks what the template prints here"
+            finding = replace(fault.finding, effect=effect)
+            yield replace(fault, severity=Severity.WARNING, finding=finding)
+
+
+def _names(machine: Machine, library: Library) -> set[str]:
+    """The names that the Python in the user's templates binds."""
+    found = {*dir(builtins), *keyword.kwlist}
+    for type_ in machine.state_types.values():
+        file = type_.code.get("python", "") if not type_.built_in else ""
+        template = library.own_template(file) if file and ":" not in file else None
+        if template is None:
+            continue
+        try:
+            module = template_module(template)
+        except (RecursionError, MemoryError, ValueError):
+            module = None
+        found.update(module.names if module is not None else _WORD.findall(template.text))
+    return found
+
+
+def _call_fault(
+    template: Source, body: re.Match[str], leaf: Leaf, names: set[str]
+) -> tuple[ClassFault, str] | None:
+    """The fault of the call that makes the state, with the name of its class."""
+    made = _maker(template)
+    if made is None:
+        return None
+    name, parameters = made
+    calls = [*re.compile(rf"\b{re.escape(name)}\(").finditer(template.text, *body.span(1))]
+    if len(calls) != 1:
+        return None
+    (call,) = calls
+    given: list[re.Match[str]] = []
+    at = call.end()
+    while (found := _ARGUMENT.match(template.text, at)) is not None:
+        given.append(found)
+        at = found.end()
+        if found["end"] != ",":
+            break
+    order = [each["name"] for each in given]
+    due = parameters[: len(order)]
+    if order != due and sorted(order) == sorted(due) and len({*order}) == len(order):
+        by_name = {each["name"]: each[0].rstrip(" ,)\n\t") for each in given}
+        near = ", ".join(by_name[each] for each in due)
+        near = f"{name}({near})" if given[-1]["end"] == ")" else near
+        place = Span(template, given[0].start(), given[-1].start("end"))
+        return ClassFault(kind="argument order", name=Word(place.text, place), near=near), name
+    for each in given:
+        value = variable(leaf, each["name"]) if not each["quote"] else None
+        if isinstance(value, str) and value.isidentifier() and value not in names:
+            place = Span(template, each.start(), each.start("end"))
+            word = Word(place.text.rstrip(), place)
+            near = f"'{word.text}'"
+            return ClassFault(kind="no quotes", name=word, near=near, more=value), name
+    return None
+
+
+def _maker(template: Source) -> tuple[str, list[str]] | None:
+    """The only class in a template, with the parameters of its constructor."""
+    try:
+        module = template_module(template)
+    except (RecursionError, MemoryError, ValueError):
+        return None
+    classes = [each for each in module.text.tree.body if isinstance(each, ast.ClassDef)
+               ] if module is not None else []  # fmt: skip
+    if len(classes) != 1:
+        return None
+    makers = [each for each in classes[0].body
+              if isinstance(each, ast.FunctionDef) and each.name == "__init__"]  # fmt: skip
+    if len(makers) != 1:
+        return None
+    return classes[0].name, [each.arg for each in makers[0].args.args[1:]]
