@@ -26,6 +26,13 @@ from smachac.checks.rule import rule
 from smachac.checks.unsent_keys import unsent_keys
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_finding, unwritten_keys
 from smachac.checks.value_places import place_of_part
+from smachac.checks.word_loops import (
+    is_over_the_word,
+    loop_over_the_word,
+    loops_over_names_of_lists,
+    word_as_list,
+    words_as_lists,
+)
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
@@ -94,7 +101,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
             continue
         read = context.of_container(_used_in, scope.path, scope)
-        yield from _loops_over_names_of_lists(scope, read)
+        yield from loops_over_names_of_lists(scope, read)
         untyped = any(map(lacks_type_key, container.children))
         types = (TYPE_KEY, type_key_meant(container)) if untyped else ()
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
@@ -109,9 +116,9 @@ def dead_key(context: Context) -> Iterator[Finding]:
             if key in types:
                 continue  # SM515
             # The userdata of the machine can be read after the run.
-            loop = _loop_over_the_word(container, key)
+            loop = loop_over_the_word(container, key)
             if loop is not None:
-                yield _word_as_list(f"{scope.path}/{loop.name}", loop, key)
+                yield word_as_list(f"{scope.path}/{loop.name}", loop, key)
                 continue
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
@@ -387,14 +394,14 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     for scope in flow.scopes.values():
         container = scope.container
         if isinstance(container, nodes.Iterator):
-            yield from _words_as_lists(scope.path, container)
+            yield from words_as_lists(scope.path, container)
         if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
             continue
         used = context.of_container(_used_in, scope.path, scope)
         for key in container.inputs:
             if key.name in used or (scope.path, key.name) in kept:
                 continue
-            if not isinstance(container, nodes.Iterator) or not _is_over_the_word(
+            if not isinstance(container, nodes.Iterator) or not is_over_the_word(
                 container, key.name
             ):
                 yield _unused(scope.path, container, key, "input")
@@ -416,56 +423,6 @@ def _unwritten_outputs(context: Context) -> Iterator[Finding]:
         finding = unwritten_finding(each, read=(each.path, each.key.name) in read)
         if finding is not None:
             yield finding
-
-
-def _is_over_the_word(loop: nodes.Iterator, key: str) -> bool:
-    """Whether the items of a loop are a list with one text, the name of a key."""
-    return loop.items is not None and loop.items.data == (key,)
-
-
-def _loop_over_the_word(container: Container, key: str) -> nodes.Iterator | None:
-    """The loop of a container over a list with one text, the name of a key."""
-    for child in container.children:
-        if isinstance(child, nodes.Iterator) and _is_over_the_word(child, key):
-            return child
-    return None
-
-
-def _words_as_lists(path: str, loop: nodes.Iterator) -> Iterator[Finding]:
-    """The finding on an iterator over the name of one of its input keys, which its state does not
-    read."""
-    read = {key.name for child in loop.children for key in child.inputs}
-    for key in loop.inputs if loop.items is not None and not loop.sugar else ():
-        if _is_over_the_word(loop, key.name) and key.name not in read:
-            yield _word_as_list(path, loop, key.name)
-
-
-def _loops_over_names_of_lists(scope: UserdataScope, read: Collection[str]) -> Iterator[Finding]:
-    """The findings on loops over one text, which is the name of a list of the userdata that other
-    states read."""
-    lists = {each.key for each in scope.container.userdata if isinstance(each.value.data, tuple)}
-    for key in lists.intersection(read):
-        loop = _loop_over_the_word(scope.container, key)
-        if loop is not None and (loop.sugar or key not in {each.name for each in loop.inputs}):
-            yield _word_as_list(f"{scope.path}/{loop.name}", loop, key)
-
-
-def _word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:
-    """The finding on a loop over one text, which is the name of a key."""
-    field = "in" if loop.sugar else "it"
-    help = f"write `{field}: {key}`"
-    if not loop.sugar and key not in {each.name for each in loop.inputs}:
-        help += f", and add `{key}` to the `input_keys` of `{loop.name}`"
-    return Finding(
-        span=loop.items_span,
-        message=f"`{loop.name}` runs once, for the text `{key}`, not for the items of the key"
-        f" `{key}`",
-        arguments=("items", key),
-        help=help,
-        effect="the state gets the name of the key in place of an item",
-        related=calls(loop, loop.items_span),
-        node=path,
-    )
 
 
 def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:

@@ -6,21 +6,26 @@ template without either is an open type: any field is accepted, and nothing is k
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeAlias, TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, did_you_mean
-from smachac.diagnostics.source import NOWHERE, Source, Span, Word
+from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import smacha_meta
-from smachac.frontend.class_reader import PARAMETERS, read_module, read_template
+from smachac.frontend.class_reader import PARAMETERS
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.loader import Library
 from smachac.frontend.schema import INTERFACE_FIELDS, KEY_FACTS, VARIABLE_FACTS
 from smachac.frontend.type_annotations import as_record, read_type
+from smachac.frontend.type_classes import (
+    ALL_GIVEN,
+    class_facts,
+    facts_without_interface,
+    prints_itself,
+)
 from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name, check_unquoted, is_name
 from smachac.frontend.value_facts import (
     check_fields,
@@ -31,7 +36,7 @@ from smachac.frontend.value_facts import (
 )
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
-from smachac.ir.class_facts import ClassFacts, StateCall
+from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import (
     FunctionResult,
     Key,
@@ -49,7 +54,6 @@ TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
 CLASS_FIELDS = ("header", "class", "with")
 """The fields of code that is a class: its file, its name, the parameter of its constructor."""
 
-_ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
 
 _OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
     "inputs": ("input_keys",),
@@ -157,13 +161,13 @@ def _read_interface(
         class_spans=_class_spans(sections["code"]),
         class_facts=None
         if built_in or unclear
-        else _class_facts(
+        else class_facts(
             name,
             _python_code(sections["code"], code, source),
             given | ({"optional"} if optional else set()),
             library,
         ),
-        prints_itself=_prints_itself(code.get("python", ""), library),
+        prints_itself=prints_itself(code.get("python", ""), library),
         optional=optional,
         secret_keys=_secret_keys(sections, report),
     )
@@ -280,61 +284,6 @@ def _python_code(section: Section, code: Mapping[str, str], source: Source) -> W
         if language == "python" and isinstance(value, Scalar):
             return Word(str(value.value), value.span)
     return Word(code["python"], Span(source, 0, 0)) if "python" in code else None
-
-
-def _class_facts(
-    name: str, word: Word | None, given: frozenset[str], library: Library
-) -> ClassFacts | None:
-    """The facts about the Python class, without parts that depend on what a script declares."""
-    if word is None:
-        return None
-    if ":" in word.text:
-        facts = read_module(word, library)
-    else:
-        template = library.template(word.text)
-        facts = read_template(template, name, library) if template is not None else None
-        if facts is not None and (body := _file_with_body(word.text, library)):
-            call = _state_call(facts, word.text, body, library)
-            facts = replace(facts, parameters=None, state_call=call)
-    if facts is None:
-        return None
-    return _with_script(facts, given)
-
-
-def _with_script(facts: ClassFacts, given: frozenset[str]) -> ClassFacts:
-    """The facts about a class for which a script gives some parts of the interface. Outcomes and
-    keys can be judged if the constructor passes on what the script gives."""
-    passed = {part for part, _ in facts.passed}
-    free = not given.isdisjoint(["outcomes", "optional"])
-    judged = not free or ("outcomes" in passed and "optional" not in given)
-    unknown = given - passed
-    return replace(
-        facts,
-        endings=facts.endings if judged else (),
-        complete=facts.complete and not free,
-        reads=() if "input_keys" in unknown else facts.reads,
-        writes=() if {"input_keys", "output_keys"} & unknown else facts.writes,
-    )
-
-
-def _facts_without_interface(name: str, file: str, library: Library) -> ClassFacts | None:
-    """The facts about the class of a template without an interface: nothing but the script declares
-    its keys, and their names in the template's own block `body` count as declared."""
-    facts = _class_facts(name, Word(file, NOWHERE), frozenset(), library)
-    if facts is None or facts.name is None or facts.name.text != re.sub(r"\W+", "_", name):
-        return None
-    written = tuple(smacha_meta.body_words(file, library.template))
-    fixed = facts.outcomes is not None
-    facts = _with_script(facts, _ALL_GIVEN - {"outcomes"} if fixed else _ALL_GIVEN)
-    return replace(
-        facts,
-        outcomes=None,
-        inputs=None,
-        outputs=None,
-        passed=tuple((part, (*names, *written)) for part, names in facts.passed),
-        endings=tuple(replace(each, written=None) for each in facts.endings),
-        values=(),
-    )
 
 
 def _code(section: Section, report: Report) -> dict[str, str]:
@@ -650,45 +599,12 @@ def _check_declared(
     return guesser_of(tuple(names)).sure(word.text)
 
 
-def _prints_itself(file: str, library: Library) -> bool:
-    """Whether a template, or one that it extends, has a block `body`."""
-    return bool(_file_with_body(file, library))
-
-
-def _file_with_body(file: str, library: Library) -> str:
-    """The first one of a template and those that it extends that has a block `body`; empty if none
-    has one."""
-    seen: set[str] = set()
-    while file and ":" not in file and file not in seen:
-        seen.add(file)
-        source = library.template(file) or library.template(f"{file}.py")
-        if source is None:
-            return ""
-        if smacha_meta.has_body(source):
-            return file
-        file = smacha_meta.extended(source)
-    return ""
-
-
-_STATE_TEMPLATE = "State.tpl.py"
-
-
-def _state_call(facts: ClassFacts, file: str, body: str, library: Library) -> StateCall | None:
-    """The call of the constructor in the block `body` of the built-in `State.tpl.py`; None where
-    another template makes the state."""
-    template = library.template(file)
-    own = library.own_template(_STATE_TEMPLATE) is not None
-    if facts.parameters is None or template is None or body != _STATE_TEMPLATE or own:
-        return None
-    return StateCall(place=smacha_meta.extended_span(template), parameters=facts.parameters)
-
-
 def _read_template(
     name: str, template: Source, file: str, library: Library, below: frozenset[str]
 ) -> StateType:
     """The state type of a template of SMACHA's kind: that of its meta block, else that of the type
     it extends, else an open one. Outcomes that are in neither are taken from its code."""
-    whole = _prints_itself(file, library)
+    whole = prints_itself(file, library)
     found = smacha_meta.read_meta(template)
     extended = smacha_meta.extended(template).partition(".")[0]
     known = _find(extended, library, [], below) if extended else None
@@ -700,13 +616,13 @@ def _read_template(
     outcomes = outcomes or smacha_meta.outcomes_in_code(template)
     if found is None:
         known = _without_facts(known) if known else StateType(name=name, open=True)
-        facts = _facts_without_interface(name, file, library)
+        facts = facts_without_interface(name, file, library)
         if facts is not None and extended:
             facts = replace(facts, parameters=None)
         return replace(
             known, name=name, outcomes=outcomes, code={"python": file}, prints_itself=whole,
             variables=_parameters(facts) or known.variables, class_facts=facts,
-            given=known.given if known.open else _ALL_GIVEN,
+            given=known.given if known.open else ALL_GIVEN,
             used=smacha_meta.words_used(file, library.template),
             default_keys=smacha_meta.default_keys(template) or known.default_keys,
         )  # fmt: skip
@@ -721,14 +637,12 @@ def _read_template(
         input_keys=tuple(Key(name=word.text, span=word.span) for word in found.input_keys),
         output_keys=tuple(Key(name=word.text, span=word.span) for word in found.output_keys),
         outcomes=outcomes,
-        given=_ALL_GIVEN,
+        given=ALL_GIVEN,
         code={"python": file},
         prints_itself=whole,
         used=smacha_meta.words_used(file, library.template),
         default_keys=smacha_meta.default_keys(template),
-        class_facts=_facts_without_interface(name, file, library)
-        if found.kind == "state"
-        else None,
+        class_facts=facts_without_interface(name, file, library) if found.kind == "state" else None,
         open=found.kind == "state" and not outcomes,
         simulation=found.simulation or (known is not None and known.simulation),
     )
