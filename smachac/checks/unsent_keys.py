@@ -28,7 +28,8 @@ def unsent_keys(context: Context) -> Iterator[Finding]:
     for path, leaf in context.states:
         if not isinstance(leaf, Leaf) or not leaf.built_in or leaf.open or not leaf.inputs:
             continue
-        role = next((each for each in SENDERS if variable_of(leaf, each) is not None), None)
+        roles: list[VariableRole] = [each for each in SENDERS if variable_of(leaf, each)]
+        role = roles[0] if roles else None
         used = _keys_used(leaf, types) if role is not None else None
         if role is None or used is None or not used <= {key.name for key in leaf.inputs}:
             continue
