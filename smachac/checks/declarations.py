@@ -41,7 +41,7 @@ from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Preset, Remap, StateType, Struct
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, StateType, Struct
 from smachac.ir.traversal import expressions, remapping, walk
 from smachac.ir.types import ANY
 
@@ -93,7 +93,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
     unset: dict[str, set[str]] = {}
     for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
-    reported |= {(path, preset.key) for path, (_, preset, *_) in meant_presets(context).items()}
+    reported |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}
     reported |= _swapped_lists(context)
     in_functions = function_reads(context)
     for scope in flow.scopes.values():
@@ -203,24 +203,25 @@ def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
     )
 
 
-class MeantPreset(NamedTuple):
-    """A key that nothing sets, and the only userdata of its container that nothing reads, which is
-    probably meant for it: by a remapping or, if `looped`, by a `for_each` over its items. `state`
-    is the path of the state that reads the key."""
+class MeantKey(NamedTuple):
+    """A key that nothing sets, and the only preset or input of its container that nothing reads,
+    which is probably meant for it: by a remapping or, if `looped`, by a `for_each` over its items.
+    `word` is the name of that preset or input, `state` the path of the state that reads the key."""
 
     missing: Missing
-    preset: Preset
+    word: Word
     state: str
     looped: bool
 
 
-def meant_presets(context: Context) -> dict[str, MeantPreset]:
-    """The values that are probably meant for keys that nothing sets, by path of the container. Only
-    where one key is unset and one is unread, and where the type of the reader fits."""
+def meant_keys(context: Context) -> dict[str, MeantKey]:
+    """The keys that are probably meant for keys that nothing sets, by path of the container. Only
+    where one key is unset and one is unread, and where the type of the reader fits, or is not known
+    and the names have a word in common."""
     missing: dict[str, list[Missing]] = {}
     for each in context.missing_keys("nowhere"):
         missing.setdefault(each.scope.path, []).append(each)
-    found: dict[str, MeantPreset] = {}
+    found: dict[str, MeantKey] = {}
     for path, (first, *others) in missing.items():
         scope = first.scope
         if others:
@@ -228,18 +229,29 @@ def meant_presets(context: Context) -> dict[str, MeantPreset]:
         if context.of_container(_sees_everything, path, scope):
             continue
         read = context.of_container(_used_in, path, scope)
-        unread = [preset for preset in scope.container.userdata if preset.key not in read]
+        unread = [
+            (Word(preset.key, preset.span), type_of_data(preset.value.data), preset.value.data)
+            for preset in scope.container.userdata
+            if preset.key not in read
+        ]
+        unread += [
+            (Word(key.name, key.span), key.type, None)
+            for key in scope.container.inputs
+            if key.name not in read
+        ]
         reader = reader_at(scope, first.vertices[0], first.key)
         wanted = context.types.inputs.get((reader.path, reader.key), ANY)
         if len(unread) != 1 or reader.key != first.key or reader.node is scope.container:
             continue
-        data = unread[0].value.data
+        word, given, data = unread[0]
         looped = isinstance(data, tuple) and not isinstance(reader.node, nodes.Iterator)
-        if wanted == ANY or misfit(type_of_data(data), wanted) is not None:
+        alike = not set(word.text.split("_")).isdisjoint(first.key.split("_"))
+        fits = alike if ANY in (wanted, given) else misfit(given, wanted) is None
+        if not fits:
             if looped:
-                found[path] = MeantPreset(first, unread[0], reader.path, looped=True)
+                found[path] = MeantKey(first, word, reader.path, looped=True)
         else:
-            found[path] = MeantPreset(first, unread[0], reader.path, looped=False)
+            found[path] = MeantKey(first, word, reader.path, looped=False)
     return found
 
 
@@ -386,6 +398,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
     kept |= _swapped_lists(context)
+    kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)

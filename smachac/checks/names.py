@@ -16,7 +16,7 @@ from smachac.analysis.control_flow import (
     strays,
     unknown_outcomes,
 )
-from smachac.checks.declarations import meant_presets
+from smachac.checks.declarations import meant_keys
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
@@ -245,7 +245,7 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
     loops: set[str] = set()
     if any(each.span.text == PREEMPTED for each in found):
         # The states in which `for_each` is probably missing, which SM301 reports.
-        loops = {each.state for each in meant_presets(context).values() if each.looped}
+        loops = {each.state for each in meant_keys(context).values() if each.looped}
     yield from (each for each in found if each.span.text != PREEMPTED or each.node not in loops)
 
 

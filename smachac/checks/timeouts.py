@@ -20,7 +20,7 @@ from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Concurrence, Data, Leaf, OutcomeRule, StateType, VariableType
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import outcome_names
 
@@ -254,9 +254,14 @@ def never_ends(context: Context) -> Iterator[Finding]:
     yield from _starting_again(context)
 
 
+STOPS = (PREEMPTED, "cancelled", "canceled", "interrupted", "stopped")
+"""The names of outcomes of a container that was stopped."""
+
+
 class Watched(NamedTuple):
     """A concurrence at `path` that waits for all branches, of which the one at `branch` waits
-    without a limit. `other` is a rule without it; another rule is about this branch only."""
+    without a limit. `other` is a rule without it, and another rule is about this branch only; or
+    `other` requires that this branch was preempted, although another one has ended by itself."""
 
     path: str
     container: Concurrence
@@ -273,13 +278,15 @@ def watched_branches(context: Context) -> tuple[Watched, ...]:
         if not isinstance(container, Concurrence) or container.sugar or container.join == "any":
             continue
         for child in container.children:
-            if not isinstance(child, Leaf) or not child.blocking or len(container.rules) < 2:
+            if not isinstance(child, Leaf) or not child.blocking:
                 continue
             rules = [({part.child for part in rule.when}, rule) for rule in container.rules]
             alone = [rule for names, rule in rules if names == {child.name}
                      and rule.when[0].outcome != PREEMPTED]  # fmt: skip
             others = [rule for names, rule in rules if names and child.name not in names]
-            if not alone or not others or PREEMPTED not in outcome_names(child):
+            others = others if alone else []
+            others += [rule for rule in container.rules if _stops(container, rule, child.name)]
+            if not others or PREEMPTED not in outcome_names(child):
                 continue
             if limits is None:
                 limits = _time_limits(context.machine.state_types)
@@ -287,6 +294,18 @@ def watched_branches(context: Context) -> tuple[Watched, ...]:
                 branch = f"{path}/{child.name}"
                 found.append(Watched(path, container, branch, child, others[0]))
     return tuple(found)
+
+
+def _stops(container: Concurrence, rule: OutcomeRule, name: str) -> bool:
+    """Whether a rule requires that the branch `name` was preempted and that another one has ended
+    by itself; not a rule for a failure or a stop of the whole concurrence."""
+    ends = {part.child: part.outcome for part in rule.when}
+    return (
+        ends.get(name) == PREEMPTED
+        and any(outcome != PREEMPTED for outcome in ends.values())
+        and not fails(container, rule.outcome)
+        and rule.outcome not in (*STOPS, container.default_outcome)
+    )
 
 
 def missing_joins(context: Context) -> frozenset[str]:
@@ -307,7 +326,9 @@ def missing_joins(context: Context) -> frozenset[str]:
 def _without_join(watched: Watched) -> Finding:
     container, name = watched.container, watched.leaf.name
     other = watched.other
-    ended = " and ".join(f"`{part.child}: {part.outcome}`" for part in other.when)
+    ended = " and ".join(
+        f"`{part.child}: {part.outcome}`" for part in other.when if part.child != name
+    )
     return Finding(
         span=container.span,
         message=f"`{container.name}` has no `join: any`: after {ended} it still waits for `{name}`",

@@ -18,7 +18,7 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
-from smachac.checks.declarations import MeantPreset, meant_presets, swapped_loop
+from smachac.checks.declarations import MeantKey, meant_keys, swapped_loop
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
@@ -93,7 +93,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     searches = Searches(flow)
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
-    presets = meant_presets(context)
+    presets = meant_keys(context)
     unwritten = set(read_unwritten(context, unwritten_keys(context)).values())
     for missing in context.missing_keys("unset", "nowhere"):
         if missing.cause == "nowhere" and _is_dropped(missing):
@@ -109,27 +109,27 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             users = used(missing.scope.path).get(missing.key, [])
             finding = _unset(missing, witness, users, guesses, context.types.inputs)
             if meant is not None and meant.missing is missing:
-                finding = _with_preset(finding, witness, meant)
+                finding = _with_meant_key(finding, witness, meant)
             yield finding
 
 
-def _with_preset(finding: Finding, witness: Witness, meant: MeantPreset) -> Finding:
-    """The finding on a key that nothing sets, where a loop over a preset or a remapping from it is
-    missing."""
-    name, key, preset = witness.reader.node.name, meant.missing.key, meant.preset
-    purpose, text = f"must read `{preset.key}`", f"remapping: {{{key}: {preset.key}}}"
+def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Finding:
+    """The finding on a key that nothing sets, where a loop over a preset, or a remapping from a
+    preset or input is missing."""
+    name, key, other = witness.reader.node.name, meant.missing.key, meant.word.text
+    purpose, text = f"must read `{other}`", f"remapping: {{{key}: {other}}}"
     if meant.looped:
-        purpose = f"must run for each item of `{preset.key}`"
-        text = f"for_each: {{item: {key}, in: {preset.key}}}"
-    if not meant.looped and guesser([key]).sure(preset.key) is not None:
-        help = f"rename `{preset.key}` to `{key}`, or write `{text}` in `{name}`"
-        related = other_place(preset.span, f"nothing reads `{preset.key}`")
+        purpose = f"must run for each item of `{other}`"
+        text = f"for_each: {{item: {key}, in: {other}}}"
+    if not meant.looped and guesser([key]).sure(other) is not None:
+        help = f"rename `{other}` to `{key}`, or write `{text}` in `{name}`"
+        related = other_place(meant.word.span, f"nothing reads `{other}`")
         return replace(finding, help=help, related=(*related, *finding.related))
     return replace(
         finding,
         help=f"if `{name}` {purpose}, write `{text}` in `{name}`; otherwise give `{key}` an initial"
         f" value in {container_name(meant.missing.scope, finding.span)}",
-        related=(*other_place(preset.span, f"nothing reads `{preset.key}`"), *finding.related),
+        related=(*other_place(meant.word.span, f"nothing reads `{other}`"), *finding.related),
     )
 
 

@@ -125,3 +125,57 @@ states:
 """
     found = reported({"main.yml": main, "pick.yml": pick})
     assert ("SM306", "grip_force", "did you mean `force`?") in found
+
+
+def test_an_input_that_nothing_reads_is_meant() -> None:
+    text = """\
+name: sm
+outcomes: [done, failed]
+userdata: {light_bin: [[0.4, 0.3, 0.1], [0.0, 0.0, 0.0, 1.0]]}
+states:
+  - SORT:
+      template: StateMachine
+      outcomes: [done]
+      input_keys: [light_bin]
+      transitions: {done: done}
+      states:
+        - PUT: {template: ScriptedState, input_keys: [bin], outcomes: [ok], transitions: {ok: done}}
+"""
+    found = reported({"main.yml": text.replace(", failed", "")})
+    help = (
+        "if `PUT` must read `light_bin`, write `remapping: {bin: light_bin}` in `PUT`; otherwise"
+        " give `bin` an initial value in `SORT`"
+    )
+    assert found == [("SM301", "bin", help)]
+    other = reported({"main.yml": text.replace(", failed", "").replace("light_bin", "speed")})
+    assert {each[0] for each in other} == {"SM301", "SM306"}
+
+
+WATCHED = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - CUT:
+      template: Concurrence
+      outcomes: [cut, fault]
+      default_outcome: fault
+      outcome_map: {RULES}
+      transitions: {cut: done, fault: failed}
+      states:
+        - MILL: {template: ScriptedState, outcomes: [finished, preempted]}
+        - WATCH: {template: Watch}
+"""
+WATCH = "outcomes: {overload: {failure: true}, preempted: {}}\nblocking: true\n"
+
+
+@pytest.mark.parametrize(
+    ("rules", "expected"),
+    [
+        ("cut: {MILL: finished, WATCH: preempted}", ["SM407"]),
+        ("fault: {MILL: finished, WATCH: preempted}, cut: {MILL: finished}", []),
+        ("cut: {MILL: preempted, WATCH: preempted}", []),
+    ],
+)
+def test_a_rule_for_a_branch_that_nothing_preempts(rules: str, expected: list[str]) -> None:
+    files = {"main.yml": WATCHED.replace("RULES", rules), "templates/Watch.yml": WATCH}
+    assert [each[0] for each in reported(files) if each[0] == "SM407"] == expected
