@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import pairwise
 
 from smachac.diagnostics.diagnostic import Edit, Report
 from smachac.diagnostics.source import Span, Word
@@ -392,9 +393,42 @@ def _preset(entry: Entry, report: Report) -> Preset:
         value = parts["value"]
         secret = "secret" in parts and as_flag(parts["secret"], report)
     key = entry.key
+    if isinstance(value, Seq | Map):
+        _check_decimal_commas(value, report)
     return Preset(
         key=str(key.value), value=as_value(value), type=type_, span=key.span, secret=secret
     )
+
+
+def _check_decimal_commas(value: Seq | Map, report: Report) -> None:
+    """Reports numbers with a decimal comma in a mapping: `{x: 2,5}` has the entries `x: 2` and
+    `5`."""
+    todo: list[Tree] = [value]
+    while todo:
+        tree = todo.pop()
+        if isinstance(tree, Seq):
+            todo += [each for each in tree.items if not isinstance(each, Scalar)]
+        elif isinstance(tree, Map):
+            todo += [each.value for each in tree.entries if not isinstance(each.value, Scalar)]
+            for before, entry in pairwise(tree.entries):
+                number = _decimal_comma(before, entry)
+                if number is not None:
+                    message = f"`{number.text}` has a decimal comma: YAML reads two entries"
+                    help = f"write `{number.text.replace(',', '.')}`"
+                    arguments = ("decimal comma", number.text)
+                    report.append(wrong_shape(number, message, help, arguments=arguments))
+
+
+def _decimal_comma(before: Entry, entry: Entry) -> Span | None:
+    """The place of a number whose decimals are the name of the next entry, which has no value."""
+    whole, decimals = before.value, entry.key
+    if not isinstance(whole, Scalar) or type(whole.value) is not int:
+        return None
+    if not isinstance(entry.value, Scalar) or entry.value.value is not None:
+        return None
+    span = Span(decimals.source, whole.start, decimals.end)
+    parts = span.text.partition(",")
+    return span if parts[0].lstrip("-").isdigit() and parts[2].isdigit() else None
 
 
 PRESET_FIELDS = ("type", "value", "doc", "secret")

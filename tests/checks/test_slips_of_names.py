@@ -179,3 +179,24 @@ WATCH = "outcomes: {overload: {failure: true}, preempted: {}}\nblocking: true\n"
 def test_a_rule_for_a_branch_that_nothing_preempts(rules: str, expected: list[str]) -> None:
     files = {"main.yml": WATCHED.replace("RULES", rules), "templates/Watch.yml": WATCH}
     assert [each[0] for each in reported(files) if each[0] == "SM407"] == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "found"),
+    [
+        ("{name: press, x: 2,5, y: 1.5}", [("SM004", "2,5", "write `2.5`")]),
+        ("[{name: press, x: 0.5, y: -1,0}]", [("SM004", "-1,0", "write `-1.0`")]),
+        ("{2: 0, 5: 1}", []),
+        ("{x: 2, y}", []),
+        ("[2,5]", []),
+    ],
+)
+def test_a_decimal_comma_in_a_mapping(value: str, found: list[tuple[str, str, str]]) -> None:
+    text = f"""\
+name: sm
+outcomes: [done]
+userdata: {{spot: {value}}}
+states:
+  - SHOW: {{template: PrintUserdataState, input_keys: [spot], transitions: {{succeeded: done}}}}
+"""
+    assert reported({"main.yml": text}) == found
