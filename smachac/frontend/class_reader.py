@@ -20,6 +20,7 @@ from smachac.frontend.class_names import (
     undefined_names,
 )
 from smachac.frontend.class_slips import (
+    is_uncalled_super,
     joined_texts,
     missing_comma,
     slips,
@@ -363,6 +364,7 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
         )
         for each in ast.walk(owner)
     )
+    calls = calls or any(map(is_uncalled_super, ast.walk(owner)))  # "super not called"
     return [] if calls else [_without_call(own, *found)]
 
 

@@ -55,6 +55,8 @@ FaultKind = Literal[
     "other userdata",
     "lost argument",
     "lost userdata",
+    "early userdata",
+    "super not called",
     "no self parameter",
     "no import",
     "wrong import",

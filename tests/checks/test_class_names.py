@@ -238,6 +238,15 @@ def analysed_text(body: str, old: str = "", new: str = "") -> list[Diagnostic]:
          "search", "write `def search(self):`"),
         ("self.looks > 1", "userdata.part", "userdata",
          "write `def search(self, userdata):`, and pass `userdata` in `execute`"),
+        ("self.looks = 0\n\n    def execute", "self.looks = userdata.part\n\n    def execute",
+         "userdata", "a state has no userdata before it runs: write `userdata.part` in `execute`"),
+        ("self.looks = 0\n\n    def execute", "self.looks = ud\n\n    def execute",
+         "ud", "a state has no userdata before it runs: write `userdata` in `execute`"),
+        ("self.looks = 0\n\n    def execute", "self.looks = self.look()\n\n    def look(self):\n"
+         "        return userdata.part\n\n    def execute",
+         "userdata", "a state has no userdata before it runs: write `userdata.part` in `execute`"),
+        ("super().__init__(outcomes", "super.__init__(outcomes", "super", "write `super()`"),
+        ("return self.looks > 1", "return super.search()", "super", "write `super()`"),
         ("super().__init__(outcomes", "super().init(outcomes", "init", "did you mean `__init__`?"),
         ("super().__init__(outcomes", "super().__int__(outcomes", "__int__",
          "did you mean `__init__`?"),
@@ -262,6 +271,7 @@ def test_a_slip_in_the_class(old: str, new: str, name: str, help: str) -> None:
 @pytest.mark.parametrize(
     "body",
     [
+        "print(super, super.__name__, super.mro())",
         "x = self.search; print(x() or self.search is None)",
         "print(callable(self.search))",
         "if userdata.part is None or userdata.part is True: print()",
