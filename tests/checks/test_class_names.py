@@ -134,7 +134,18 @@ def test_outcomes_may_be_in_any_collection_but_a_string() -> None:
     assert (item.code, item.span.text) == ("SM609", '"found"')
 
 
-@pytest.mark.parametrize("value", ['"left"', "3.0", "[0.5, 0.0]", "f'{HEIGHT}'", "str(HEIGHT)"])
+@pytest.mark.parametrize(
+    "value",
+    [
+        '"left"',
+        "3.0",
+        "[0.5, 0.0]",
+        "f'{HEIGHT}'",
+        "str(HEIGHT)",
+        "'%.1f' % HEIGHT",
+        "'{:.1f}'.format(HEIGHT)",
+    ],
+)
 def test_literals_that_do_not_fit_the_interface(value: str) -> None:
     (item,) = report(f"userdata.part = {value}")
     assert (item.code, item.span.text) == ("SM304", value)
@@ -143,7 +154,17 @@ def test_literals_that_do_not_fit_the_interface(value: str) -> None:
 
 @pytest.mark.parametrize(
     "value",
-    ["[0.5, 0.0, 0.1]", "None", "arm.pose()", "HEIGHT", "[arm.x, 0.0]", "{1: 2}", "HEIGHT == 1"],
+    [
+        "[0.5, 0.0, 0.1]",
+        "None",
+        "arm.pose()",
+        "HEIGHT",
+        "[arm.x, 0.0]",
+        "{1: 2}",
+        "HEIGHT == 1",
+        "HEIGHT % 2",
+        "arm.format(1)",
+    ],
 )
 def test_values_that_fit_or_are_not_known(value: str) -> None:
     assert report(f"userdata.part = {value}") == []
