@@ -64,7 +64,7 @@ def _uncalled(
              for line in each.body for inner in ast.walk(line)}  # fmt: skip
     for each in every:
         if isinstance(each, ast.If | ast.While | ast.IfExp | ast.Assert):
-            for part in _operands(each.test):
+            for part in operands(each.test):
                 if isinstance(part, ast.Attribute) and _is_method(part, methods):
                     yield _without_call("not called", text, part)
         elif isinstance(each, ast.Assign):
@@ -95,14 +95,14 @@ def is_uncalled_super(node: ast.AST) -> bool:
     return False
 
 
-def _operands(test: ast.expr) -> Iterator[ast.expr]:
+def operands(test: ast.expr) -> Iterator[ast.expr]:
     """The parts of a condition whose truth it uses."""
     match test:
         case ast.BoolOp(values=values):
             for each in values:
-                yield from _operands(each)
+                yield from operands(each)
         case ast.UnaryOp(op=ast.Not(), operand=inner):
-            yield from _operands(inner)
+            yield from operands(inner)
         case ast.Compare(left=left, comparators=[ast.Constant(bool() | str() | int())]):
             yield left
         case _:

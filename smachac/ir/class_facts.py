@@ -70,6 +70,7 @@ FaultKind = Literal[
     "no argument",
     "no state class",
     "not called",
+    "function not called",
     "no effect",
     "no answer",
     "identity",

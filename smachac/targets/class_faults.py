@@ -139,6 +139,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`{word}` without `()` does not call the method",
         "write `{near}`",
     ),
+    "function not called": (
+        "`{word}` without `()` does not call the function",
+        "write `{near}`",
+    ),
     "no effect": (
         "the line `{word}` does nothing: without `()` a method is not called",
         "write `{near}`, or remove the line",
@@ -294,6 +298,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "skipped output",
         "parameter order",
         "not called",
+        "function not called",
         "no effect",
         "no answer",
         "identity",
@@ -324,6 +329,8 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no self parameter": "the call raises TypeError when it runs: the machine stops",
     "wrong import": "the code raises NameError when it runs: the machine stops",
     "not called": "the value is the method itself, which is true in every condition",
+    "function not called": "the value is the function itself: it is no number, and true in every"
+    " condition",
     "no effect": "",
     "no answer": "the request stays set: when the state runs again, it is stopped at once",
     "identity": "the comparison can be false for equal values",
@@ -395,6 +402,7 @@ WRITTEN = frozenset[FaultKind](
         "no result",
         "no state class",
         "not called",
+        "function not called",
         "no effect",
         "no answer",
         "identity",
