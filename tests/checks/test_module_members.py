@@ -108,7 +108,7 @@ def test_one_fault(old: str, new: str, place: str, help: str) -> None:
         ("hardware.scale()", "(hardware.scale or offset)()", HARDWARE),
         ("reading + hardware.LIMIT", "[hardware.scale, reading]", HARDWARE),
         ("hardware.ready()", "hardware.ready", HARDWARE.replace("def ready", "@cached\ndef ready")),
-        ("(self, userdata):", "(self, userdata):\n        hardware = self.box()", HARDWARE),
+        ("(self, userdata):", "(self, userdata):\n        hardware = make_box(1)", HARDWARE),
         ("hardware.scale()", "hardware.grams()", HARDWARE + "globals()['grams'] = scale\n"),
         ("hardware.scale()", "hardware.grams()", "from arm import *\n" + HARDWARE),
         ("hardware.scale()", "hardware.grams()", HARDWARE + "def __getattr__(name): return 1\n"),
@@ -118,6 +118,4 @@ def test_one_fault(old: str, new: str, place: str, help: str) -> None:
 )
 def test_code_that_is_right_or_cannot_be_judged(old: str, new: str, hardware: str) -> None:
     found = findings(old, new, hardware)
-    assert [
-        each for each in found if each[0] == "SM609" and each[1] not in ("self.box", "box")
-    ] == []
+    assert [each for each in found if each[0] == "SM609"] == []
