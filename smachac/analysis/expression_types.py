@@ -6,6 +6,7 @@ fits every type that three numbers can be written for.
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 
@@ -31,6 +32,7 @@ from smachac.analysis.type_lattice import (
     widened,
 )
 from smachac.diagnostics.source import assert_never
+from smachac.ir.code_places import python_tree
 from smachac.ir.expressions import (
     Attribute,
     Binary,
@@ -152,10 +154,16 @@ def type_of_call(expression: Expression, userdata: Names) -> Type:
     """The type of what a function of the script returns, over the types of the keys it reads."""
     tree = parsed(expression.text)
     if tree is None:
-        return ANY
+        return STR if _is_format(expression.text) else ANY
     body, parameters = body_of(tree)
     keys = mapping(userdata.items())
     return limited(type_of(body, dict.fromkeys(parameters, keys)))
+
+
+def _is_format(text: str) -> bool:
+    """Whether code is a function that returns an f-string, which `parsed` does not read."""
+    tree = python_tree(text) if "{" in text else None
+    return isinstance(tree, ast.Lambda) and isinstance(tree.body, ast.JoinedStr)
 
 
 def keys_read(expression: Expression) -> frozenset[str]:
@@ -278,7 +286,7 @@ def _binary(word: str, left: Type, right: Type) -> Type:
         case "+", "list" | "array", "list" | "array":
             both = [item_of(each) for each in (left, right) if each.args]
             return Type("list", (widened(joined(both)),)) if both else LIST
-        case ("*", "str", "int") | ("*", "int", "str"):
+        case ("*", "str", "int") | ("*", "int", "str") | ("%", "str", _):
             return STR
         case "*", "list" | "array", "int":
             return Type("list", (widened(inside(first)),))
@@ -297,6 +305,9 @@ def _arithmetic(word: str, one: Type, other: Type) -> Type:
 
 
 def _call(expr: Call, names: Names) -> Type:
+    match expr.function:
+        case Attribute(Constant(str()), "format" | "join"):
+            return STR
     text = dotted(expr.function)
     given = [type_of(argument, names) for argument in expr.arguments]
     if text is None or text.partition(".")[0] in names or text not in RESULTS:

@@ -19,6 +19,8 @@ from smachac.diagnostics.wording import listed
 from smachac.frontend.yaml_tree import Map, Seq, parse
 from smachac.ir import nodes
 from smachac.ir.class_facts import ClassFacts, Ending
+from smachac.ir.code_places import python_tree
+from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
 from smachac.ir.traversal import outcome_names
@@ -181,11 +183,11 @@ def _wrong_returns(
         does = "never returns" if facts.always_silent else "can end without returning"
         alone = _text_alone(facts, outcomes)
         yield Finding(
-            span=alone.span if alone else facts.execute,
+            span=facts.open_end.span if alone and facts.open_end else facts.execute,
             message=f"`execute` of `{leaf.type}` {does} an outcome",
             arguments=(leaf.type,),
-            help=f"write `return {alone.span.text}`"
-            if alone
+            help=f"write `return {' '.join(facts.open_end.span.text.split())}`"
+            if alone and facts.open_end
             else f"{_after_loop(facts)}end each path with a `return`; {known}{_hooks(facts)}",
             related=(*_open_end(facts), *_used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
@@ -208,13 +210,12 @@ def _in_the_class(facts: ClassFacts, field: Literal["input_keys", "output_keys"]
     return " and of `__init__`"
 
 
-def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> Word | None:
-    """The outcome that the last line of `execute` has without `return`."""
+def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> tuple[str, ...]:
+    """The outcomes that the last line of `execute` has without `return`: one, or a choice."""
     end = facts.open_end
-    if end is None or end.text != "text":
-        return None
-    outcome = end.span.text.strip("'\"")
-    return Word(outcome, end.span) if outcome in outcomes else None
+    tree = python_tree(end.span.text) if end is not None and end.text == "text" else None
+    found = texts_of(tree) if tree is not None else ()
+    return found if {*found} <= {*outcomes} else ()
 
 
 def _after_loop(facts: ClassFacts) -> str:
@@ -634,12 +635,13 @@ def never_returned(context: Context) -> Iterator[Finding]:
             continue
         returned = {word.text for word in facts.returns}
         alone = _text_alone(facts, outcome_names(leaf))  # SM309
-        if alone is not None:
-            returned.add(alone.text)
+        returned.update(alone)
         returned.update(name for each in facts.faults for name in each.outcomes)  # SM609
         names = [each.name for each in type_.outcomes]
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]
         wrong = returned.difference(names)  # SM309: probably one of the others was meant
+        guess = guesser(names)
+        returned.update(near for word in wrong if (near := _meant(leaf, word, guess)) == PREEMPTED)
         only_stops = type_.prints_itself or wrong
         for name in names:
             checked = name == PREEMPTED or not only_stops

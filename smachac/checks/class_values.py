@@ -295,7 +295,12 @@ def type_of_code(text: str) -> Type | None:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
     match node:
-        case ast.JoinedStr():
+        case (
+            ast.JoinedStr()
+            | ast.BinOp(left=ast.Constant(value=str()) | ast.JoinedStr(), op=ast.Mod())
+        ):
+            return STR
+        case ast.Call(func=ast.Attribute(value=ast.Constant(value=str()), attr="format" | "join")):
             return STR
         case ast.UnaryOp(op=ast.Not()):
             return BOOL

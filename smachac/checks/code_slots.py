@@ -255,18 +255,28 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
     for path, node, slot, facts in named_functions(context):
         if slot.arguments is not None and not facts.accepts(len(slot.arguments)):
             due, own = slot.arguments, len(facts.parameters)
-            names = ", ".join(map(_short, due))
             yield Finding(
                 span=facts.word.span,
                 message=f"`{facts.word.text}`, the function of {slot_owner(slot, node)}, has"
                 f" {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
                 f" argument{'s' * (len(due) != 1)}: {_names(due)}",
                 arguments=(slot.name, slot.code.text),
-                help=f"write `def {facts.word.text}({names}):`",
+                help=_definition_help(slot, facts, [*map(_short, due)]),
                 related=(*other_place(slot.code.span, "it is called here"),
                          *calls(node, slot.code.span)),
                 node=path,
             )  # fmt: skip
+
+
+def _definition_help(slot: CodeSlot, facts: FunctionFacts, due: list[str]) -> str:
+    """The help for a function of the user with wrong parameters: its correct head, or a value for
+    each parameter that its body needs and the state does not pass."""
+    more = facts.parameters[len(due) : facts.least]
+    if set(more).isdisjoint(facts.used):
+        return f"write `def {facts.word.text}({', '.join(due)}):`"
+    call = f"{slot.code.text}({', '.join([*due, *('...' for _ in more)])})"
+    default = "a default value" if len(more) == 1 else "default values"
+    return f"give {listed(more)} {default}, or write `lambda {', '.join(due)}: {call}`"
 
 
 def _head_help(node: Node, tree: ast.Lambda, due: tuple[str, ...]) -> str:

@@ -91,6 +91,26 @@ def undefined_names(
     return found
 
 
+def _before_execute(own: OwnClass) -> set[str]:
+    """The names of `__init__` and of the methods that it uses and `execute` does not."""
+    return _reached(own, "__init__") - _reached(own, "execute")
+
+
+def _reached(own: OwnClass, method: str) -> set[str]:
+    """The names of the methods of a class that one of them uses, and its own name."""
+    found, todo = set[str](), [method]
+    while todo:
+        name = todo.pop()
+        function = own.method(name)
+        if name in found or function is None:
+            continue
+        found.add(name)
+        todo += [each.attr for each in ast.walk(function[1])
+                 if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name)
+                 and each.value.id == "self"]  # fmt: skip
+    return found
+
+
 class _Near:
     """What was probably meant by a name that nothing defines where it is used."""
 
@@ -102,6 +122,7 @@ class _Near:
         self.outcomes = {*lists.get("outcomes", ())}
         self.inputs = {*lists.get("input_keys", ()), *lists.get("io_keys", ())}
         self.attributes = {*own.assigned(), *(name for names in own.names for name in names)}
+        self.early = _before_execute(own)
         constructor = own.method("__init__")
         self.given = _arguments(constructor[1]) if constructor is not None else set()
         self.kept = {
@@ -123,6 +144,8 @@ class _Near:
         if node in self.owners and node.id in USUAL_MODULES and not bound:
             return self._not_imported(node.id)
         if scope.method is not None and node.id in ("self", "userdata", "ud", self.userdata):
+            if scope.method.name in self.early and node.id != "self":
+                return self._early(node, word, scope.method.name)
             return self._no_parameter(word, scope.method, scope.nodes)
         runs = scope.method is not None and scope.method.name == "execute"
         if node.id in self.outcomes:
@@ -141,6 +164,15 @@ class _Near:
         if near is None:
             return ClassFault(kind="other scope", name=word) if bound else None
         return ClassFault(kind="undefined name", name=word, near=near)
+
+    def _early(self, node: ast.Name, word: Word, method: str) -> ClassFault:
+        """The fault of the userdata in a method that runs before the state."""
+        attributes = (each.attr for each in self.every
+                      if isinstance(each, ast.Attribute) and each.value is node)  # fmt: skip
+        key = next(attributes, None)
+        near = self.userdata or word.text
+        near = f"{near}.{key}" if key is not None else near
+        return ClassFault(kind="early userdata", name=word, near=near, more=method)
 
     def _no_parameter(
         self, word: Word, method: ast.FunctionDef | ast.AsyncFunctionDef, nodes: Sequence[ast.AST]

@@ -20,6 +20,7 @@ from smachac.frontend.class_names import (
     undefined_names,
 )
 from smachac.frontend.class_slips import (
+    is_uncalled_super,
     joined_texts,
     missing_comma,
     slips,
@@ -35,6 +36,7 @@ from smachac.frontend.class_values import (
 from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
 from smachac.frontend.lost_outcomes import lost_outcomes
+from smachac.frontend.module_members import module_slips
 from smachac.frontend.own_objects import missing_members
 from smachac.frontend.python_flow import Flow, Flows, is_plain
 from smachac.frontend.python_imports import missing_imports
@@ -221,6 +223,7 @@ def _undefined(
     yield from lost_results(own)
     yield from lost_outcomes(own, library)
     yield from missing_members(own, library)
+    yield from module_slips(own, library)
     yield from texts_as_lists(own)
 
 
@@ -363,6 +366,7 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
         )
         for each in ast.walk(owner)
     )
+    calls = calls or any(map(is_uncalled_super, ast.walk(owner)))  # "super not called"
     return [] if calls else [_without_call(own, *found)]
 
 

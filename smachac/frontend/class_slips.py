@@ -35,6 +35,8 @@ def slips(own: OwnClass) -> Iterator[ClassFault]:
         others = of_other_objects(node)
         every = [each for each in ast.walk(node) if each not in others]
         found = [*_uncalled(module.text, every, methods), *_compared(module.text, every)]
+        if "super" not in module.names:
+            found += _uncalled_super(module.text, every)
         yield from (each for each in found if not module.text.is_filled(each.name.span))
 
 
@@ -62,7 +64,7 @@ def _uncalled(
              for line in each.body for inner in ast.walk(line)}  # fmt: skip
     for each in every:
         if isinstance(each, ast.If | ast.While | ast.IfExp | ast.Assert):
-            for part in _operands(each.test):
+            for part in operands(each.test):
                 if isinstance(part, ast.Attribute) and _is_method(part, methods):
                     yield _without_call("not called", text, part)
         elif isinstance(each, ast.Assign):
@@ -77,14 +79,30 @@ def _uncalled(
                 yield _without_call("no answer" if answer else "no effect", text, value)
 
 
-def _operands(test: ast.expr) -> Iterator[ast.expr]:
+def _uncalled_super(text: PythonText, every: Iterable[ast.AST]) -> Iterator[ClassFault]:
+    """The calls of methods of `super` without `()`."""
+    for each in every:
+        match each:
+            case ast.Call(func=ast.Attribute(value=owner)) if is_uncalled_super(each):
+                yield ClassFault(kind="super not called", name=Word("super", text.span(owner)))
+
+
+def is_uncalled_super(node: ast.AST) -> bool:
+    """Whether code calls a method of the class `super` itself: `super.__init__()`."""
+    match node:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="super"), attr=name)):
+            return name == "__init__" or name not in {*dir(super), *dir(type)}
+    return False
+
+
+def operands(test: ast.expr) -> Iterator[ast.expr]:
     """The parts of a condition whose truth it uses."""
     match test:
         case ast.BoolOp(values=values):
             for each in values:
-                yield from _operands(each)
+                yield from operands(each)
         case ast.UnaryOp(op=ast.Not(), operand=inner):
-            yield from _operands(inner)
+            yield from operands(inner)
         case ast.Compare(left=left, comparators=[ast.Constant(bool() | str() | int())]):
             yield left
         case _:

@@ -13,6 +13,7 @@ from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_flow import is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, find_function
 from smachac.ir.class_facts import ClassFault
+from smachac.ir.code_slips import texts_of
 
 PREEMPTED = "preempted"
 
@@ -65,8 +66,11 @@ def _alone(
         if not isinstance(each, ast.Expr) or id(each) in ends or module.text.is_filled(span):
             continue
         match each.value:
-            case ast.Constant(value=str(word)) if word in outcomes and each is not execute.body[0]:
-                yield ClassFault(kind="lost text", name=Word(span.text, span), outcomes=(word,))
+            case ast.Constant() | ast.IfExp() as value if each is not execute.body[0]:
+                words = texts_of(value)
+                if words and {*words} <= {*outcomes}:
+                    word = Word(" ".join(span.text.split()), span)
+                    yield ClassFault(kind="lost text", name=word, outcomes=words)
             case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=name)):
                 names, whole, answers = _results(own, name)
                 if not names or not names <= {*outcomes}:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from smachac.frontend.python_modules import Names
+from smachac.ir.code_slips import texts_of
 
 _STOPS = ("abort", "assert_never", "exit", "_exit", "fail", "quit")
 """Functions that do not return, by their usual names: `sys.exit()`, `self.fail()`."""
@@ -83,7 +84,7 @@ class PathEnds:
                     return "except", handler
             case ast.For() | ast.While():
                 return "loop", last
-            case ast.Expr(value=ast.Constant(value=str())):
+            case ast.Expr(value=value) if texts_of(value):
                 return "text", last
         return "", last
 

@@ -151,6 +151,8 @@ class _Reader:
     def _open_end(self) -> Word | None:
         """The kind of place from which control gets to the end, and its first line."""
         kind, node = self.path_ends.open_end(self.function.body)
+        if kind == "text" and isinstance(node, ast.stmt):
+            return Word(kind, self.text.span(node))
         return self._first_line(kind, node) if kind else None
 
     def _in_loop(self) -> Word | None:

@@ -137,7 +137,7 @@ def _no_names(one: Import, file: str, library: Library) -> Iterator[ClassFault]:
     if all(word.text in words for word in one.names):
         return
     other = load_module(one.module, library)
-    if not isinstance(other, Module) or other.dynamic or _makes_names(other.text.tree):
+    if not isinstance(other, Module) or other.dynamic or makes_names(other.text.tree):
         return
     inside = library.code_names(file.rpartition("/")[0]) if other.package else ()
     known = {*other.names, *(each.partition(".")[0] for each in inside)}
@@ -164,6 +164,6 @@ def _no_module(name: str, place: Word, library: Library) -> Iterator[ClassFault]
     yield ClassFault(kind="no imported module", name=Word(name, place.span), near=near)
 
 
-def _makes_names(tree: ast.Module) -> bool:
+def makes_names(tree: ast.Module) -> bool:
     """Whether code of a module can define names in another way than by a statement at its top."""
     return any(isinstance(each, ast.Name) and each.id in MAKES_NAMES for each in ast.walk(tree))

@@ -202,7 +202,7 @@ def find_function(
                                if (each.asname or each.name) == name)  # fmt: skip
                     return _function_in(source_module(module, imported), own, library)
         case ast.Attribute(value=ast.Name() | ast.Attribute() as owner, attr=name):
-            imported_module = _module_name(module, ast.unparse(owner))
+            imported_module = module_name(module, ast.unparse(owner))
             return _function_in(imported_module, name, library) if imported_module else None
     return None
 
@@ -219,7 +219,7 @@ def _function_in(
     return None
 
 
-def _module_name(module: Module, written: str) -> str | None:
+def module_name(module: Module, written: str) -> str | None:
     """The dotted name of the imported module that is written so in a module: `tools` after
     `from cell import tools`."""
     head, _, rest = written.partition(".")

@@ -116,7 +116,16 @@ def _function(module: Module, function: ast.FunctionDef, library: Library) -> Fu
         texts=_texts(module, values),
         reads=flow.reads if flow is not None else (),
         writes=flow.writes if flow is not None else (),
+        used=_used(function),
     )
+
+
+def _used(function: ast.FunctionDef) -> tuple[str, ...]:
+    """The parameters of a function that its body reads."""
+    read = {each.id for line in function.body for each in ast.walk(line)
+            if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Load)}  # fmt: skip
+    given = [*function.args.posonlyargs, *function.args.args]
+    return tuple(each.arg for each in given if each.arg in read)
 
 
 def _texts(module: Module, values: Iterable[ast.Return]) -> tuple[Word, ...]:

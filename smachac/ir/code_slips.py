@@ -239,3 +239,15 @@ def _reason(text: str) -> str:
     except (ValueError, RecursionError, MemoryError):
         pass
     return "it is nested too deeply, or contains a character that is not allowed"
+
+
+def texts_of(node: ast.expr) -> tuple[str, ...]:
+    """The texts that an expression can be, if it is a text or a choice of texts; none of any
+    other."""
+    match node:
+        case ast.Constant(value=str(text)):
+            return (text,)
+        case ast.IfExp(body=one, orelse=other):
+            left, right = texts_of(one), texts_of(other)
+            return (*left, *right) if left and right else ()
+    return ()

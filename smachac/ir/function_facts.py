@@ -14,8 +14,8 @@ class FunctionFacts:
     `word` is its name at the definition. It accepts from `least` to `most` positional arguments;
     `most` is None if it accepts any number. `parameters` are the names of these. `silent`: no path
     returns a value. `texts` are the texts that it returns, at their places, if it returns nothing
-    but constant texts that are not empty. `reads` and `writes` are the userdata keys that it
-    accesses if its first argument is the userdata.
+    but constant texts that are not empty. `used` are the parameters that its body reads. `reads`
+    and `writes` are the userdata keys that it accesses if its first argument is the userdata.
     """
 
     word: Word
@@ -26,6 +26,7 @@ class FunctionFacts:
     texts: tuple[Word, ...] = ()
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
+    used: tuple[str, ...] = ()
 
     def accepts(self, count: int) -> bool:
         """Whether a call can pass that number of positional arguments."""

@@ -79,6 +79,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`{word}` is a parameter of `execute`, which this method cannot use",
         "write `{near}`, and pass `{word}` in `execute`",
     ),
+    "early userdata": (
+        "`{word}` is a parameter of `execute`, but `{more}` runs when the program makes the state",
+        "a state has no userdata before it runs: write `{near}` in `execute`",
+    ),
+    "super not called": (
+        "`super` without `()` is not the base class of `{name}`",
+        "write `super()`",
+    ),
     "no self parameter": (
         "the method `{word}` uses `self`, but has no parameter `self`",
         "write `{near}`",
@@ -129,6 +137,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "not called": (
         "`{word}` without `()` does not call the method",
+        "write `{near}`",
+    ),
+    "function not called": (
+        "`{word}` without `()` does not call the function",
         "write `{near}`",
     ),
     "no effect": (
@@ -286,6 +298,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "skipped output",
         "parameter order",
         "not called",
+        "function not called",
         "no effect",
         "no answer",
         "identity",
@@ -311,9 +324,13 @@ EFFECTS: Mapping[FaultKind, str] = {
     "other userdata": "the code raises NameError when it runs: the machine stops",
     "lost argument": "the code raises NameError when it runs: the machine stops",
     "lost userdata": "the code raises NameError when it runs: the machine stops",
+    "early userdata": "the code raises NameError when the program makes the state",
+    "super not called": "the call raises an error when it runs: the program stops",
     "no self parameter": "the call raises TypeError when it runs: the machine stops",
     "wrong import": "the code raises NameError when it runs: the machine stops",
     "not called": "the value is the method itself, which is true in every condition",
+    "function not called": "the value is the function itself: it is no number, and true in every"
+    " condition",
     "no effect": "",
     "no answer": "the request stays set: when the state runs again, it is stopped at once",
     "identity": "the comparison can be false for equal values",
@@ -376,6 +393,7 @@ WRITTEN = frozenset[FaultKind](
         "other class",
         "other userdata",
         "lost userdata",
+        "early userdata",
         "no self parameter",
         "wrong import",
         "no comma",
@@ -384,6 +402,7 @@ WRITTEN = frozenset[FaultKind](
         "no result",
         "no state class",
         "not called",
+        "function not called",
         "no effect",
         "no answer",
         "identity",

@@ -28,6 +28,7 @@ from smachac.frontend.library_names import (
     only_imported,
 )
 from smachac.frontend.loader import Library
+from smachac.frontend.python_modules import Module, load_module
 from smachac.ir.code_places import attribute_place, node_place, python_tree
 from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
@@ -41,6 +42,9 @@ _MAKES_NAMES = re.compile(r"import \*|[\"']\*[\"']|\w\{\{|\}\}\w")
 _BLOCK = re.compile(r"\{%[-+]?\s*(?:end)?block\b[^%]*%\}")
 _WORDS = re.compile(r"[^\W\d]\w*")
 _IMPORTED = re.compile(r"^[ \t]*from \S+ import (.+)$", re.M)
+_FROM = re.compile(
+    r"^[ \t]*from ([\w.]+) import \w+(?: as \w+)?(?:, *\w+(?: as \w+)?)*(?=[ \t]*$)", re.M
+)
 _DEFINED = re.compile(r"^[ \t]*(?:def|class|import|from \S+ import)\s+(\w+)|^[ \t]*(\w+) = ", re.M)
 
 
@@ -69,7 +73,8 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
             if use.name.id not in imported and not _lacks_parameter(use, types):
-                fix = _fix(use, imported) or _own_fix(use, machine, library)
+                fix = _import_fix(use, machine, library) or _fix(use, imported)
+                fix = fix or _own_fix(use, machine, library)
                 by_look = _by_look(use.node, use.code)
                 yield undefined_name(
                     use.span,
@@ -271,6 +276,22 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
         return NameFix(f"did you mean `{near if near in own else f'{own[0]}.{near}'}`?")
     near = guesser(FUNCTIONS)(word)
     return NameFix(f"did you mean `{near}`?") if near is not None else None
+
+
+def _import_fix(use: _Use, machine: Machine, library: Library) -> NameFix | None:
+    """The cure of a name that a module of the project defines from which a template of the user
+    imports other names."""
+    from smachac.targets.python.template_sources import template_sources
+
+    name = use.name.id
+    if name in (*USERDATA, "params") or name in {key.name for key in use.node.inputs}:
+        return None
+    for file, source in template_sources(machine, library):
+        for line in _FROM.finditer(source.text) if library.own_template(file) is not None else ():
+            module = load_module(line[1], library)
+            if isinstance(module, Module) and not module.dynamic and name in module.names:
+                return NameFix(f"write `{line[0].strip()}, {name}` in `{source.name}`")
+    return None
 
 
 def _own_fix(use: _Use, machine: Machine, library: Library) -> NameFix | None:

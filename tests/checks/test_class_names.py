@@ -134,7 +134,18 @@ def test_outcomes_may_be_in_any_collection_but_a_string() -> None:
     assert (item.code, item.span.text) == ("SM609", '"found"')
 
 
-@pytest.mark.parametrize("value", ['"left"', "3.0", "[0.5, 0.0]", "f'{HEIGHT}'", "str(HEIGHT)"])
+@pytest.mark.parametrize(
+    "value",
+    [
+        '"left"',
+        "3.0",
+        "[0.5, 0.0]",
+        "f'{HEIGHT}'",
+        "str(HEIGHT)",
+        "'%.1f' % HEIGHT",
+        "'{:.1f}'.format(HEIGHT)",
+    ],
+)
 def test_literals_that_do_not_fit_the_interface(value: str) -> None:
     (item,) = report(f"userdata.part = {value}")
     assert (item.code, item.span.text) == ("SM304", value)
@@ -143,7 +154,17 @@ def test_literals_that_do_not_fit_the_interface(value: str) -> None:
 
 @pytest.mark.parametrize(
     "value",
-    ["[0.5, 0.0, 0.1]", "None", "arm.pose()", "HEIGHT", "[arm.x, 0.0]", "{1: 2}", "HEIGHT == 1"],
+    [
+        "[0.5, 0.0, 0.1]",
+        "None",
+        "arm.pose()",
+        "HEIGHT",
+        "[arm.x, 0.0]",
+        "{1: 2}",
+        "HEIGHT == 1",
+        "HEIGHT % 2",
+        "arm.format(1)",
+    ],
 )
 def test_values_that_fit_or_are_not_known(value: str) -> None:
     assert report(f"userdata.part = {value}") == []
@@ -238,6 +259,15 @@ def analysed_text(body: str, old: str = "", new: str = "") -> list[Diagnostic]:
          "search", "write `def search(self):`"),
         ("self.looks > 1", "userdata.part", "userdata",
          "write `def search(self, userdata):`, and pass `userdata` in `execute`"),
+        ("self.looks = 0\n\n    def execute", "self.looks = userdata.part\n\n    def execute",
+         "userdata", "a state has no userdata before it runs: write `userdata.part` in `execute`"),
+        ("self.looks = 0\n\n    def execute", "self.looks = ud\n\n    def execute",
+         "ud", "a state has no userdata before it runs: write `userdata` in `execute`"),
+        ("self.looks = 0\n\n    def execute", "self.looks = self.look()\n\n    def look(self):\n"
+         "        return userdata.part\n\n    def execute",
+         "userdata", "a state has no userdata before it runs: write `userdata.part` in `execute`"),
+        ("super().__init__(outcomes", "super.__init__(outcomes", "super", "write `super()`"),
+        ("return self.looks > 1", "return super.search()", "super", "write `super()`"),
         ("super().__init__(outcomes", "super().init(outcomes", "init", "did you mean `__init__`?"),
         ("super().__init__(outcomes", "super().__int__(outcomes", "__int__",
          "did you mean `__init__`?"),
@@ -262,6 +292,7 @@ def test_a_slip_in_the_class(old: str, new: str, name: str, help: str) -> None:
 @pytest.mark.parametrize(
     "body",
     [
+        "print(super, super.__name__, super.mro())",
         "x = self.search; print(x() or self.search is None)",
         "print(callable(self.search))",
         "if userdata.part is None or userdata.part is True: print()",

@@ -69,6 +69,9 @@ def findings(rules: str, main: str = MAIN, base: str = BASE) -> list[tuple[str, 
          ("SM318", "bin/rules.py:5 is_sure", "end `is_sure` with `return ...`")),
         ("best_part(userdata)", "best_part(userdata, parts)",
          ("SM317", "bin/rules.py:1 best_part", "write `def best_part(ud):`")),
+        ("userdata, limit=0.3", "userdata, limit",
+         ("SM317", "bin/rules.py:5 is_sure", "give `limit` a default value, or write"
+          " `lambda ud: rules.is_sure(ud, ...)`")),
         ("is_sure(userdata, limit=0.3)", "is_sure()",
          ("SM317", "bin/rules.py:5 is_sure", "write `def is_sure(ud):`")),
         ("userdata.parts", "userdata.partz",
@@ -147,3 +150,50 @@ def test_a_callback_that_sets_the_key_of_its_own_result(body: str, found: list[s
     old = 'return max(userdata.parts, key=lambda part: part["score"])'
     helps = [help for code, _, help in findings(RULES.replace(old, body)) if code == "SM318"]
     assert helps == found
+
+
+def test_a_function_of_a_module_from_which_a_template_imports_others() -> None:
+    main = MAIN.replace("rules.is_sure", "is_sure")
+    assert findings(RULES, main) == [
+        ("SM019", "main.yml:16 is_sure",
+         "write `from bin.rules import best_part, is_sure` in `templates/BinBase.tpl.py`")
+    ]  # fmt: skip
+    ((code, _, help),) = findings(RULES.replace("def is_sure", "def is_good"), main)
+    assert (code, "`from MODULE import is_sure`" in help) == ("SM019", True)
+    base = BASE.replace("import best_part", "import best_part, is_sure")
+    assert findings(RULES, main, base) == []
+
+
+WEIGH = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {grams: 500.0}
+states:
+  - COMPUTE:
+      template: CallbacksState
+      input_keys: [grams]
+      output_keys: [mass]
+      callbacks: {mass: 'lambda ud: CODE'}
+      transitions: {succeeded: WEIGH}
+  - WEIGH: {template: Weigh, transitions: {weighed: done}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        ('"%.1f" % ud.grams', ["SM304"]),
+        ('"{:.1f}".format(ud.grams)', ["SM304"]),
+        ('f"{ud.grams:.1f}"', ["SM304"]),
+        ("ud.grams % 2.0", []),
+        ("ud.grams", []),
+    ],
+)
+def test_a_callback_that_formats_a_number(code: str, found: list[str]) -> None:
+    files = {
+        "main.yml": WEIGH.replace("CODE", code),
+        "templates/Weigh.yml": "input_keys: {mass: float}\noutcomes: {weighed: {}}\n",
+    }
+    report = analysed(files).report
+    assert [each.code for each in report if each.severity.value == "error"] == found
