@@ -201,13 +201,16 @@ def _longer_answer(
     if not isinstance(form, After) or any(each.subject != "path" for each in form.answer):
         return None
     nodes = context.routes.nodes
-    ends = tuple(f"/{each.name}" for each in form.answer)
+    ends = tuple(f"/{each.name}" for each in form.answer if each.outcome is None)
+    triggers = tuple(f"/{each.name}" for each in form.first)
     alike = [_work(node) for path, node in nodes.items()
              if isinstance(node, Leaf) and f"/{path}".endswith(ends)]  # fmt: skip
     for visit in example.visits:
         node = nodes.get(visit.path)
         if not isinstance(node, Leaf) or not node.variables or _work(node) not in alike:
             continue
+        if f"/{visit.path}".endswith(triggers):
+            continue  # the property would always hold
         atom = replace(form.answer[0], name=node.name, outcome=None)
         more = replace(form, answer=(*form.answer, atom))
         found = judge([replace(given, form=more)], context.machine.root, context.claims)

@@ -209,3 +209,34 @@ def test_the_transition_of_a_state_with_a_time_limit(wrong: str) -> None:
     (place,) = item.related
     assert place.message == "this transition leads to `HOME`, not to `STOP`"
     assert (item.help or "").startswith(f"write `{wrong}: STOP` in `LIFT`, or correct")
+
+
+UNLOCK = """
+name: courier
+template: Base
+outcomes: [delivered, stopped]
+properties:
+  - after: {UNLOCK: [LOCK, "courier:stopped", "UNLOCK:preempted"]}
+states:
+  - UNLOCK:
+      template: SleepState
+      time: 2.0
+      transitions: {succeeded: REPORT, preempted: BACK}
+  - LOCK:
+      template: SleepState
+      time: 1.0
+      transitions: {succeeded: REPORT, preempted: stopped}
+  - REPORT: {template: ScriptedState, outcomes: [done], transitions: {done: delivered}}
+  - BACK: {template: ScriptedState, outcomes: [done], transitions: {done: delivered}}
+"""
+
+
+def test_an_answer_with_outcomes_has_a_turn_and_the_event_is_no_answer_to_itself() -> None:
+    for text in (UNLOCK, UNLOCK.replace("time: 2.0", "time: 1.0")):
+        first, *_ = analysed({"main.yml": text}).report
+        assert first.code == "SM701"
+        assert (first.help or "").startswith("write `succeeded: LOCK` in `UNLOCK`, or correct the")
+    right = UNLOCK.replace(
+        "{succeeded: REPORT, preempted: BACK", "{succeeded: LOCK, preempted: BACK"
+    )
+    assert not [each for each in analysed({"main.yml": right}).report if each.code == "SM701"]
