@@ -12,6 +12,7 @@ from smachac.checks.messages import other_place
 from smachac.checks.property_turns import Turn, turn_of
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
+from smachac.diagnostics.negation import are_opposite
 from smachac.diagnostics.source import Span, Word, assert_never
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
@@ -464,9 +465,19 @@ def _name_fault(fault: NameFault, context: Context) -> Finding:
         arguments=("unknown", atom.subject, atom.name),
         help=_other_subject(atom, context)
         or did_you_mean(atom.name, fault.known)
+        or _by_words(atom, fault.known)
         or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
         edits=edits,
     )
+
+
+def _by_words(atom: Atom, known: Sequence[str]) -> str | None:
+    """The guess for the path of a state whose first words are the name of one state only."""
+    words = atom.name.split("_")
+    begins = ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
+    meant = [name for name in begins if name in known]
+    fits = atom.subject == "path" and meant and not are_opposite(atom.name, meant[0])
+    return f"did you mean `{meant[0]}`?" if fits else None
 
 
 def _other_subject(atom: Atom, context: Context) -> str | None:

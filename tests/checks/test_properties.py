@@ -240,3 +240,30 @@ def test_an_answer_with_outcomes_has_a_turn_and_the_event_is_no_answer_to_itself
         "{succeeded: REPORT, preempted: BACK", "{succeeded: LOCK, preempted: BACK"
     )
     assert not [each for each in analysed({"main.yml": right}).report if each.code == "SM701"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "help"),
+    [
+        ("30s", "write a number of states: `within: 3 states`"),
+        ("2 min", "write a number of states: `within: 3 states`"),
+        ("many", "write it like `3 states`"),
+        ("3 states", None),
+    ],
+)
+def test_a_time_as_the_limit_of_states(limit: str, help: str | None) -> None:
+    """The property is not checked without its limit: a finding about it would be a second one."""
+    text = TURN.replace("after: {LIFT: STOP}", f"whenever: {{CLOSE: LIFT, within: {limit}}}")
+    report = analysed({"main.yml": text}).report
+    found = [(each.code, each.help) for each in report if each.span.text == limit]
+    assert found == ([("SM004", help)] if help else [])
+    assert not [each for each in report if each.code == "SM701"]
+
+
+def test_the_guess_for_a_state_by_its_first_words() -> None:
+    for name, guess in (("LIFT_ARM", True), ("RAISE_ARM", False)):
+        text = TURN.replace("after: {LIFT: STOP}", f"before: {{HOME: {name}}}")
+        (help,) = [
+            each.help for each in analysed({"main.yml": text}).report if each.code == "SM703"
+        ]
+        assert ((help or "") == "did you mean `LIFT`?") == guess
