@@ -35,7 +35,7 @@ from smachac.checks.function_results import (
     silent_functions,
     slot_owner,
 )
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean, ends_of, other_place
 from smachac.checks.number_help import number_meant
 from smachac.checks.rule import rule
 from smachac.checks.types import written
@@ -546,7 +546,8 @@ def _outcome_fault(context: Context, node: Node, slot: CodeSlot, result: ast.exp
         return None
     guess = guesser(names)(result.value) if isinstance(result.value, str) else None
     what = f"`{result.value!r}`, which is not an outcome of `{node.name}`"
-    return Fault(what, did_you_mean(guess) or help, True, OUTCOME_EFFECT)
+    help = did_you_mean(guess) or ends_of(node) or help
+    return Fault(what, help, True, OUTCOME_EFFECT)
 
 
 def _field_type(context: Context, leaf: Leaf, slot: CodeSlot, result: ast.expr) -> str:

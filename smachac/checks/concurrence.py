@@ -15,7 +15,7 @@ from smachac.analysis.outcome_rules import (
     without_other,
 )
 from smachac.analysis.possible_outcomes import Judged
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean, ends_of, other_place
 from smachac.checks.outcomes import inverted_rules
 from smachac.checks.rule import rule
 from smachac.checks.timeouts import missing_joins
@@ -194,7 +194,7 @@ def _example(container: Concurrence) -> str:
 def _other_outcome(child: Node, outcome: str) -> str:
     names = outcome_names(child)
     known = f"use one of its outcomes: {listed(names)}" if names else "it has no outcomes"
-    return did_you_mean(guesser(names)(outcome)) or known
+    return did_you_mean(guesser(names)(outcome)) or ends_of(child) or known
 
 
 def _shadowed_rules(each: Judged) -> Iterator[Finding]:

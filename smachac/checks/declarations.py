@@ -102,6 +102,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
             continue
         read = context.of_container(_used_in, scope.path, scope)
         yield from loops_over_names_of_lists(scope, read)
+        misplaced = _misplaced_keys(container)
         untyped = any(map(lacks_type_key, container.children))
         types = (TYPE_KEY, type_key_meant(container)) if untyped else ()
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
@@ -115,6 +116,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 continue  # SM302
             if key in types:
                 continue  # SM515
+            if key.rpartition("_")[2] in misplaced or key in misplaced:
+                continue  # SM003 is about the same value
             # The userdata of the machine can be read after the run.
             loop = loop_over_the_word(container, key)
             if loop is not None:
@@ -175,6 +178,12 @@ def _swapped_lists(context: Context) -> set[tuple[str, str]]:
     """The lists of loops whose items and item have changed places, with their containers."""
     loops = [(each, swapped_loop(each)) for each in context.missing_keys("nowhere", "remapped")]
     return {(each.scope.path, loop.item_key) for each, loop in loops if loop is not None}
+
+
+def _misplaced_keys(container: Container) -> set[str]:
+    """The input keys that states of a container have as variables (SM003)."""
+    leaves = [child for child in container.children if isinstance(child, Leaf)]
+    return {key for leaf in leaves for key in leaf.misplaced_keys}
 
 
 def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:

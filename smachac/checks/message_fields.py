@@ -17,10 +17,11 @@ from smachac.analysis.message_code import (
     leaf_definitions,
 )
 from smachac.analysis.type_lattice import fits, present
-from smachac.checks.message_values import value_faults
+from smachac.checks.message_values import an_example, in_field_order, value_faults, value_help
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.robot import at
 from smachac.checks.rule import rule
+from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -384,7 +385,7 @@ def _wrong_messages(
             if flow.how != "value" or not isinstance(flow.value, Struct):
                 continue
             faults = [list(value_faults(flow.value, each, found)) for each in messages]
-            for steps, message, wanted in faults[0] if all(faults) else ():
+            for steps, message, wanted, value in faults[0] if all(faults) else ():
                 fields = sorted(each.name for each in message.fields)
                 text = f"{_described(message)} has no field `{steps[-1]}`"
                 help = did_you_mean(guesser(fields)(steps[-1]))
@@ -393,7 +394,7 @@ def _wrong_messages(
                 if wanted is not None:
                     text = f"the value of `{steps[-1]}` does not fit: the field of"
                     text += f" {_described(message)} is `{wanted}`"
-                    help = f"write a value of the type `{wanted}`{_example(wanted)}"
+                    help = value_help(value, wanted)
                 yield at(
                     flow,
                     text,
@@ -451,7 +452,7 @@ def _wrong_comparisons(
             span=node_place(slot.code, node),
             message=f"`{what}` is `{fields[0]}`: it never equals `{value!r}`",
             arguments=(what, repr(value)),
-            help=f"compare it with a value of the type `{fields[0]}`{_example(fields[0])}",
+            help=f"compare it with a value of the type `{fields[0]}`{an_example(fields[0])}",
             effect="the condition always has the same result, or the function fails",
             related=calls(leaf, slot.code.span),
             node=path,
@@ -491,25 +492,24 @@ def _wrong_values(
         return
     faults = [list(value_faults(data, each, found)) for each in messages]
     effect = f"the program stops when it makes the state: the {held.role} is never sent"
-    for names, message, wanted in faults[0] if all(faults) else ():
+    order = in_field_order(data, messages[0]) if faults and all(faults) else None
+    if order is not None:
+        fields = ", ".join(f"`{each.name}`" for each in messages[0].fields)
+        text = f"a list gives the fields in their order ({fields}), but these values do not fit it"
+        yield _finding(path, leaf, Word("", span), text, f"write `{order}`", messages, effect)
+        return
+    for names, message, wanted, value in faults[0] if all(faults) else ():
         if wanted is None:
             word = _field_word(names, span)
             yield _unknown_field(path, leaf, word, (message,), effect=effect)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {_described(message)} is"
-        word = Word(names[-1], _value_span(_field_word(names, span).span, span))
-        help = f"write a value of the type `{wanted}`"
-        help += _example(wanted)
+        place = _value_span(_field_word(names, span).span, span)
+        if isinstance(data, tuple) and len(names) == 1:
+            numbers = [number for number, each in enumerate(message.fields) if each.name in names]
+            place = place_of_part(span, numbers)
+        word, help = Word(names[-1], place), value_help(value, wanted)
         yield _finding(path, leaf, word, f"{text} `{wanted}`", help, (message,), effect)
-
-
-EXAMPLES: Mapping[str, str] = {
-    **dict.fromkeys(INTEGERS, "3"),
-    **dict.fromkeys(FLOATS, "1.5"),
-    **dict.fromkeys(TEXTS, "text"),
-    "bool": "true",
-}
-"""A value of each primitive type, as a script writes it."""
 
 
 def _unknown_field(
@@ -601,14 +601,18 @@ def _finding(
     messages: Sequence[Message],
     effect: str | None = None,
 ) -> Finding:
+    label = "its fields are defined here"
     places = [each.fields[0].span for each in messages if each.fields][:1]
+    field = messages[0].field(word.text)
+    if field is not None:
+        label, places = f"`{word.text}` is defined here", [field.span]
     return Finding(
         span=word.span,
         message=message,
         arguments=(messages[0].name, word.text),
         help=help,
         related=(
-            *(each for span in places for each in other_place(span, "its fields are defined here")),
+            *(each for span in places for each in other_place(span, label)),
             *calls(leaf, word.span),
         ),
         node=path,
@@ -661,10 +665,3 @@ def _word(name: str, span: Span, after: str = "") -> Word:
     if found is None:
         return Word(name, span)
     return Word(name, Span(span.source, span.start + found.start(), span.start + found.end()))
-
-
-def _example(wanted: FieldType) -> str:
-    """A value of a primitive type, as the end of a help line; empty for a message or a list."""
-    if wanted.array or wanted.name not in EXAMPLES:
-        return ""
-    return f", such as `{EXAMPLES[wanted.name]}`"

@@ -2,15 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
+from itertools import islice, permutations
 from typing import NamedTuple
 
 from smachac.analysis.message_code import nested_messages
+from smachac.diagnostics.spelling import in_quotes, is_plain
 from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
 from smachac.ir.nodes import Data, Expression, Struct, is_number
 
 BYTES = frozenset(["uint8", "byte", "char"])
 """The types of numbers whose lists can be written as text."""
+
+
+EXAMPLES: Mapping[str, str] = {
+    **dict.fromkeys(INTEGERS, "3"),
+    **dict.fromkeys(FLOATS, "1.5"),
+    **dict.fromkeys(TEXTS, "text"),
+    "bool": "true",
+}
+"""A value of each primitive type, as a script writes it."""
+
+UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "sec": 1.0, "min": 60.0, "h": 3600.0}
+"""The seconds of each unit of time."""
+
+MOST_ORDERED = 5
+"""Limit on the values of a list whose other orders are tried."""
+
+_TIME = re.compile(r"(\d{1,9}(?:\.\d{1,9})?)\s*([a-z]+)")
+_SECONDS = ("/Time", "/Duration")
 
 
 class ValueFault(NamedTuple):
@@ -22,6 +43,7 @@ class ValueFault(NamedTuple):
     names: tuple[str, ...]
     message: Message
     wanted: FieldType | None
+    value: Data = None
 
 
 def value_faults(
@@ -39,7 +61,7 @@ def value_faults(
         if known is None:
             yield ValueFault((*names, name), message, None)
         elif not _fits(item, known.type):
-            yield ValueFault((*names, name), message, known.type)
+            yield ValueFault((*names, name), message, known.type, item)
         else:
             yield from _nested_faults(item, known.type, found, (*names, name))
 
@@ -86,7 +108,7 @@ def _fits_item(data: Data, name: str) -> bool:
         return is_number(data)
     if name in TEXTS:
         return isinstance(data, str)
-    if "/" not in name or name.endswith(("/Time", "/Duration")):
+    if "/" not in name or name.endswith(_SECONDS):
         return not isinstance(data, bool | str)
     return isinstance(data, Struct | tuple)
 
@@ -97,3 +119,51 @@ def _bounds(name: str) -> tuple[int, int]:
         return -128, 255
     bits = int(name.lstrip("uint"))
     return (0, 2**bits - 1) if name.startswith("u") else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+
+
+def value_help(value: Data, wanted: FieldType) -> str:
+    """The help for a value that does not fit a field."""
+    if wanted.name in ("time", "duration") or wanted.name.endswith(_SECONDS):
+        found = _TIME.fullmatch(value) if isinstance(value, str) and not wanted.array else None
+        if found is not None and found[2] in UNITS:
+            seconds = f"{float(found[1]) * UNITS[found[2]]:g}"
+            return f"write the seconds as a number: `{seconds}`"
+    item = FieldType(name=wanted.name)
+    if wanted.array and wanted.size in (None, 1) and value is not None and _fits(value, item):
+        text = written(value)
+        if text:
+            return f"write a list: `[{text}]`"
+    return f"write a value of the type `{wanted}`{an_example(wanted)}"
+
+
+def an_example(wanted: FieldType) -> str:
+    """A value of a primitive type, as the end of a help line; empty for a message or a list."""
+    if wanted.array or wanted.name not in EXAMPLES:
+        return ""
+    return f", such as `{EXAMPLES[wanted.name]}`"
+
+
+def written(value: Data) -> str:
+    """A text, a number or a truth value as a list of a script has it; empty for other values."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return value if is_plain(value) else in_quotes(value)
+    return repr(value) if is_number(value) else ""
+
+
+def in_field_order(data: Data, message: Message) -> str | None:
+    """A list of the values of all fields in the only order in which they fit; None if there are
+    several, or none."""
+    if not isinstance(data, tuple) or not 2 <= len(data) <= MOST_ORDERED:
+        return None
+    if len(data) != len(message.fields) or not all(written(each) for each in data):
+        return None
+    types = [each.type for each in message.fields]
+    fitting = (
+        order
+        for order in permutations(data)
+        if all(_fits(item, type_) for item, type_ in zip(order, types, strict=True))
+    )
+    found = list(islice(fitting, 2))
+    return f"[{', '.join(written(each) for each in found[0])}]" if len(found) == 1 else None

@@ -18,7 +18,7 @@ from smachac.analysis.control_flow import (
 )
 from smachac.checks.declarations import meant_keys
 from smachac.checks.expressions import unknown_endings
-from smachac.checks.messages import calls, did_you_mean, other_place, own_name
+from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
@@ -318,7 +318,7 @@ def _known_outcomes(child: Node) -> str:
     names = outcome_names(child)
     if not names:
         return f"remove the transition: `{child.name}` has no outcomes"
-    return f"use one of its outcomes: {listed(names)}"
+    return ends_of(child) or f"use one of its outcomes: {listed(names)}"
 
 
 def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:

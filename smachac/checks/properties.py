@@ -12,6 +12,7 @@ from smachac.checks.messages import other_place
 from smachac.checks.property_turns import Turn, turn_of
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
+from smachac.diagnostics.negation import are_opposite
 from smachac.diagnostics.source import Span, Word, assert_never
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
@@ -201,13 +202,16 @@ def _longer_answer(
     if not isinstance(form, After) or any(each.subject != "path" for each in form.answer):
         return None
     nodes = context.routes.nodes
-    ends = tuple(f"/{each.name}" for each in form.answer)
+    ends = tuple(f"/{each.name}" for each in form.answer if each.outcome is None)
+    triggers = tuple(f"/{each.name}" for each in form.first)
     alike = [_work(node) for path, node in nodes.items()
              if isinstance(node, Leaf) and f"/{path}".endswith(ends)]  # fmt: skip
     for visit in example.visits:
         node = nodes.get(visit.path)
         if not isinstance(node, Leaf) or not node.variables or _work(node) not in alike:
             continue
+        if f"/{visit.path}".endswith(triggers):
+            continue  # the property would always hold
         atom = replace(form.answer[0], name=node.name, outcome=None)
         more = replace(form, answer=(*form.answer, atom))
         found = judge([replace(given, form=more)], context.machine.root, context.claims)
@@ -461,9 +465,19 @@ def _name_fault(fault: NameFault, context: Context) -> Finding:
         arguments=("unknown", atom.subject, atom.name),
         help=_other_subject(atom, context)
         or did_you_mean(atom.name, fault.known)
+        or _by_words(atom, fault.known)
         or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
         edits=edits,
     )
+
+
+def _by_words(atom: Atom, known: Sequence[str]) -> str | None:
+    """The guess for the path of a state whose first words are the name of one state only."""
+    words = atom.name.split("_")
+    begins = ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
+    meant = [name for name in begins if name in known]
+    fits = atom.subject == "path" and meant and not are_opposite(atom.name, meant[0])
+    return f"did you mean `{meant[0]}`?" if fits else None
 
 
 def _other_subject(atom: Atom, context: Context) -> str | None:

@@ -6,7 +6,7 @@ and stop requests lead where they lead in a run.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import takewhile
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -110,13 +110,14 @@ def _required(container: Node, answer: Atoms) -> _Required:
                 inside.setdefault(node.name, child)
     found = [beside.get(name) or inside.get(name) for name in names]
     states = tuple(node for node in found if node is not None)
-    if not states or len(states) < len(answer):
+    ends = _ends(container, children, answer)
+    if not states or ends is None or len(states) < len(names):
         return _Required((), frozenset())
     sources: dict[str, list[str]] = {}
     for child in children:
         for step in child.transitions:
             sources.setdefault(step.target, []).append(child.name)
-    leading = {node.name for node in states}
+    leading = {node.name for node in states} | ends
     todo = list(leading)
     while todo:
         before = set(sources.get(todo.pop(), ())) - leading
@@ -124,3 +125,21 @@ def _required(container: Node, answer: Atoms) -> _Required:
         todo += before
     unled = tuple(node for node in states if node.name not in sources)
     return _Required(unled or states, frozenset(leading))
+
+
+def _ends(container: Node, children: Sequence[Node], answer: Atoms) -> set[str] | None:
+    """The names in a container at which an answer with an outcome may come: its states and its own
+    outcomes. None if an answer may come elsewhere."""
+    found: set[str] = set()
+    for each in answer:
+        if each.subject != "path":
+            return None
+        if each.outcome is None:
+            continue
+        if each.name == container.name:
+            found.add(each.outcome)
+        elif any(each.name == child.name for child in children):
+            found.add(each.name)
+        else:
+            return None
+    return found

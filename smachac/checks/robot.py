@@ -345,7 +345,7 @@ def unit_mismatch(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
     """
-    yield from clash_findings(context.clashes["unit"])
+    yield from clash_findings(context.clashes["unit"], context.machine.aliases)
     yield from mixed_units(context)
 
 

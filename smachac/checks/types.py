@@ -286,6 +286,7 @@ def _finding(group: list[Clash], aliases: Mapping[str, str], *, at_origin: bool)
     if lacking and at_origin and owner in aliases:
         message = f"{lacking}, which its type `{owner}` requires"
     special = _wrong_rotation(clash, aliases) or _wrong_part(clash, aliases) if at_origin else ""
+    special = special or _unit_in_record(clash, aliases)
     return Finding(
         span=span,
         message=special or message,
@@ -382,6 +383,8 @@ def written(flow: TypeFlow) -> str:
     what = in_words(flow.type)
     if flow.how == "value" and isinstance(flow.value, bool | float):
         return f"`{cell.key}` is `{json.dumps(flow.value)}`"
+    if flow.how == "computed" and isinstance(cell.node, nodes.Iterator):
+        return f"{_owner(cell)} provides `{cell.key}` as {what}"
     if flow.how == "computed":
         return f"{_owner(cell)} computes `{cell.key}` as {what}"
     return f"`{cell.key}` is {what}"
@@ -411,6 +414,27 @@ def _wrong_rotation(clash: Clash, aliases: Mapping[str, str]) -> str:
     key, numbers = clash.flow.origin.cell.key, f"{count} number{'s' if count != 1 else ''}"
     needs = f"a `{whole.name}` needs 4 (a quaternion)"
     return f"the rotation in `{key}` has {numbers}, but {needs}: {_read(clash.cell, aliases)}"
+
+
+def _unit_in_record(clash: Clash, aliases: Mapping[str, str]) -> str:
+    """The message on the only field of a record whose number has another unit than that of the
+    reader; empty for other clashes."""
+    given, wanted = present(clash.flow.type), present(clash.cell.declared)
+    if clash.misfit.kind != "unit" or (given.name, wanted.name) != ("record", "record"):
+        return ""
+    theirs = fields(wanted)
+    found = [name for name, type_ in fields(given).items()
+             if name in theirs and misfit(type_, theirs[name]) is not None]  # fmt: skip
+    if len(found) != 1:
+        return ""
+    (name,) = found
+    if present(fields(given)[name]) != present(clash.misfit.given):
+        return ""
+    units = unit_of(clash.misfit.given), unit_of(clash.misfit.wanted)
+    owner = named(given, aliases)
+    where = f" in the type `{owner}`" if owner in aliases else ""
+    reader = f"{_owner(clash.cell)} reads it in `{units[1]}`"
+    return f"`{name}` of `{clash.cell.key}` is in `{units[0]}`{where}, but {reader}"
 
 
 def _wrong_part(clash: Clash, aliases: Mapping[str, str]) -> str:

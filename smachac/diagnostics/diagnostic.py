@@ -16,7 +16,7 @@ from functools import lru_cache
 from pathlib import PurePath
 from typing import Generic, ParamSpec
 
-from smachac.diagnostics.negation import are_opposite
+from smachac.diagnostics.negation import are_unlike
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
 
@@ -297,6 +297,6 @@ def _nearest(word: str, names: tuple[str, ...]) -> str | None:
     nearest = [name for name in names if name.casefold() == folded and name != word]
     if not nearest and len(names) <= MOST_CANDIDATES and len(word) <= LONGEST_WORD:
         nearest = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
-    if not nearest or are_opposite(word, nearest[0]):
+    if not nearest or are_unlike(word, nearest[0]):
         return None
     return f"did you mean `{nearest[0]}`?"

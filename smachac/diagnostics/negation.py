@@ -17,10 +17,25 @@ SHORTEST_REST = 4
 NEAR = 0.8
 """A rest as similar as this to a word is that word, misspelt."""
 
+STOPPED = "preempted"
+"""The outcome after a stop request: a word that is only a little similar to it, as `rejected`, does
+not mean it."""
+
+NEAR_STOPPED = 0.8
+"""A word as similar as this to STOPPED is that word, misspelt."""
+
 SLIP = 0.6
 """A negation as similar as this to a word of the other name can be a misspelling of it."""
 
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+
+
+def are_unlike(one: str, name: str) -> bool:
+    """Whether a similar name has another meaning than a word, so that it is no guess."""
+    likeness = difflib.SequenceMatcher(None, one.casefold(), name) if name == STOPPED else None
+    if likeness is not None and likeness.ratio() < NEAR_STOPPED:
+        return True
+    return are_opposite(one, name)
 
 
 def are_opposite(one: str, other: str) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 
 from smachac.diagnostics.diagnostic import Edit
-from smachac.diagnostics.negation import are_opposite
+from smachac.diagnostics.negation import are_opposite, are_unlike
 from smachac.diagnostics.source import Word
 
 MOST_COMPARED = 40
@@ -43,12 +43,12 @@ class Guesser:
         self._shared: set[str] = set()
 
     def __call__(self, word: str) -> str | None:
-        """The nearest name, or None. The opposite of the word is no guess."""
+        """The nearest name, or None. A name with another meaning is no guess."""
         index = self._slips()
         nearest = next((index[slip] for slip in slips(word) if slip in index), None)
         if nearest is None and len(self.names) <= MOST_COMPARED and len(word) <= LONGEST_SLIP:
             nearest = next(iter(difflib.get_close_matches(word, self.names, n=1)), None)
-        return None if nearest is None or are_opposite(word, nearest) else nearest
+        return None if nearest is None or are_unlike(word, nearest) else nearest
 
     def sure(self, word: str) -> str | None:
         """The only candidate that is one slip away and has the same digits, or None."""

@@ -203,6 +203,7 @@ def _leaf(state: State) -> Leaf:
         built_in=type_.built_in,
         stand_in=type_.stand_in,
         adds_frames=type_.adds_frames,
+        misplaced_keys=state.misplaced_keys,
     )
     for known in type_.variables.values():
         if known.role == "conditions":

@@ -6,6 +6,7 @@ They may be at any depth of a value. A quoted word is data: `['params', x]` is a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
@@ -24,6 +25,9 @@ from smachac.frontend.yaml_tree import (
     known_wrong,
 )
 from smachac.ir.nodes import FixedParam, Param, StateType
+
+SERVER_NAMES = frozenset(["service_namespace", "action_server_namespace"])
+"""Variables of built-in types that are texts, without a type: code may compute them."""
 
 Scope = Mapping[str, Tree]
 """The params in scope of a state."""
@@ -95,6 +99,57 @@ def look_up_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
             report.append(wrong_shape(word.span, message, help, arguments=arguments, edits=edits))
             return scope[name]
     return None
+
+
+def texts_meant(
+    own: Mapping[str, Entry], scope: Scope, type_: StateType, report: Report
+) -> dict[str, Entry]:
+    """The variables of a state type that are texts, but have lists in which a look-up is meant,
+    with their texts."""
+    found: dict[str, Entry] = {}
+    for key, entry in own.items() if scope else ():
+        held = type_.variables.get(key) if isinstance(entry.value, Seq) else None
+        if held is None or not (held.type.name == "str" or key in SERVER_NAMES):
+            continue
+        text = _text_meant(entry.value, scope, report)
+        if text is not None:
+            found[key] = Entry(entry.key, text)
+    return found
+
+
+def _text_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
+    """The text of `[[x], /a]` as the value of a text, where the look-up `[params, x]` of a param in
+    scope is meant, which is reported; None for other trees."""
+    if not isinstance(tree, Seq) or len(tree.items) < 2:
+        return None
+    items = tuple(_with_word(each, scope) for each in tree.items)
+    if all(new is old for new, old in zip(items, tree.items, strict=True)):
+        return None
+    if not all(isinstance(each, Scalar) or look_up_word(each) is not None for each in items):
+        return None
+    text = fill_in(Seq(items, tree.span), scope, [])
+    if not isinstance(text, Scalar) or is_known_wrong(text):
+        return None
+    shown = ", ".join(
+        each.span.text if new is each else f"[params, {each.span.text[1:-1].strip()}]"
+        for each, new in zip(tree.items, items, strict=True)
+    )
+    if "\n" in tree.span.text or not tree.span.text.startswith("["):
+        shown = "..."
+    message = f"`{tree.span.text}` is a list, not a text: it has no look-up"
+    help = f"write `[{shown}]`" if shown != "..." else "write `[params, NAME]` for the param"
+    report.append(wrong_shape(tree.span, message, help, arguments=("text",)))
+    return text
+
+
+def _with_word(tree: Tree, scope: Scope) -> Tree:
+    """The look-up `[params, x]` in place of the list `[x]` of the name of a param that is a text or
+    a number."""
+    match tree:
+        case Seq(items=(Scalar(value=str(name), plain=True) as word,)):
+            if isinstance(scope.get(name), Scalar):
+                return Seq((replace(word, value="params"), word), tree.span)
+    return tree
 
 
 def look_ups(tree: Tree) -> Iterator[Word]:

@@ -53,6 +53,9 @@ EXAMPLES: Mapping[str, str] = {
 MOST_TIMES = 1_000
 """Limit on the numbers of a property: its automaton has a state for each."""
 
+_TIME = re.compile(r"[0-9.]{1,9}[ \t]*(ms|s|secs?|seconds?|min|minutes?|h|hours?)")
+"""A time with its unit."""
+
 _WITHIN = re.compile(r"([0-9]{1,9})(?:[ \t]+states?)?")
 
 
@@ -233,9 +236,10 @@ class _Reader:
         entries = self.entries(tree, "whenever")
         limits = {str(each.key.value): each.value for each in entries}
         pairs = [each for each in entries if each.key.value not in ("within", "before_claim")]
-        within, claims = 0, cast(Atoms, ())
+        within, claims, wrong = 0, cast(Atoms, ()), False
         if "within" in limits:
-            within = self.number(limits["within"], "within", "`3 states`")
+            within = self.within(limits["within"])
+            wrong = not within
         if "before_claim" in limits:
             claims = tuple(
                 Atom(subject="claim", name=str(each.value), span=each.span)
@@ -245,6 +249,8 @@ class _Reader:
             help = f"write it like {EXAMPLES['whenever']}"
             self.fault(tree, "`whenever` needs an event and its answer", help, "whenever")
         for first, answer in self.pairs(tuple(pairs)):
+            if wrong:
+                continue  # without its limit it would be another property
             yield After(first=first, answer=answer, within=within, before_claim=claims)
 
     def at_most(self, tree: Tree) -> Iterator[Form]:
@@ -260,6 +266,15 @@ class _Reader:
             yield AlwaysEnds()
         else:
             self.fault(tree, "`always_ends` has no parts", "write `- always_ends`", "always_ends")
+
+    def within(self, tree: Tree) -> int:
+        """The limit of a `whenever`; 0 for anything else, which is reported."""
+        text = str(tree.value) if isinstance(tree, Scalar) else ""
+        if _TIME.fullmatch(text):
+            message = f"`within: {text}` is a time, but `within` counts states that are entered"
+            self.fault(tree, message, "write a number of states: `within: 3 states`", "within")
+            return 0
+        return self.number(tree, "within", "`3 states`")
 
     def number(self, tree: Tree, form: str, example: str, zero: str = "") -> int:
         """A number of at least 1; 0 for anything else, which is reported. `zero`: the help for

@@ -48,6 +48,7 @@ from smachac.frontend.params import (
     look_up_word,
     params_of,
     size_up_to,
+    texts_meant,
 )
 from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
@@ -264,6 +265,7 @@ class _Resolver:
         type_, owner = self.type_of(name, entries, role, around)
         entries = with_outer_variables(name, entries, type_, self.report)
         entries |= self.lists(own, scope, type_)
+        entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_)
         self.uses.type(type_)
         if scope:

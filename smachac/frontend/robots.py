@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import PurePath
-from typing import Literal, TypeAlias, TypeVar
+from typing import Any, Literal, TypeAlias, TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import NOWHERE, Source, Span, Word
@@ -15,7 +15,7 @@ from smachac.frontend.data_files import plain, span_at
 from smachac.frontend.errors.references import bad_robot, package_help
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
-from smachac.frontend.urdf import XACRO, UrdfError, read_joints, read_urdf
+from smachac.frontend.urdf import XACRO, UrdfError, joints_to, read_joints, read_urdf
 from smachac.frontend.yaml_tree import Tree
 from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
@@ -218,7 +218,7 @@ class _Reader:
     def described(self, word: Word, source: Source, *, part: bool = False) -> Robot | None:
         """The robot of a description, whose joints have the limits of its URDF file. `part`: it is
         one of several robots, and has no parts of its own."""
-        found = self.data(word, source, description.read, "robot")
+        found = self.data(word, source, lambda data: self.description(data, source), "robot")
         if found is None:
             return None
         data, tree = found
@@ -250,6 +250,33 @@ class _Reader:
             description=word.text,
             frames=frames,
         )
+
+    def description(self, data: Any, source: Source) -> Description | Station:
+        """A description of its data. Raises DataError."""
+        try:
+            return description.read(data)
+        except DataError as error:
+            if error.place[:1] != ("arms",) or error.place[2:] != ("home",) or error.help:
+                raise
+            help = self.missing_joint(data, data["arms"][error.place[1]], source)
+            raise DataError(error.message, error.place, help, key=error.key) from None
+
+    def missing_joint(self, data: Any, limb: Any, source: Source) -> str | None:
+        """The help for an arm that has an angle for the only joint of its tool that it lacks."""
+        urdf, tool = data.get("urdf"), limb.get("tool")
+        link = tool.get("link") if isinstance(tool, dict) else tool
+        if not isinstance(urdf, str) or not isinstance(link, str):
+            return None
+        text = self.library.script(urdf, source.name) or self.library.robot(urdf)
+        try:
+            chain = joints_to(text, link) if text is not None else ()
+        except UrdfError:
+            return None
+        missing = [name for name in chain if name not in limb["joints"]]
+        if len(missing) != 1 or len(chain) != len(limb["home"]):
+            return None
+        moved = f"`{missing[0]}` also moves the tool link `{link}`"
+        return f"{moved}: write `joints: [{', '.join(chain)}]`, or remove its angle"
 
     def joints(
         self, word: Word, source: Source, data: Description, tree: Tree

@@ -90,7 +90,8 @@ class State(NamedTuple):
 
     `owner` selects the fields of the schema: "base", a container type or "state". `via`: the calls
     of sub-scripts that lead to it, outermost first. `variables` are those of the state type,
-    `written` all fields as a template of SMACHA's kind needs them. The other fields have the names
+    `written` all fields as a template of SMACHA's kind needs them, `misplaced_keys` the input keys
+    that are written as variables. The other fields have the names
     of the schema; None and empty values mean that the script has no such field, or a wrong one,
     which was reported. A tuple, because a frozen dataclass of so many fields is slow to make.
     """
@@ -128,6 +129,7 @@ class State(NamedTuple):
     robot: Word | None = None
     scene: Word | None = None
     frames: tuple[Word, ...] = ()
+    misplaced_keys: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

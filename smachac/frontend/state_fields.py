@@ -254,17 +254,13 @@ def _known_fields(
             target = name_of(entry.value) if key in _outcomes(entries, type_) else None
             if target is not None:
                 strays.append((word, target))
+            as_key = _as_key(word, entry, entries, type_)
+            stray = target is not None
             report.append(
-                unknown_variable(
-                    word,
-                    whose,
-                    known,
-                    own=own,
-                    meant=sure,
-                    outcome=target is not None,
-                    key=_as_key(word, entry, entries, type_),
-                )
+                unknown_variable(word, whose, known, own=own, meant=sure, outcome=stray, key=as_key)
             )
+            if as_key is not None:
+                read["misplaced_keys"] = (*read.get("misplaced_keys", ()), word.text)
             meant.add(guesser_of((*known, *own))(word.text))
             if len(own) == 1:
                 meant.add(own[0])  # the message names the only variable

@@ -75,6 +75,21 @@ def read_joints(source: Source) -> tuple[dict[str, UrdfJoint], dict[str, Joint],
     return known, turning, links
 
 
+def joints_to(source: Source, link: str) -> tuple[str, ...]:
+    """The movable joints from the root to a link. Raises UrdfError."""
+    _, joints, _ = _read(source)
+    above = {each.child: (name, each) for name, each in joints.items()}
+    found: list[str] = []
+    for _ in joints:
+        name, joint = above.pop(link, ("", None))
+        if joint is None:
+            break
+        link = joint.parent
+        if joint.kind in MOVING:
+            found.append(name)
+    return tuple(reversed(found))
+
+
 def _read(source: Source) -> tuple[str, dict[str, _Link], frozenset[str]]:
     """The name, the joints and the links of a text. Raises UrdfError."""
     reader = _Reader(source)

@@ -270,6 +270,7 @@ class Leaf(_State):
 
     The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
+    `misplaced_keys` are the input keys that the script writes as variables of the state (SM003).
     """
 
     keyword: ClassVar[str] = "state"
@@ -281,6 +282,7 @@ class Leaf(_State):
     built_in: str = field(default="", compare=False, repr=False)
     stand_in: bool = field(default=False, compare=False, repr=False)
     adds_frames: tuple[str, ...] | None = field(default=None, compare=False, repr=False)
+    misplaced_keys: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -201,12 +201,24 @@ _WIDTH: Table = {
 def _width(given: Fields) -> tuple[float, float]:
     opened, closed = given["open"], given["closed"]
     if not 0.0 <= closed < opened:
-        raise DataError("a gripper is wider when it is open", given.place)
+        raise _wrong_width(opened, closed, given.place)
     if opened > WIDEST:
         message = f"a gripper that opens {opened:g} m wide is larger than an arm"
         place = (*given.place, "open")
         raise DataError(message, place, "lengths are in metres, not in millimetres")
     return closed, opened
+
+
+def _wrong_width(opened: float, closed: float, place: Place) -> DataError:
+    """The mistake in widths of a gripper that is not wider when it is open."""
+    if closed < 0.0:
+        return DataError(f"`closed` is {closed:g} m: a width is not negative", (*place, "closed"))
+    if opened == closed:
+        return DataError(f"`open` and `closed` are the same width, {opened:g} m", place)
+    message = f"`open` is {opened} m, less than `closed`, {closed} m"
+    swapped = opened >= 0.0 and closed <= WIDEST
+    help = f"write `{{open: {closed}, closed: {opened}}}`" if swapped else None
+    return DataError(message, place, help)
 
 
 _GRIPPER: Table = {

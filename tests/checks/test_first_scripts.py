@@ -624,3 +624,38 @@ def test_the_path_of_an_unset_key_has_no_state_that_a_field_adds() -> None:
     assert labels[-1] == "GRAB"
     assert labels.count("GRAB") == 1
     assert "PAUSE" not in labels
+
+
+TOPICS = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+params: {{ns: /arm}}
+states:
+  - WAIT:
+      template: WaitForMsgState
+      topic: {topic}
+      msg_type: std_msgs/Bool
+      timeout: 5.0
+      transitions: {{succeeded: CALL, aborted: failed, preempted: failed}}
+  - CALL:
+      template: ServiceState
+      service_namespace: {topic}
+      service: std_srvs/Trigger
+      transitions: {{succeeded: done, aborted: failed, preempted: failed}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("topic", "help"),
+    [
+        ("[[ns], /load]", "write `[[params, ns], /load]`"),
+        ("[/load, [ns]]", "write `[/load, [params, ns]]`"),
+        ("[[params, ns], /load]", None),
+        ("[[[ns]], /load]", None),
+    ],
+)
+def test_a_list_in_place_of_a_text_with_a_look_up(topic: str, help: str | None) -> None:
+    report = analysed({"main.yml": TOPICS.format(topic=topic)}).report
+    found = [(each.code, each.span.text, each.help) for each in report]
+    assert found == ([("SM004", topic, help)] * 2 if help else [])

@@ -319,3 +319,44 @@ def test_a_field_one_level_too_high(msg: str, help: str | None) -> None:
     found = [text or "" for _, _, text in faults(script, {})]
     assert len(found) == (help is not None)
     assert all(each.startswith(help or "") for each in found)
+
+
+@pytest.mark.parametrize(
+    ("request_", "found"),
+    [
+        ("[false, 0.0]", [("[false, 0.0]", "write `[0.0, false]`")]),
+        ("[a, 0.0]", [("a", "write a value of the type `float32`, such as `1.5`"),
+                      ("0.0", "write a value of the type `bool`, such as `true`")]),
+        ("[0.0, false]", []),
+        ("[0, 1]", []),
+    ],
+)  # fmt: skip
+def test_a_list_gives_the_fields_in_their_order(
+    request_: str, found: list[tuple[str, str]]
+) -> None:
+    files = {"cell_msgs/srv/Clamp.srv": "float32 force\nbool close\n---\nbool held\n"}
+    script = service(f"request: {request_}", type="cell_msgs/Clamp")
+    assert [(text, help) for text, _, help in faults(script, files)] == found
+
+
+@pytest.mark.parametrize(
+    ("goal", "help"),
+    [
+        ("{via: corridor}", "write a list: `[corridor]`"),
+        ("{via: 3}", "write a value of the type `string[]`"),
+        ("{exposure: 50ms}", "write the seconds as a number: `0.05`"),
+        ("{exposure: soon}", "write a value of the type `duration`"),
+        ("{exposure: 0.05, via: [corridor]}", None),
+    ],
+)
+def test_the_help_for_a_list_and_for_a_time(goal: str, help: str | None) -> None:
+    files = {TIDY: "string room\nstring[] via\nduration exposure\n---\n---\n"}
+    report = analyse(
+        Source("main.yml", ACTION.format(type="cell_msgs/Tidy", goal=goal)),
+        memory_library(files, BUILT_IN),
+        [],
+    ).report
+    found = [each for each in report if each.code == "SM512"]
+    assert [each.help for each in found] == ([help] if help else [])
+    name = goal.strip("{").partition(":")[0]
+    assert all(each.related[0].span.text == name for each in found)

@@ -209,3 +209,61 @@ def test_the_transition_of_a_state_with_a_time_limit(wrong: str) -> None:
     (place,) = item.related
     assert place.message == "this transition leads to `HOME`, not to `STOP`"
     assert (item.help or "").startswith(f"write `{wrong}: STOP` in `LIFT`, or correct")
+
+
+UNLOCK = """
+name: courier
+template: Base
+outcomes: [delivered, stopped]
+properties:
+  - after: {UNLOCK: [LOCK, "courier:stopped", "UNLOCK:preempted"]}
+states:
+  - UNLOCK:
+      template: SleepState
+      time: 2.0
+      transitions: {succeeded: REPORT, preempted: BACK}
+  - LOCK:
+      template: SleepState
+      time: 1.0
+      transitions: {succeeded: REPORT, preempted: stopped}
+  - REPORT: {template: ScriptedState, outcomes: [done], transitions: {done: delivered}}
+  - BACK: {template: ScriptedState, outcomes: [done], transitions: {done: delivered}}
+"""
+
+
+def test_an_answer_with_outcomes_has_a_turn_and_the_event_is_no_answer_to_itself() -> None:
+    for text in (UNLOCK, UNLOCK.replace("time: 2.0", "time: 1.0")):
+        first, *_ = analysed({"main.yml": text}).report
+        assert first.code == "SM701"
+        assert (first.help or "").startswith("write `succeeded: LOCK` in `UNLOCK`, or correct the")
+    right = UNLOCK.replace(
+        "{succeeded: REPORT, preempted: BACK", "{succeeded: LOCK, preempted: BACK"
+    )
+    assert not [each for each in analysed({"main.yml": right}).report if each.code == "SM701"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "help"),
+    [
+        ("30s", "write a number of states: `within: 3 states`"),
+        ("2 min", "write a number of states: `within: 3 states`"),
+        ("many", "write it like `3 states`"),
+        ("3 states", None),
+    ],
+)
+def test_a_time_as_the_limit_of_states(limit: str, help: str | None) -> None:
+    """The property is not checked without its limit: a finding about it would be a second one."""
+    text = TURN.replace("after: {LIFT: STOP}", f"whenever: {{CLOSE: LIFT, within: {limit}}}")
+    report = analysed({"main.yml": text}).report
+    found = [(each.code, each.help) for each in report if each.span.text == limit]
+    assert found == ([("SM004", help)] if help else [])
+    assert not [each for each in report if each.code == "SM701"]
+
+
+def test_the_guess_for_a_state_by_its_first_words() -> None:
+    for name, guess in (("LIFT_ARM", True), ("RAISE_ARM", False)):
+        text = TURN.replace("after: {LIFT: STOP}", f"before: {{HOME: {name}}}")
+        (help,) = [
+            each.help for each in analysed({"main.yml": text}).report if each.code == "SM703"
+        ]
+        assert ((help or "") == "did you mean `LIFT`?") == guess

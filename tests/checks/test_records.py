@@ -211,3 +211,30 @@ def test_a_part_of_a_record_is_named_with_its_type(value: str, message: str, hel
     assert len(found) == bool(message)
     assert all(each.finding.message.startswith(message) for each in found)
     assert all(help in (each.help or "") for each in found)
+
+
+SCREWS = """
+name: sm
+template: Base
+outcomes: [done]
+types:
+  Screw: {size: str, torque: float<N*m>}
+userdata:
+  screws: {type: "list[Screw]", value: [{size: M3, torque: 0.8}, {size: M4, torque: 1.6}]}
+states:
+  - DRIVE:
+      template: ScriptedState
+      input_keys: {screw: "{size: str, torque: float<UNIT>}"}
+      outcomes: [driven]
+      for_each: {item: screw, in: screws}
+      transitions: {succeeded: done}
+"""
+
+
+@pytest.mark.parametrize("unit", ["N*mm", "N*m"])
+def test_a_field_of_a_record_in_another_unit(unit: str) -> None:
+    """Only the field is named, and a loop provides its items."""
+    report = analysed({"main.yml": SCREWS.replace("UNIT", unit)}).report
+    messages = [each.finding.message for each in report if each.code == "SM504"]
+    message = "`torque` of `screw` is in `N*m` in the type `Screw`, but `DRIVE` reads it in `N*mm`"
+    assert messages == ([message] if unit == "N*mm" else [])

@@ -84,3 +84,33 @@ def test_a_fault_of_a_policy_is_at_its_value(qos: str, marked: str, help: str) -
     report = analysed({"main.yml": QOS.replace("QOS", qos)}).report
     found = [(each.span.text, each.help) for each in report if each.code == "SM004"]
     assert found == [(marked, help)]
+
+
+STOPPED_OR_NOT = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+states:
+  - CALL:
+      template: ServiceState
+      service_namespace: /door
+      service: std_srvs/SetBool
+      request: {{data: true}}
+      response_cb: 'lambda userdata, response: "succeeded" if response.success else "{word}"'
+      transitions: {{succeeded: done, {word}: failed, preempted: failed}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("word", "help"),
+    [
+        ("rejected", "a service state ends with `succeeded`, `aborted` or `preempted`"),
+        ("preemptd", "did you mean `preempted`?"),
+    ],
+)
+def test_an_outcome_is_guessed_as_preempted_only_if_it_is_near(word: str, help: str) -> None:
+    report = analysed({"main.yml": STOPPED_OR_NOT.format(word=word)}).report
+    helps = {each.code: each.help for each in report if each.code in ("SM102", "SM318")}
+    assert helps["SM318"] == help
+    near = word != "rejected"
+    assert ("did you mean `preempted`" in (helps["SM102"] or "")) == near

@@ -100,6 +100,24 @@ def test_a_mistake_is_a_diagnostic_with_its_place(
     assert (Path(named.span.source.name).name, named.span.text) == ("main.yml", file)
 
 
+@pytest.mark.parametrize(
+    ("arm", "help"),
+    [
+        (
+            ARM.replace("[a, b]", "[a]"),
+            "`b` also moves the tool link `hand`: write `joints: [a, b]`, or remove its angle",
+        ),
+        (ARM.replace("[a, b]", "[a]").replace("tool: hand", "tool: elbow"), None),
+        (ARM.replace("[0.0, 0.5]", "[0.0]"), None),
+        (ARM.replace("[a, b]", "[a]").replace("arm.urdf", "no.urdf"), None),
+        (ARM.replace("[a, b]", "[a]").replace("urdf: arm.urdf", ""), None),
+    ],
+)
+def test_the_joint_that_an_arm_lacks(tmp_path: Path, arm: str, help: str | None) -> None:
+    (found,) = [i for i in smachac.check(project(tmp_path, arm_yml=arm)) if i.code == "SM018"]
+    assert found.help == help
+
+
 def test_a_urdf_file_alone_cannot_be_simulated(tmp_path: Path) -> None:
     path = project(tmp_path)
     path.write_text(path.read_text().replace("robot: arm.yml", "robot: arm.urdf"))

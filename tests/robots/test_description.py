@@ -218,3 +218,22 @@ def test_a_mistake_in_a_scene_has_its_place(
     with pytest.raises(DataError, match=message) as found:
         scene.read(changed(SCENE, place, value))
     assert found.value.place == where
+
+
+@pytest.mark.parametrize(
+    ("width", "message", "help"),
+    [
+        (
+            "{open: 0.0, closed: 0.085}",
+            "`open` is 0.0 m, less than `closed`, 0.085 m",
+            "write `{open: 0.085, closed: 0.0}`",
+        ),
+        ("{open: 0.08, closed: 0.08}", "`open` and `closed` are the same width, 0.08 m", None),
+        ("{open: 0.08, closed: -0.1}", "`closed` is -0.1 m: a width is not negative", None),
+    ],
+)
+def test_widths_that_are_swapped_or_wrong(width: str, message: str, help: str | None) -> None:
+    text = ROBOT.replace("width: {open: 0.08, closed: 0}", f"width: {width}")
+    with pytest.raises(DataError) as error:
+        description.read(plain(text))
+    assert (error.value.message, error.value.help) == (message, help)
