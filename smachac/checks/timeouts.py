@@ -280,6 +280,8 @@ def watched_branches(context: Context) -> tuple[Watched, ...]:
         for child in container.children:
             if not isinstance(child, Leaf) or not child.blocking:
                 continue
+            if variable_of(child, "duration"):  # it ends by itself
+                continue
             rules = [({part.child for part in rule.when}, rule) for rule in container.rules]
             alone = [rule for names, rule in rules if names == {child.name}
                      and rule.when[0].outcome != PREEMPTED]  # fmt: skip

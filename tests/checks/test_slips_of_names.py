@@ -181,6 +181,14 @@ def test_a_rule_for_a_branch_that_nothing_preempts(rules: str, expected: list[st
     assert [each[0] for each in reported(files) if each[0] == "SM407"] == expected
 
 
+def test_a_wait_of_a_given_time_ends_by_itself() -> None:
+    main = WATCHED.replace("RULES", "cut: {MILL: finished}, fault: {WATCH: succeeded}")
+    main = main.replace("{template: Watch}", "{template: SleepState, time: 2}")
+    codes = [each[0] for each in reported({"main.yml": main})]
+    assert "SM402" in codes
+    assert "SM407" not in codes
+
+
 @pytest.mark.parametrize(
     ("value", "found"),
     [
