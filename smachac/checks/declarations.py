@@ -1,31 +1,29 @@
-"""Rules on declarations: keys that are declared but not used, or used but not declared."""
+"""The rules on declarations that nothing uses: keys, outcomes, params, types."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
-from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
-from smachac.analysis.code_slots import free_in, undeclared_slot_reads
+from smachac.analysis.accesses import callback_names, userdata_fields
+from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
-from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes, unknown_remaps
+from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name, reader_at
-from smachac.checks.class_code import dropped_writes, unknown_reads
-from smachac.checks.code_slots import function_reads, unknown_function_reads
-from smachac.checks.edits import with_output
+from smachac.checks.code_slots import function_reads
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.rule import rule
+from smachac.checks.undeclared_keys import leaves_with_code
 from smachac.checks.unsent_keys import unsent_keys
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_finding, unwritten_keys
-from smachac.checks.value_places import place_of_part
 from smachac.checks.word_loops import (
     is_over_the_word,
     loop_over_the_word,
@@ -35,13 +33,12 @@ from smachac.checks.word_loops import (
 )
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.code_places import key_place
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, StateType, Struct
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap
 from smachac.ir.traversal import expressions, remapping, walk
 from smachac.ir.types import ANY
 
@@ -532,7 +529,7 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
 
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:
-    for inner, leaf in _leaves_with_code(path, container):
+    for inner, leaf in leaves_with_code(path, container):
         yield from _unused_by_code(inner, leaf)
 
 
@@ -584,177 +581,7 @@ def _unused_keys(
     return (_unused(path, leaf, key, role) for key in keys if key.name not in names)
 
 
-@rule("SM308", "lossy-write", Severity.ERROR)
-def lossy_write(context: Context) -> Iterator[Finding]:
-    """A state sets a key that is not one of its output keys.
-
-    SMACH discards the value and only writes a log entry: for example, a counter keeps its value,
-    and the loop that it limits never ends.
-
-    Wrong:
-        name: sm
-        template: Base
-        outcomes: [counted]
-        userdata: {n: 0}
-        states:
-          - COUNT:
-              template: CallbacksState
-              input_keys: [n]
-              callbacks: {n: 'lambda ud: ud.n + 1'}
-              transitions: {succeeded: counted}
-
-    Right:
-        name: sm
-        template: Base
-        outcomes: [counted]
-        userdata: {n: 0}
-        states:
-          - COUNT:
-              template: CallbacksState
-              input_keys: [n]
-              output_keys: [n]
-              callbacks: {n: 'lambda ud: ud.n + 1'}
-              transitions: {succeeded: counted}
-    """
-    yield from context.at_containers(_lossy_writes)
-    yield from dropped_writes(context)
-
-
-def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
-    for inner, leaf in _leaves_with_code(path, container):
-        for key in undeclared_writes(leaf):
-            only = any(each.name == key for each in leaf.inputs)
-            what = "only an input key" if only else "not one of its output keys"
-            span = _place_of_write(leaf, key)
-            meant = _meant(key, leaf.outputs if not only else ())
-            unset = _never_set(leaf) if not meant else []
-            added = f"add `{key}` to the `output_keys` of `{leaf.name}`"
-            help = f"did you mean {listed(unset)}? or {added}" if unset else added
-            if len(unset) == 1:
-                help = f"write `{key}` in place of `{unset[0]}` in the `output_keys` of"
-                help += f" `{leaf.name}`, or `{unset[0]}` in place of `{key}` here"
-            yield Finding(
-                span=span,
-                message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",
-                arguments=(key,),
-                help=meant or help,
-                related=calls(leaf, span),
-                node=inner,
-                # With an edit, a state that reads the key that is not set would fail in the run.
-                edits=with_output(leaf, key) if not meant and not unset else (),
-            )
-
-
-def _leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
-    """The leaves in a container that can use only declared keys: all but open ones and the children
-    of iterators that the script writes."""
-    raw = isinstance(container, nodes.Iterator) and not container.sugar
-    for child in container.children if not raw else ():
-        if isinstance(child, Leaf) and not child.open:
-            yield f"{path}/{child.name}", child
-
-
 def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
     """The likely keys behind misspelt names (SM308, SM310)."""
     guess = guesser(each.name for each in known)
     return {name for key in wrong if (name := guess(key)) is not None}
-
-
-def _meant(key: str, known: Iterable[Key]) -> str | None:
-    return did_you_mean(guesser(each.name for each in known)(key))
-
-
-def _never_set(leaf: Leaf) -> list[str]:
-    """The output keys that nothing in a leaf sets, as far as its code and interface show."""
-    set_ = callback_names(leaf).union(*(keys for _, keys in scripted_steps(leaf)))
-    set_ = set_.union(*(keys for _, keys in leaf.writes))
-    if leaf.class_facts is not None:
-        set_ = set_.union(word.text for word in leaf.class_facts.writes)
-    return [key.name for key in leaf.outputs if key.name not in set_]
-
-
-def _place_of_write(leaf: Leaf, key: str) -> Span:
-    held = variable_of(leaf, "callbacks")
-    code = (functions(leaf, "callbacks") or {}).get(key)
-    if held is not None and code is not None:
-        place = place_of_part(held.value.span, (key,), key=True)
-        return place if place != held.value.span else code.span
-    steps = variable_of(leaf, "steps")
-    if steps is None:
-        return leaf.span
-    every = steps.value.data if isinstance(steps.value.data, tuple) else ()
-    for at, step in enumerate(every):
-        set_ = dict(step.entries).get("set") if isinstance(step, Struct) else None
-        if isinstance(set_, Struct) and key in dict(set_.entries):
-            return place_of_part(steps.value.span, (at, "set", key), key=True)
-    return steps.value.span
-
-
-@rule(
-    "SM310",
-    "undeclared-access",
-    Severity.ERROR,
-    effect="SMACH lets a state read only its input keys: the read stops the machine with an error",
-)
-def undeclared_access(context: Context) -> Iterator[Finding]:
-    """The code of a state reads a userdata key that is not one of its input keys.
-
-    A state can read only its input keys: the read fails, and the machine stops in the middle of
-    the task.
-
-    Wrong:
-        name: sm
-        template: Base
-        outcomes: [low, high]
-        userdata: {level: 7}
-        output_keys: [level]
-        states:
-          - JUDGE:
-              template: ConditionalOutcomeState
-              outcomes: [low]
-              callbacks: {low: 'lambda ud: ud.level < 10'}
-              default_outcome: high
-              transitions: {low: low, high: high}
-
-    Right:
-        name: sm
-        template: Base
-        outcomes: [low, high]
-        userdata: {level: 7}
-        output_keys: [level]
-        states:
-          - JUDGE:
-              template: ConditionalOutcomeState
-              input_keys: [level]
-              outcomes: [low]
-              callbacks: {low: 'lambda ud: ud.level < 10'}
-              default_outcome: high
-              transitions: {low: low, high: high}
-    """
-    yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
-    yield from unknown_reads(context)
-    yield from unknown_function_reads(context)
-
-
-def _undeclared_accesses(
-    path: str, container: Container, types: Mapping[str, StateType]
-) -> Iterator[Finding]:
-    for inner, leaf in _leaves_with_code(path, container):
-        read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
-        guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
-        for key, code in read:
-            if isinstance(container, nodes.Iterator) and key == container.item_key:
-                continue
-            span = key_place(code, key)
-            yield Finding(
-                span=span,
-                message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
-                " input keys",
-                arguments=(key,),
-                help=did_you_mean(guess(key))
-                or f"add `{key}` to the `input_keys` of `{leaf.name}`, and set it before, for"
-                f" example in `userdata: {{{key}: ...}}`",
-                related=calls(leaf, code.span),
-                node=inner,
-                edits=respelt(Word(key, span), guess.sure(key)),
-            )

@@ -38,7 +38,8 @@ from smachac.frontend.loader import Library
 from smachac.frontend.lost_outcomes import lost_outcomes
 from smachac.frontend.module_members import module_slips
 from smachac.frontend.own_objects import missing_members
-from smachac.frontend.python_flow import Flow, Flows, is_plain
+from smachac.frontend.python_flow import Flow, Flows
+from smachac.frontend.python_functions import is_plain
 from smachac.frontend.python_imports import missing_imports
 from smachac.frontend.python_modules import (
     Module,

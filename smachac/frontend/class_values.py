@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.loader import Library
-from smachac.frontend.python_flow import alternatives, is_plain, returns_of
+from smachac.frontend.python_functions import alternatives, is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, find_function, of_other_objects
 from smachac.ir.class_facts import ClassFault
 

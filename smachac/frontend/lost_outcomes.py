@@ -10,7 +10,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed
 from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
-from smachac.frontend.python_flow import is_plain, returns_of
+from smachac.frontend.python_functions import is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, find_function
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.code_slips import texts_of

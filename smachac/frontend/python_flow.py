@@ -8,7 +8,7 @@ they are not known.
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from smachac.diagnostics.source import Span, Word
@@ -16,20 +16,23 @@ from smachac.frontend.class_names import compared
 from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_constants import entries, member, table
+from smachac.frontend.python_functions import (
+    METHODS,
+    Access,
+    access_of,
+    alternatives,
+    is_plain,
+    returns_of,
+)
 from smachac.frontend.python_modules import Module, OwnClass, constant_node, find_function
 from smachac.frontend.python_source import PythonText, name_span
 from smachac.frontend.skipped_writes import Paths, SkippedWrites
 from smachac.ir.class_facts import Ending
 
-METHODS = frozenset(["extract", "keys", "merge", "update"])
-"""The attributes of userdata that are no keys (smach.user_data)."""
-
 NONE: frozenset[str] = frozenset()
 
 Keys = frozenset[str] | None
 """The keys that can be set; None: not known, or code that no path reaches."""
-
-_Functions = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.expr
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,23 +59,6 @@ class Flow:
     open_end: Word | None = None
     in_loop: Word | None = None
     name: Word | None = None
-
-
-def is_plain(function: ast.FunctionDef) -> bool:
-    """Whether a function runs when it is called: it is no generator and has no decorator."""
-    return not function.decorator_list and not _is_generator(function)
-
-
-def _is_generator(function: ast.FunctionDef) -> bool:
-    """Whether a function itself, not one inside it, has a `yield`."""
-    todo: list[ast.AST] = [*function.body]
-    while todo:
-        node = todo.pop()
-        if isinstance(node, ast.Yield | ast.YieldFrom):
-            return True
-        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
-            todo.extend(ast.iter_child_nodes(node))
-    return False
 
 
 class Flows:
@@ -653,49 +639,3 @@ def _both(some: Keys, more: Keys) -> Keys:
 def _either(*several: Keys) -> Keys:
     reached = [each for each in several if each is not None]
     return NONE.union(*reached) if reached else None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Access:
-    """A key of the userdata that an expression reads or, otherwise, writes, with its place."""
-
-    key: str
-    read: bool
-    place: ast.expr
-
-
-def access_of(node: ast.AST, name: str) -> Access | None:
-    """The access of an expression to the userdata of a name."""
-    match node:
-        case ast.Attribute(value=ast.Name(id=owner), attr=key, ctx=ctx) if owner == name:
-            if key not in METHODS and not key.startswith("_"):
-                return Access(key=key, read=isinstance(ctx, ast.Load), place=node)
-        case ast.Subscript(value=ast.Name(id=owner), slice=ast.Constant(str() as key), ctx=ctx):
-            if owner == name:
-                return Access(key=key, read=isinstance(ctx, ast.Load), place=node)
-        case ast.Call(
-            func=ast.Name(id="getattr" | "setattr" as function),
-            args=[ast.Name(id=owner), ast.Constant(str() as key) as place, *_],
-        ) if owner == name:
-            return Access(key=key, read=function == "getattr", place=place)
-    return None
-
-
-def alternatives(value: ast.expr) -> Iterator[ast.expr]:
-    """The expressions one of which is the value of an expression."""
-    if isinstance(value, ast.IfExp):
-        yield from alternatives(value.body)
-        yield from alternatives(value.orelse)
-    else:
-        yield value
-
-
-def returns_of(body: list[ast.stmt]) -> Iterator[ast.Return]:
-    """The return statements of a function, without those of nested functions."""
-    todo: list[ast.AST] = [*reversed(body)]
-    while todo:
-        node = todo.pop()
-        if isinstance(node, ast.Return):
-            yield node
-        elif not isinstance(node, _Functions):
-            todo.extend(reversed(list(ast.iter_child_nodes(node))))

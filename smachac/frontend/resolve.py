@@ -6,7 +6,7 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -16,11 +16,9 @@ from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import schema
 from smachac.frontend.errors.references import (
     bad_sub_script,
-    look_up_of_call,
     recursive_include,
     script_not_found,
     template_not_found,
-    unresolved_look_up,
 )
 from smachac.frontend.errors.script import (
     Owner,
@@ -70,7 +68,13 @@ from smachac.frontend.state_fields import (
     with_meant_fields,
 )
 from smachac.frontend.state_types import find_state_type
-from smachac.frontend.sub_scripts import SUB_SCRIPT_HELP, overridden, sub_script_state
+from smachac.frontend.sub_scripts import (
+    SUB_SCRIPT_HELP,
+    overridden,
+    params_at_call,
+    params_beside_call,
+    sub_script_state,
+)
 from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import (
@@ -508,70 +512,18 @@ class _Resolver:
             beside |= {key: own[key].key.span for key in others}
             own = overridden(fields, own)
         state = self.state(name, own, around, begin=begin)
-        if called:
-            self.params_beside_call(beside, begin)
-        for script, given in called:
+        looked_up, _, before = begin
+        if called and len(self.report) > before:
+            used = self.uses.looked_up[looked_up:]
+            findings = params_beside_call(self.report[before:], beside, used)
             params = own["params"].value if "params" in own else None
-            known = (str(each.key.value) for each in _entries_of(params))
-            self.misspelt_params(name, script, given, (*around.scope, *known), begin)
+            known = [*around.scope, *(str(each.key.value) for each in _entries_of(params))]
+            for script, given in called:
+                findings = params_at_call(
+                    findings, name.text, script, given, known, used, self.settled
+                )
+            self.report[before:] = findings
         return state
-
-    def params_beside_call(self, fields: Mapping[str, Span], begin: Mark) -> None:
-        """Replaces the findings about fields of a call that are params of the sub-script, which
-        were written beside `params`: one finding for each."""
-        looked_up, _, before = begin
-        used = fields.keys() & self.uses.looked_up[looked_up:]
-        if not used or len(self.report) == before:
-            return
-        kept = []
-        for item in self.report[before:]:
-            name = item.finding.arguments[0] if item.finding.arguments else ""
-            if name in used and item.kind is unresolved_look_up.code:
-                continue
-            if name in used and item.span == fields[name]:
-                help = f"`{name}` is a param of the sub-script: write it inside `params:`"
-                item = replace(item, finding=replace(item.finding, help=help, edits=()))
-            kept.append(item)
-        self.report[before:] = kept
-
-    def misspelt_params(
-        self, state: Word, script: Word, given: tuple[Entry, ...], scope: tuple[str, ...],
-        begin: Mark,
-    ) -> None:  # fmt: skip
-        """Puts the look-ups of a sub-script that failed at the call that misspells the param or
-        does not give it: one finding for each param. `scope` are the params that the call has."""
-        looked_up, _, before = begin
-        if len(self.report) == before:
-            return
-        used = set(self.uses.looked_up[looked_up:])
-        idle = [name for each in given if (name := as_name(each.key, [])) and name.text not in used]
-        lost: dict[str, Diagnostic] = {}
-        for item in self.report[before:]:
-            if item.kind is unresolved_look_up.code and item.span.source is not script.span.source:
-                lost.setdefault(item.finding.arguments[0], item)
-        moved = {
-            id(item): look_up_of_call(
-                item,
-                script,
-                state.text,
-                idle,
-                scope,
-                alone=len(lost) == 1,
-                settled=item.span in self.settled,
-            )
-            for item in lost.values()
-        }
-        if given:
-            self.settled |= {moved[id(item)].span for item in lost.values()}
-        changed = {each for each, item in lost.items() if moved[id(item)] is not item}
-        self.report[before:] = [
-            moved.get(id(item), item)
-            for item in self.report[before:]
-            if id(item) in moved
-            or item.kind is not unresolved_look_up.code
-            or item.span.source is script.span.source
-            or item.finding.arguments[0] not in changed
-        ]
 
     def not_found(self, item: Diagnostic) -> None:
         """Reports a file that was not found, except as a consequence: its folder may be in settings

@@ -12,7 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from smachac.diagnostics.source import Word
 from smachac.frontend.loader import Library
-from smachac.frontend.python_flow import Flows, is_plain, returns_of
+from smachac.frontend.python_flow import Flows
+from smachac.frontend.python_functions import is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, find_function, template_module
 from smachac.frontend.python_source import name_span
 from smachac.frontend.script import State

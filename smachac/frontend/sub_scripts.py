@@ -1,11 +1,18 @@
-"""Sub-scripts: the one state of a file, and the fields that a call overrides."""
+"""Sub-scripts: the one state of a file, the fields that a call overrides, the params it gives."""
 
 from __future__ import annotations
 
-from smachac.diagnostics.diagnostic import Report
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+
+from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Span, Word
-from smachac.frontend.errors.references import bad_sub_script
-from smachac.frontend.fields import kind_of
+from smachac.frontend.errors.references import (
+    bad_sub_script,
+    look_up_of_call,
+    unresolved_look_up,
+)
+from smachac.frontend.fields import as_name, kind_of
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 
 SUB_SCRIPT_HELP = "write one state: `- NAME: {template: ...}`"
@@ -80,3 +87,66 @@ def overridden(inner: dict[str, Entry], call: dict[str, Entry]) -> dict[str, Ent
         entries = [own.pop(item.key.value, item) for item in below.value.entries]
         merged[key] = Entry(entry.key, Map((*entries, *own.values()), entry.value.span))
     return merged
+
+
+def params_beside_call(
+    found: Sequence[Diagnostic], fields: Mapping[str, Span], used: Collection[str]
+) -> Report:
+    """The findings in a called sub-script, with one finding for each field of the call that is a
+    param of the sub-script, which was written beside `params`. `used` are the names in look-ups."""
+    beside = fields.keys() & set(used)
+    kept: Report = []
+    for item in found:
+        name = item.finding.arguments[0] if item.finding.arguments else ""
+        if name in beside and item.kind is unresolved_look_up.code:
+            continue
+        if name in beside and item.span == fields[name]:
+            help = f"`{name}` is a param of the sub-script: write it inside `params:`"
+            item = replace(item, finding=replace(item.finding, help=help, edits=()))
+        kept.append(item)
+    return kept
+
+
+def params_at_call(
+    found: Sequence[Diagnostic],
+    state: str,
+    script: Word,
+    given: Sequence[Entry],
+    known: Sequence[str],
+    used: Collection[str],
+    settled: set[Span],
+) -> Report:
+    """The findings in a sub-script that a state calls, with the look-ups that failed at the call
+    that misspells the param or does not give it: one finding for each param.
+
+    `script` is the name of the sub-script with the place of the call, `given` are the params of
+    this call, `known` all those in scope of it, `used` the names in look-ups. `settled` are the
+    places of calls that give params, but not one that is read; this call is added to them.
+    """
+    names = set(used)
+    words = [as_name(each.key, []) for each in given]
+    idle = [word for word in words if word is not None and word.text not in names]
+    lost: dict[str, Diagnostic] = {}
+    for item in found:
+        if item.kind is unresolved_look_up.code and item.span.source is not script.span.source:
+            lost.setdefault(item.finding.arguments[0], item)
+    moved = {
+        name: look_up_of_call(
+            item, script, state, idle, known, alone=len(lost) == 1, settled=item.span in settled
+        )
+        for name, item in lost.items()
+    }
+    if given:
+        settled |= {item.span for item in moved.values()}
+    kept: Report = []
+    for item in found:
+        name = item.finding.arguments[0] if item.finding.arguments else ""
+        if item is lost.get(name):
+            kept.append(moved[name])
+        elif (
+            item.kind is not unresolved_look_up.code
+            or item.span.source is script.span.source
+            or moved[name] is lost[name]
+        ):
+            kept.append(item)
+    return kept

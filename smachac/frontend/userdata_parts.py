@@ -6,7 +6,7 @@ import ast
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
-from smachac.frontend.python_flow import is_plain
+from smachac.frontend.python_functions import is_plain
 from smachac.frontend.python_modules import OwnClass
 from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import Part, Step

@@ -1,0 +1,194 @@
+"""The rules on keys that the code of a state uses and the state does not declare."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from smachac.analysis.accesses import callback_names, scripted_steps
+from smachac.analysis.code_slots import undeclared_slot_reads
+from smachac.analysis.context import Context
+from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
+from smachac.checks.class_code import dropped_writes, unknown_reads
+from smachac.checks.code_slots import unknown_function_reads
+from smachac.checks.edits import with_output
+from smachac.checks.messages import calls, did_you_mean
+from smachac.checks.rule import rule
+from smachac.checks.value_places import place_of_part
+from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
+from smachac.ir.code_places import key_place
+from smachac.ir.leaf import functions, variable_of
+from smachac.ir.nodes import Container, Key, Leaf, StateType, Struct
+
+
+@rule("SM308", "lossy-write", Severity.ERROR)
+def lossy_write(context: Context) -> Iterator[Finding]:
+    """A state sets a key that is not one of its output keys.
+
+    SMACH discards the value and only writes a log entry: for example, a counter keeps its value,
+    and the loop that it limits never ends.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [counted]
+        userdata: {n: 0}
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              callbacks: {n: 'lambda ud: ud.n + 1'}
+              transitions: {succeeded: counted}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [counted]
+        userdata: {n: 0}
+        states:
+          - COUNT:
+              template: CallbacksState
+              input_keys: [n]
+              output_keys: [n]
+              callbacks: {n: 'lambda ud: ud.n + 1'}
+              transitions: {succeeded: counted}
+    """
+    yield from context.at_containers(_lossy_writes)
+    yield from dropped_writes(context)
+
+
+def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
+    for inner, leaf in leaves_with_code(path, container):
+        for key in undeclared_writes(leaf):
+            only = any(each.name == key for each in leaf.inputs)
+            what = "only an input key" if only else "not one of its output keys"
+            span = _place_of_write(leaf, key)
+            meant = _meant(key, leaf.outputs if not only else ())
+            unset = _never_set(leaf) if not meant else []
+            added = f"add `{key}` to the `output_keys` of `{leaf.name}`"
+            help = f"did you mean {listed(unset)}? or {added}" if unset else added
+            if len(unset) == 1:
+                help = f"write `{key}` in place of `{unset[0]}` in the `output_keys` of"
+                help += f" `{leaf.name}`, or `{unset[0]}` in place of `{key}` here"
+            yield Finding(
+                span=span,
+                message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",
+                arguments=(key,),
+                help=meant or help,
+                related=calls(leaf, span),
+                node=inner,
+                # With an edit, a state that reads the key that is not set would fail in the run.
+                edits=with_output(leaf, key) if not meant and not unset else (),
+            )
+
+
+def leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
+    """The leaves in a container that can use only declared keys: all but open ones and the children
+    of iterators that the script writes."""
+    raw = isinstance(container, nodes.Iterator) and not container.sugar
+    for child in container.children if not raw else ():
+        if isinstance(child, Leaf) and not child.open:
+            yield f"{path}/{child.name}", child
+
+
+def _meant(key: str, known: Iterable[Key]) -> str | None:
+    return did_you_mean(guesser(each.name for each in known)(key))
+
+
+def _never_set(leaf: Leaf) -> list[str]:
+    """The output keys that nothing in a leaf sets, as far as its code and interface show."""
+    set_ = callback_names(leaf).union(*(keys for _, keys in scripted_steps(leaf)))
+    set_ = set_.union(*(keys for _, keys in leaf.writes))
+    if leaf.class_facts is not None:
+        set_ = set_.union(word.text for word in leaf.class_facts.writes)
+    return [key.name for key in leaf.outputs if key.name not in set_]
+
+
+def _place_of_write(leaf: Leaf, key: str) -> Span:
+    held = variable_of(leaf, "callbacks")
+    code = (functions(leaf, "callbacks") or {}).get(key)
+    if held is not None and code is not None:
+        place = place_of_part(held.value.span, (key,), key=True)
+        return place if place != held.value.span else code.span
+    steps = variable_of(leaf, "steps")
+    if steps is None:
+        return leaf.span
+    every = steps.value.data if isinstance(steps.value.data, tuple) else ()
+    for at, step in enumerate(every):
+        set_ = dict(step.entries).get("set") if isinstance(step, Struct) else None
+        if isinstance(set_, Struct) and key in dict(set_.entries):
+            return place_of_part(steps.value.span, (at, "set", key), key=True)
+    return steps.value.span
+
+
+@rule(
+    "SM310",
+    "undeclared-access",
+    Severity.ERROR,
+    effect="SMACH lets a state read only its input keys: the read stops the machine with an error",
+)
+def undeclared_access(context: Context) -> Iterator[Finding]:
+    """The code of a state reads a userdata key that is not one of its input keys.
+
+    A state can read only its input keys: the read fails, and the machine stops in the middle of
+    the task.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [low, high]
+        userdata: {level: 7}
+        output_keys: [level]
+        states:
+          - JUDGE:
+              template: ConditionalOutcomeState
+              outcomes: [low]
+              callbacks: {low: 'lambda ud: ud.level < 10'}
+              default_outcome: high
+              transitions: {low: low, high: high}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [low, high]
+        userdata: {level: 7}
+        output_keys: [level]
+        states:
+          - JUDGE:
+              template: ConditionalOutcomeState
+              input_keys: [level]
+              outcomes: [low]
+              callbacks: {low: 'lambda ud: ud.level < 10'}
+              default_outcome: high
+              transitions: {low: low, high: high}
+    """
+    yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
+    yield from unknown_reads(context)
+    yield from unknown_function_reads(context)
+
+
+def _undeclared_accesses(
+    path: str, container: Container, types: Mapping[str, StateType]
+) -> Iterator[Finding]:
+    for inner, leaf in leaves_with_code(path, container):
+        read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
+        guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
+        for key, code in read:
+            if isinstance(container, nodes.Iterator) and key == container.item_key:
+                continue
+            span = key_place(code, key)
+            yield Finding(
+                span=span,
+                message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
+                " input keys",
+                arguments=(key,),
+                help=did_you_mean(guess(key))
+                or f"add `{key}` to the `input_keys` of `{leaf.name}`, and set it before, for"
+                f" example in `userdata: {{{key}: ...}}`",
+                related=calls(leaf, code.span),
+                node=inner,
+                edits=respelt(Word(key, span), guess.sure(key)),
+            )
