@@ -6,6 +6,7 @@ import ast
 import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.analysis.code_slots import CodeSlot, code_slots
@@ -17,7 +18,13 @@ from smachac.analysis.message_code import (
     leaf_definitions,
 )
 from smachac.analysis.type_lattice import fits, present
-from smachac.checks.message_values import an_example, in_field_order, value_faults, value_help
+from smachac.checks.message_values import (
+    an_example,
+    in_field_order,
+    value_faults,
+    value_help,
+    with_levels,
+)
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.robot import at
 from smachac.checks.rule import rule
@@ -43,13 +50,11 @@ from smachac.ir.message_types import (
 from smachac.ir.nodes import (
     DEFINITION_KINDS,
     Container,
-    Data,
     Expression,
     Leaf,
     Node,
     Struct,
     Variable,
-    is_number,
 )
 from smachac.ir.traversal import remapping
 from smachac.ir.types import Type
@@ -385,12 +390,12 @@ def _wrong_messages(
             if flow.how != "value" or not isinstance(flow.value, Struct):
                 continue
             faults = [list(value_faults(flow.value, each, found)) for each in messages]
-            for steps, message, wanted, value in faults[0] if all(faults) else ():
+            levels = with_levels(flow.value, faults[0] if all(faults) else (), found)
+            for (steps, message, wanted, value), level in levels:
                 fields = sorted(each.name for each in message.fields)
                 text = f"{_described(message)} has no field `{steps[-1]}`"
-                help = did_you_mean(guesser(fields)(steps[-1]))
+                help = level or did_you_mean(guesser(fields)(steps[-1]))
                 help = help or f"use one of its fields: {listed(fields)}"
-                help = _level_above(flow.value, steps, message, found) or help
                 if wanted is not None:
                     text = f"the value of `{steps[-1]}` does not fit: the field of"
                     text += f" {_described(message)} is `{wanted}`"
@@ -404,26 +409,6 @@ def _wrong_messages(
                     key=wanted is None,
                     effect=f"`{leaf.name}` ends with `aborted`: the message is never used",
                 )
-
-
-def _level_above(
-    data: Data, steps: Sequence[str], message: Message, found: Definitions
-) -> str | None:
-    """The help for a field that belongs to a field of the message: `x` of a Twist is one of its
-    field `linear`. The first field of this kind that the mapping does not set is meant."""
-    *first, name = steps
-    for step in first:
-        data = dict(data.entries).get(step) if isinstance(data, Struct) else None
-    given = dict(data.entries) if isinstance(data, Struct) else {}
-    value = given.get(name)
-    if not is_number(value):
-        return None
-    for field in message.fields:
-        if field.name not in given and not field.type.array:
-            inner = [one.part("message") for one in found.get(("msg", field.type.name), ())]
-            if inner and all(each.field(name) is not None for each in inner):
-                return f"write `{field.name}: {{{name}: {value}}}`"
-    return None
 
 
 def _wrong_comparisons(
@@ -498,10 +483,12 @@ def _wrong_values(
         text = f"a list gives the fields in their order ({fields}), but these values do not fit it"
         yield _finding(path, leaf, Word("", span), text, f"write `{order}`", messages, effect)
         return
-    for names, message, wanted, value in faults[0] if all(faults) else ():
+    levels = with_levels(data, faults[0] if all(faults) else (), found)
+    for (names, message, wanted, value), level in levels:
         if wanted is None:
             word = _field_word(names, span)
-            yield _unknown_field(path, leaf, word, (message,), effect=effect)
+            finding = _unknown_field(path, leaf, word, (message,), effect=effect)
+            yield replace(finding, help=level or finding.help)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {_described(message)} is"
         place = _value_span(_field_word(names, span).span, span)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 from typing import NamedTuple
 
 from smachac.analysis.message_code import nested_messages
 from smachac.diagnostics.spelling import in_quotes, is_plain
+from smachac.diagnostics.wording import both
 from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
 from smachac.ir.nodes import Data, Expression, Struct, is_number
 
@@ -150,6 +151,52 @@ def written(value: Data) -> str:
     if isinstance(value, str):
         return value if is_plain(value) else in_quotes(value)
     return repr(value) if is_number(value) else ""
+
+
+def written_mapping(entries: Iterable[tuple[str, Data]]) -> str:
+    """A mapping of fields as a script has it, with `...` for values that are not short."""
+    parts = []
+    for name, value in entries:
+        text = written_mapping(value.entries) if isinstance(value, Struct) else written(value)
+        parts.append(f"{name}: {text or '...'}")
+    return f"{{{', '.join(parts)}}}"
+
+
+def with_levels(
+    data: Data, faults: Iterable[ValueFault], found: Definitions
+) -> Iterator[tuple[ValueFault, str | None]]:
+    """The faults of a value, those of fields that belong to a field of the message with a help:
+    `x` of a Twist is one of its field `linear`. Of several fields that belong to the same one, only
+    the first is a fault. The first field of a message that the value does not set is meant."""
+    levels: dict[tuple[str, ...], list[ValueFault]] = {}
+    every = list(faults)
+    for each in every:
+        if each.wanted is None:
+            levels.setdefault(each.names[:-1], []).append(each)
+    for each in every:
+        level = levels[each.names[:-1]] if each.wanted is None else [each]
+        help = _level_help(data, level, found) if each.wanted is None else None
+        if help is None or each is level[0]:
+            yield each, help
+
+
+def _level_help(data: Data, level: Sequence[ValueFault], found: Definitions) -> str | None:
+    """The help for unknown fields of one message that are fields of one of its own fields."""
+    *first, _ = level[0].names
+    for step in first:
+        data = dict(data.entries).get(step) if isinstance(data, Struct) else None
+    if not isinstance(data, Struct):
+        return None
+    given = dict(data.entries)
+    names = [each.names[-1] for each in level]
+    moved = Struct(entries=tuple((name, given.get(name)) for name in names))
+    for field in level[0].message.fields:
+        if field.name not in given and not field.type.array:
+            inner = nested_messages([field.type], found)
+            if inner and not any([*value_faults(moved, each, found)] for each in inner):
+                help = f"write `{field.name}: {written_mapping(moved.entries)}`"
+                return f"{help} in place of {both(names)}" if len(names) > 1 else help
+    return None
 
 
 def in_field_order(data: Data, message: Message) -> str | None:

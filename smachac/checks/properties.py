@@ -289,9 +289,13 @@ def _cure(form: Form, example: Counterexample, turn: Turn | None) -> str:
             way = f"lead each path from {either(first)} through {either(answer)}{on_error}"
             return f"{way}, or {_CORRECT}"
         case AtMost() | AlwaysEnds():
+            if turn is None:
+                return "limit the number of tries, for example with `retry` in a state of the path"
+            name, outcome = turn.node.name, turn.step.outcome
             return (
-                "limit the number of tries, for example with `retry: {on: [OUTCOME], max: 3}` in"
-                " place of the transition for this outcome, and add one for `exhausted`"
+                f"limit the number of tries, for example in `{name}`: write"
+                f" `retry: {{on: [{outcome}], max: 3}}` in place of the transition"
+                f" `{outcome}: {turn.step.target}`, and add a transition for `exhausted`"
             )
     return assert_never(form)
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 from smachac.analysis.accesses import Accesses, callback_names
 from smachac.analysis.context import Context
 from smachac.analysis.resource_claims import Held, prefixes
+from smachac.analysis.type_lattice import present
 from smachac.checks.messages import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import both, either
-from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Concurrence, Leaf, Node
+from smachac.ir.leaf import functions
+from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, Variable
 from smachac.ir.traversal import remapping
 
 MOST_PLACES = 4
@@ -220,17 +223,32 @@ def resource_clash(context: Context) -> Iterator[Finding]:
     """
     concurrences = [(path, one) for path, one in context.containers if isinstance(one, Concurrence)]
     held = context.claims if concurrences else {}
-    robot = context.machine.robot
-    limbs = robot.limb_names if robot is not None else ()
     for path, container in concurrences:
-        yield from _clashes(path, container, held, limbs)
+        for clash in _clashes(path, container, held):
+            yield _clash_finding(context.machine, path, container, clash)
 
 
-def _clashes(
-    path: str, container: Concurrence, held: Held, limbs: Sequence[str]
-) -> Iterator[Finding]:
-    """The resources that branches of a concurrence claim together. `limbs` are those of the
-    robot."""
+class _Clash(NamedTuple):
+    """Resources that branches of a concurrence claim together.
+
+    `holding` are the branches with their claims of the first resource and the nodes inside that
+    make them, `child` is the branch that is reported, with its claim and that node. `chosen` is the
+    variable of the node that chooses the resources, such as a limb. `claimed` are the claims of all
+    branches.
+    """
+
+    resources: tuple[str, ...]
+    holding: tuple[tuple[Node, str, Node], ...]
+    child: Node
+    claim: str
+    origin: Node
+    chosen: Variable | None
+    claimed: Collection[str]
+
+
+def _clashes(path: str, container: Concurrence, held: Held) -> Iterable[_Clash]:
+    """The clashes in a concurrence: one for the resources of the same branches that the same value
+    chooses, such as an arm and its gripper."""
     branches = [(child, held[f"{path}/{child.name}"]) for child in container.children]
     named = {claim for _, claims in branches for claim in claims}
     holders: dict[str, list[tuple[Node, str, Node]]] = {}
@@ -238,38 +256,82 @@ def _clashes(
         for claim, origin in claims.items():
             widest = next(part for part in prefixes(claim) if part in named)
             holders.setdefault(widest, []).append((child, claim, origin))
+    found: dict[tuple[object, ...], _Clash] = {}
     for resource, holding in holders.items():
         first = holding[0][0]
         other = next((one for one in holding if one[0] is not first), None)
         if other is None or "{" in resource:
             continue
-        child, own, origin = other
-        names = sorted({one.name for one, _, _ in holding})
-        use = "let one of them use another resource"
-        if isinstance(origin, Leaf) and variable_of(origin, "limb") is not None:
-            use = "give one of them another `limb`"
-            limb = variable_of(origin, "limb")
-            free = [each for each in limbs if not any(each in claim.split(".") for claim in named)]
-            if limb is not None and free:
-                use = f"write {either(f'{limb.name}: {each}' for each in free)} in `{origin.name}`"
-        places = [
-            place
-            for one, what, inner in holding[:MOST_PLACES]
-            if one is not child
-            for place in (
-                *other_place(one.span, f"`{one.name}` claims `{what}`"),
-                *_inner(one, inner, "claims"),
-            )
-        ]
-        yield Finding(
-            span=child.span,
-            message=f"{both(names)} claim `{resource}` at the same time: they are branches of"
-            f" `{container.name}`",
-            arguments=(_as_written(own, origin), *names),
-            help=f"put {both(names)} into one StateMachine, one after the other, or {use}",
-            related=(*places, *_inner(child, origin, "claims"), *calls(child, child.span)),
-            node=f"{path}/{child.name}",
+        child, claim, origin = other
+        chosen = _choice(origin, claim)
+        names = tuple(sorted({one.name for one, _, _ in holding}))
+        same = (names, chosen.value.span if chosen is not None else None)
+        known = found.get(same)
+        resources = (*(known.resources if known is not None else ()), resource)
+        clash = known or _Clash((), tuple(holding), child, claim, origin, chosen, named)
+        found[same] = clash._replace(resources=resources)
+    return found.values()
+
+
+def _choice(origin: Node, claim: str) -> Variable | None:
+    """The variable whose value chooses the resource of a claim: `limb` for `arm.left`."""
+    if not isinstance(origin, Leaf):
+        return None
+    parts = claim.split(".")
+    named = [each for each in origin.variables if each.value.data in parts]
+    return named[0] if len(named) == 1 else None
+
+
+def _free(machine: Machine, clash: _Clash) -> list[str]:
+    """The other values of the variable that chooses a resource that no branch claims."""
+    if not isinstance(clash.origin, Leaf) or clash.chosen is None:
+        return []
+    type_ = present(clash.chosen.type)
+    choices: Iterable[object] = type_.args if type_.name == "one_of" else ()
+    if clash.chosen.name == "limb" and machine.robot is not None:
+        choices = machine.robot.limb_names
+    taken = {part for claim in clash.claimed for part in claim.split(".")}
+    return [each for each in choices if isinstance(each, str) and each not in taken]
+
+
+def _clash_finding(machine: Machine, path: str, container: Concurrence, clash: _Clash) -> Finding:
+    """The finding, at the value that chooses the resource where another one is free."""
+    child, chosen = clash.child, clash.chosen
+    names = sorted({one.name for one, _, _ in clash.holding})
+    others = [each for each in clash.holding if each[0] is not child][:MOST_PLACES]
+    places = [
+        place
+        for one, what, inner in others
+        for place in (
+            *other_place(one.span, f"`{one.name}` claims `{what}`"),
+            *_inner(one, inner, "claims"),
         )
+    ]
+    free = _free(machine, clash)
+    span, use = child.span, "let one of them use another resource"
+    if chosen is not None and free:
+        span = chosen.value.span
+        use = f"write {either(free)} in place of `{chosen.value.data}`"
+        if any(_same_choice(inner, what, span) for _, what, inner in others):
+            span, use = child.span, f"give one of them another `{chosen.name}`: {either(free)}"
+    elif chosen is not None:
+        use = f"give one of them another `{chosen.name}`"
+    order = f"put {both(names)} into one StateMachine, one after the other"
+    return Finding(
+        span=span,
+        message=f"{both(names)} claim {both(clash.resources)} at the same time: they are branches"
+        f" of `{container.name}`",
+        arguments=(_as_written(clash.claim, clash.origin), *names),
+        help=f"{use}, or {order}" if span != child.span else f"{order}, or {use}",
+        related=(*places, *_inner(child, clash.origin, "claims"), *calls(child, span)),
+        node=f"{path}/{child.name}",
+    )
+
+
+def _same_choice(origin: Node, claim: str, span: Span) -> bool:
+    """Whether the value with a place chooses also the resource of another branch."""
+    chosen = _choice(origin, claim)
+    return chosen is not None and chosen.value.span == span
 
 
 def _as_written(claim: str, origin: Node) -> str:

@@ -310,6 +310,7 @@ def test_the_unread_key_with_a_type_is_the_missing_one() -> None:
     [
         ("{x: 0.0, angular: {z: 0.0}}", "write `linear: {x: 0.0}`"),
         ("{linear: {x: 0.0}, z: 0.5}", "write `angular: {z: 0.5}`"),
+        ("{x: 0.0, z: 0.5}", "write `linear: {x: 0.0, z: 0.5}` in place of `x` and `z`"),
         ("{spin: 0.5}", "use one of its fields"),
         ("{linear: {x: 0.0}}", None),
     ],

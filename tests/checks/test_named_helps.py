@@ -64,9 +64,54 @@ states:
 
 def test_another_limb_is_free() -> None:
     (found,) = helps(LIMBS.replace("ROBOT", "baxter"), "SM406")
-    assert found.endswith("one after the other, or write `limb: right` in `TWO`")
+    assert found.startswith("write `right` in place of `left`, or put `ONE` and `TWO` into one")
     (found,) = helps(LIMBS.replace("ROBOT", "panda"), "SM406")
     assert "arm" in found or found.endswith("another `limb`")
+
+
+PARTS = """
+name: sm
+template: PyBulletBase
+robot: baxter
+outcomes: [succeeded, aborted]
+userdata: {home: [0, 0, 0, 0, 0, 0, 0]}
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [succeeded, aborted]
+      input_keys: [home]
+      default_outcome: aborted
+      outcome_map: {succeeded: {ONE: succeeded, TWO: succeeded}}
+      transitions: {succeeded: succeeded, aborted: aborted}
+      states:
+        - ONE: {script: move, params: {limb: left}}
+        - TWO: {script: move, params: {limb: left}}
+"""
+MOVE = """
+- MOVE:
+    template: StateMachine
+    outcomes: [succeeded, aborted]
+    input_keys: [home]
+    states:
+      - OPEN:
+          template: GripperState
+          command: open
+          limb: [params, limb]
+          transitions: {succeeded: GO, aborted: aborted, preempted: aborted}
+      - GO:
+          template: MoveToJointPositionsState
+          limb: [params, limb]
+          remapping: {positions: home}
+          transitions: {succeeded: succeeded, aborted: aborted, preempted: aborted}
+"""
+
+
+def test_one_param_of_a_call_chooses_two_resources() -> None:
+    report = analysed({"main.yml": PARTS, "move.yml": MOVE}).report
+    (found,) = [each for each in report if each.code == "SM406"]
+    assert (found.span.line, found.span.text) == (17, "left")
+    assert "claim `arm.left` and `gripper.left` at the same time" in found.message
+    assert (found.help or "").startswith("write `right` in place of `left`, or put")
 
 
 POSE = """
