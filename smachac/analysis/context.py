@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
 from smachac.analysis.accesses import Accesses, accesses
+from smachac.analysis.code_slots import CodeSlot, code_slots
 from smachac.analysis.control_flow import Linear, corrected, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
 from smachac.analysis.error_recovery import corrected_machine, with_meant_keys
@@ -28,7 +29,7 @@ from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
 from smachac.ir.class_facts import ClassFacts
-from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine
+from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
 from smachac.ir.secret_keys import SecretKeys, secret_keys
 
 if TYPE_CHECKING:
@@ -119,6 +120,20 @@ class Context:
     def containers(self) -> tuple[tuple[str, Container], ...]:
         """The containers with their paths, parents before children."""
         return tuple((path, node) for path, node in self.states if not isinstance(node, Leaf))
+
+    @cached_property
+    def leaves_with_variables(self) -> tuple[tuple[str, Leaf], ...]:
+        """The leaves that have variables or input keys, with their paths."""
+        return tuple(
+            (path, node)
+            for path, node in self.states
+            if isinstance(node, Leaf) and (node.variables or node.inputs)
+        )
+
+    @cached_property
+    def code_slots(self) -> tuple[tuple[str, Node, CodeSlot], ...]:
+        """The code slots with code in them, each with the path and its state."""
+        return self.at_states(_slots_of, self.machine.state_types)
 
     @cached_property
     def leaves_with_class(self) -> tuple[tuple[str, Leaf, ClassFacts, Container], ...]:
@@ -328,3 +343,10 @@ def _subtree_ends(counts: Sequence[int]) -> Sequence[int]:
         ends[at] = end
         following.append(end)
     return ends
+
+
+def _slots_of(
+    path: str, node: Node, types: Mapping[str, StateType]
+) -> Iterator[tuple[str, Node, CodeSlot]]:
+    if not isinstance(node, Leaf) or node.variables:
+        yield from ((path, node, slot) for slot in code_slots(node, types))

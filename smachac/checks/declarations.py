@@ -476,8 +476,8 @@ def _params_in_code(machine: Machine) -> set[str]:
 def _names_as_text(context: Context, names: Collection[str]) -> dict[str, Span]:
     """The texts in the variables of states that are the name of a param, each the only one."""
     found: dict[str, list[Span]] = {}
-    for _, node in context.states:
-        for held in node.variables if isinstance(node, Leaf) else ():
+    for _, leaf in context.leaves_with_variables:
+        for held in leaf.variables:
             data = held.value.data
             if isinstance(data, str) and data in names and data == held.value.span.text:
                 found.setdefault(data, []).append(held.value.span)

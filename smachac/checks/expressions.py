@@ -83,6 +83,8 @@ def bad_expression(context: Context) -> Iterator[Finding]:
 
 
 def _bad_expressions(path: str, node: Node) -> Iterator[Finding]:
+    if isinstance(node, Leaf) and not node.variables:
+        return
     conditions = functions(node, "conditions") if isinstance(node, Leaf) else None
     compared = {code.span for code in (conditions or {}).values()}
     for expression in expressions(node):
@@ -208,8 +210,8 @@ def _example(leaf: Leaf) -> str:
 
 def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
     """The unknown outcomes in the conditions and steps of a leaf (SM102)."""
-    outcomes = outcome_names(leaf)
-    if not (leaf.variables and outcomes) or leaf.open:
+    outcomes = outcome_names(leaf) if leaf.variables and not leaf.open else []
+    if not outcomes:
         return
     for word, what in _endings(leaf):
         if word.text not in outcomes:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 
-from smachac.analysis.code_slots import CodeSlot, code_slots, results
+from smachac.analysis.code_slots import CodeSlot, results
 from smachac.analysis.context import Context
 from smachac.checks.messages import calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -17,22 +17,19 @@ from smachac.ir.nodes import Leaf, Node, VariableRole
 
 def named_functions(context: Context) -> Iterator[tuple[str, Node, CodeSlot, FunctionFacts]]:
     """The code slots of a machine that name a function of the user, with the facts about it."""
-    machine = context.machine
-    for path, node in context.states if machine.functions else ():
-        for slot in code_slots(node, machine.state_types):
-            facts = machine.functions.get(slot.code.text)
-            if facts is not None and slot.arguments is not None and not slot.quoted:
-                yield path, node, slot, facts
+    known = context.machine.functions
+    for path, node, slot in context.code_slots if known else ():
+        facts = known.get(slot.code.text)
+        if facts is not None and slot.arguments is not None and not slot.quoted:
+            yield path, node, slot, facts
 
 
 def readable_slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
     """The code slots of a machine whose code Python can read."""
-    types = context.machine.state_types
-    for path, node in context.states:
-        for slot in code_slots(node, types):
-            tree = slot.tree
-            if tree is not None:
-                yield path, node, slot, tree
+    for path, node, slot in context.code_slots:
+        tree = slot.tree
+        if tree is not None:
+            yield path, node, slot, tree
 
 
 def slot_owner(slot: CodeSlot, node: Node) -> str:

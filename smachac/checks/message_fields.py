@@ -150,9 +150,7 @@ def unknown_field(context: Context) -> Iterator[Finding]:
         bool held
     """
     found, missing = context.machine.definitions, context.machine.missing_definitions
-    for path, node in context.states:
-        if not isinstance(node, Leaf):
-            continue
+    for path, node in context.leaves_with_variables:
         yield from _missing_types(path, node, missing)
         yield from _type_in_place_of_part(path, node)
         if not found:
@@ -208,10 +206,9 @@ def untyped_message(context: Context) -> Iterator[Finding]:
               input_keys: [msg, msg_type]
               transitions: {succeeded: done, aborted: failed}
     """
-    for path, node in context.states:
-        if isinstance(node, Leaf):
-            yield from _null_types(path, node)
-            yield from _untyped_mappings(context, path, node)
+    for path, node in context.leaves_with_variables:
+        yield from _null_types(path, node)
+        yield from _untyped_mappings(context, path, node)
 
 
 def _null_types(path: str, leaf: Leaf) -> Iterator[Finding]:

@@ -163,8 +163,8 @@ STEP = ("outcome", "set")
 
 def _wrong_steps(context: Context) -> Iterator[Finding]:
     """The steps of ScriptedStates that are no list of mappings with the fields of a step."""
-    for path, leaf in context.states:
-        held = variable_of(leaf, "steps") if isinstance(leaf, Leaf) else None
+    for path, leaf in context.leaves_with_variables:
+        held = variable_of(leaf, "steps")
         if held is None or isinstance(held.value.data, Expression):
             continue
         whole, data = held.value.span, held.value.data

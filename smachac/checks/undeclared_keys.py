@@ -86,11 +86,11 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
 
 
 def leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
-    """The leaves in a container that can use only declared keys: all but open ones and the children
-    of iterators that the script writes."""
+    """The leaves in a container that have variables and can use only declared keys: all but open
+    ones and the children of iterators that the script writes."""
     raw = isinstance(container, nodes.Iterator) and not container.sugar
     for child in container.children if not raw else ():
-        if isinstance(child, Leaf) and not child.open:
+        if isinstance(child, Leaf) and child.variables and not child.open:
             yield f"{path}/{child.name}", child
 
 

@@ -25,8 +25,8 @@ def unsent_keys(context: Context) -> Iterator[Finding]:
     """The input keys of built-in states with a goal or a request that neither a list of keys nor
     a function of the state names (SM306): the message is sent without them."""
     types = context.machine.state_types
-    for path, leaf in context.states:
-        if not isinstance(leaf, Leaf) or not leaf.built_in or leaf.open or not leaf.inputs:
+    for path, leaf in context.leaves_with_variables:
+        if not leaf.built_in or leaf.open or not leaf.inputs:
             continue
         roles: list[VariableRole] = [each for each in SENDERS if variable_of(leaf, each)]
         role = roles[0] if roles else None

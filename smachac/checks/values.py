@@ -286,9 +286,9 @@ def _missing_grippers(context: Context, severity: Severity | None) -> Iterator[F
     without = [arm.name for arm in robot.arms if arm.limb.gripper is None] if robot else []
     if robot is None or not without:
         return
-    for path, leaf in context.states:
-        held = variable_of(leaf, "grip") if isinstance(leaf, Leaf) else None
-        if held is None or not isinstance(leaf, Leaf):
+    for path, leaf in context.leaves_with_variables:
+        held = variable_of(leaf, "grip")
+        if held is None:
             continue
         limb = variable_of(leaf, "limb")
         named = limb.value.data if limb is not None else None

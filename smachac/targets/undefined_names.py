@@ -10,7 +10,7 @@ import ast
 import builtins
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.analysis.accesses import USERDATA
@@ -61,12 +61,24 @@ class _Use(NamedTuple):
         return node_place(self.code, self.name)
 
 
+class _Attribute(NamedTuple):
+    """An attribute that a module of Python's library does not have; `meant`: the one that is
+    probably meant."""
+
+    code: Expression
+    module: str
+    node: ast.Attribute
+    meant: str
+
+
 def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
     """The undefined names, each at the place that uses it."""
     machine = context.machine
     types = machine.state_types
-    used = context.at_states(_names_used, types)
-    classes = context.at_states(_classes_used, types)
+    found = context.at_states(_names_used, types)
+    used = [each for each in found if isinstance(each, _Use)]
+    classes = [each for each in found if isinstance(each, Word)]
+    attributes_used = [each for each in found if isinstance(each, _Attribute)]
     known = _known(machine, library) if used or classes else None
     own_base = machine.base in types and not types[machine.base].built_in
     for use in used:
@@ -85,7 +97,7 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
                     base=machine.base,
                     own=own_base,
                 )
-    yield from _missing_attributes(context, library)
+    yield from _missing_attributes(machine, library, attributes_used)
     for word in classes:
         if known is not None and word.text not in known:
             package = _PACKAGES.get(word.text, "my_messages")
@@ -98,10 +110,10 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
             yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
 
 
-def _missing_attributes(context: Context, library: Library) -> Iterator[Diagnostic]:
+def _missing_attributes(
+    machine: Machine, library: Library, found: Sequence[_Attribute]
+) -> Iterator[Diagnostic]:
     """The attributes of modules of Python's library that these do not have."""
-    machine = context.machine
-    found = [*context.at_states(_attributes_used, machine.state_types)]
     if not found:
         return
     from smachac.targets.python.template_sources import template_sources
@@ -120,35 +132,34 @@ def _missing_attributes(context: Context, library: Library) -> Iterator[Diagnost
             yield undefined_name(place, node.attr, code.text, False, fix, effect=effect)
 
 
-def _attributes_used(
+def _names_used(
     _: str, node: Node, types: Mapping[str, StateType]
-) -> Iterator[tuple[Expression, str, ast.Attribute, str]]:
-    """The attributes that modules of the library do not have, with what is probably meant."""
-    if isinstance(node, Leaf) and not node.type:
+) -> Iterator[_Use | _Attribute | Word]:
+    """The names that the code of a state uses from its module, the attributes that modules of the
+    library do not have, and the names of types of messages."""
+    if isinstance(node, Leaf) and not node.variables:
         return
-    keys = {key.name for key in node.inputs}
-    for code in _codes(node, types):
-        likely = any(f"{name}." in code.text for name in MODULES)
-        tree = python_tree(code.text) if likely else None
-        used = [*attributes(tree)] if tree is not None else []
-        free = {name.id for name in free_in(code.text)} - keys if used else set()
-        for module, each in used:
-            meant = missing_name(module, each.attr) if module.partition(".")[0] in free else None
-            if meant is not None:
-                yield code, module, each, meant
-
-
-def _names_used(_: str, node: Node, types: Mapping[str, StateType]) -> Iterator[_Use]:
+    for word in _message_types(node, types):
+        if word.text.isidentifier() and not hasattr(builtins, word.text):
+            yield word
     if isinstance(node, Leaf) and not node.type:
         return  # SM005: it is not known what its fields are
     for code in _codes(node, types):
         yield from _uses(node, code)
+        if any(f"{name}." in code.text for name in MODULES):
+            yield from _attributes_used(node, code)
 
 
-def _classes_used(_: str, node: Node, types: Mapping[str, StateType]) -> Iterator[Word]:
-    for word in _message_types(node, types):
-        if word.text.isidentifier() and not hasattr(builtins, word.text):
-            yield word
+def _attributes_used(node: Node, code: Expression) -> Iterator[_Attribute]:
+    """The attributes that modules of the library do not have, with what is probably meant."""
+    tree = python_tree(code.text)
+    used = [*attributes(tree)] if tree is not None else []
+    keys = {key.name for key in node.inputs}
+    free = {name.id for name in free_in(code.text)} - keys if used else set()
+    for module, each in used:
+        meant = missing_name(module, each.attr) if module.partition(".")[0] in free else None
+        if meant is not None:
+            yield _Attribute(code, module, each, meant)
 
 
 _PACKAGES: Mapping[str, str] = {
