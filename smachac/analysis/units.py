@@ -53,3 +53,13 @@ def conversion(given: str, wanted: str) -> float | None:
     if one is None or other is None or one[0] != other[0]:
         return None
     return one[1] / other[1]
+
+
+def other_units(unit: str) -> tuple[str, ...]:
+    """The other units that measure the same as a unit, those of the table above, in its order."""
+    found = _IN_BASE_UNIT.get(unit)
+    return tuple(
+        each
+        for each, (base, _) in _IN_BASE_UNIT.items()
+        if found is not None and base == found[0] and each != unit
+    )

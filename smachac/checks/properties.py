@@ -97,13 +97,14 @@ def property_fails(context: Context) -> Iterator[Finding]:
 
     script = shlex.quote(context.machine.root.span.source.name)
     for number, given, example, shown, turn in _failures(context):
-        longer = _longer_answer(context, given, example)
+        longer = _longer_list(context, given, example)
+        swapped = _swap_help(context, given) if longer is None else None
+        first = swapped or f"{longer[1] if longer else ''}{_cure(given.form, example, turn)}\n"
         yield Finding(
             span=given.span if longer is None else longer[0],
             message=f"{_named(given)} does not hold: {_violation(given.form, example)}",
             arguments=(given.name, in_words(given.form)),
-            help=(_swap_help(context, given) if longer is None else longer[1])
-            + f"{_cure(given.form, example, turn)}\n{_replayed(shown, number, script)}",
+            help=f"{first}{_replayed(shown, number, script)}",
             related=_turn_place(turn),
             path=witness(example._replace(visits=_shown(context, example.visits))),
             node=example.node or context.machine.root.name,
@@ -168,59 +169,79 @@ def _violation(form: Form, example: Counterexample) -> str:
     return assert_never(form)
 
 
-def _swap_help(context: Context, given: Property) -> str:
-    """The line of help if a property holds with two of its events swapped; else empty."""
-    from smachac.analysis.properties import judge
-
+def _swap_help(context: Context, given: Property) -> str | None:
+    """The line of help if a property holds with two of its events swapped, and not only because
+    what it forbids never happens after the first event."""
     form = given.form
     swapped: Form
     match form:
         case Never(after=after, until=until) if after and until:
             swapped = replace(form, after=until, until=after)
             words = f"after: {_names(until)}, until: {_names(after)}"
+            if _holds(context, given, replace(swapped, until=())):
+                return None
         case Before(later=later, earlier=earlier):
             swapped = Before(later=earlier, earlier=later)
             words = f"before: {{{_names(earlier)}: {_names(later)}}}"
         case _:
-            return ""
-    other = replace(given, form=swapped)
-    found = judge([other], context.machine.root, context.claims)
-    if not found or found[0].verdict != "holds":
-        return ""
+            return None
+    if not _holds(context, given, swapped):
+        return None
     return f"write `{words}`: with it the property holds; are the two names swapped?\n"
 
 
-def _longer_answer(
-    context: Context, given: Property, example: Counterexample
-) -> tuple[Span, str] | None:
-    """The answer of an `after` to which a state on the path of its counterexample can be added, so
-    that the property holds, with the line of help: its type and variables are those of one of the
-    answer."""
+def _holds(context: Context, given: Property, form: Form) -> bool:
+    """Whether a property would hold in another form."""
     from smachac.analysis.properties import judge
 
-    form = given.form
-    if not isinstance(form, After) or any(each.subject != "path" for each in form.answer):
+    found = judge([replace(given, form=form)], context.machine.root, context.claims)
+    return bool(found) and found[0].verdict == "holds"
+
+
+def _longer_list(
+    context: Context, given: Property, example: Counterexample
+) -> tuple[Span, str] | None:
+    """The events of a property that end its requirement, to which a state on the path of its
+    counterexample can be added, so that the property holds, with the line of help: the type and the
+    variables of the state are those of one of them."""
+    match given.form:
+        case After(answer=ends, first=begins) | Never(until=ends, after=begins):
+            pass
+        case Before(earlier=ends, later=begins):
+            pass
+        case _:
+            return None
+    if not ends or any(each.subject != "path" for each in ends):
         return None
     nodes = context.routes.nodes
-    ends = tuple(f"/{each.name}" for each in form.answer if each.outcome is None)
-    triggers = tuple(f"/{each.name}" for each in form.first)
+    names = tuple(f"/{each.name}" for each in ends if each.outcome is None)
+    triggers = tuple(f"/{each.name}" for each in begins)
     alike = [_work(node) for path, node in nodes.items()
-             if isinstance(node, Leaf) and f"/{path}".endswith(ends)]  # fmt: skip
+             if isinstance(node, Leaf) and f"/{path}".endswith(names)]  # fmt: skip
     for visit in example.visits:
         node = nodes.get(visit.path)
         if not isinstance(node, Leaf) or not node.variables or _work(node) not in alike:
             continue
         if f"/{visit.path}".endswith(triggers):
             continue  # the property would always hold
-        atom = replace(form.answer[0], name=node.name, outcome=None)
-        more = replace(form, answer=(*form.answer, atom))
-        found = judge([replace(given, form=more)], context.machine.root, context.claims)
-        if found and found[0].verdict == "holds":
-            first, last = form.answer[0].span, form.answer[-1].span
-            place = Span(first.source, first.start, last.end)
+        more = (*ends, replace(ends[0], name=node.name, outcome=None))
+        if _holds(context, given, _with_ends(given.form, more)):
+            place = Span(ends[0].span.source, ends[0].span.start, ends[-1].span.end)
             like = f"`{node.name}`, a `{node.type}` too, has the same variables"
-            return place, f"{like}: write `{_names(more.answer)}`\n"
+            return place, f"{like}: write `{_names(more)}`\n"
     return None
+
+
+def _with_ends(form: Form, ends: Atoms) -> Form:
+    """A form with other events that end its requirement."""
+    match form:
+        case After():
+            return replace(form, answer=ends)
+        case Never():
+            return replace(form, until=ends)
+        case Before():
+            return replace(form, earlier=ends)
+    return form
 
 
 def _work(leaf: Leaf) -> tuple[str, list[tuple[str, Data]]]:

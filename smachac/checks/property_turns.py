@@ -11,7 +11,8 @@ from itertools import takewhile
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.ir.nodes import Leaf, Node, Transition
-from smachac.ir.properties import After, Atoms, Form
+from smachac.ir.outcome_names import fails
+from smachac.ir.properties import After, AlwaysEnds, AtMost, Atoms, Form
 from smachac.ir.traversal import walk
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ class _Taken(NamedTuple):
 def turn_of(form: Form, replayed: Replay, visits: int, nodes: Mapping[str, Node]) -> Turn | None:
     """The turn of a counterexample with a number of visits; None if there is none. `nodes` are all
     nodes by path. For an `after` it is the first transition behind which no required state comes,
-    otherwise the one that follows its first event; for the other forms it is the last transition.
+    otherwise the one that follows its first event; for the other forms it is the last transition,
+    and of repeated states the last one for a failure.
     """
     steps = list(_steps(replayed, visits, nodes))
     if isinstance(form, After):
@@ -46,6 +48,8 @@ def turn_of(form: Form, replayed: Replay, visits: int, nodes: Mapping[str, Node]
         if missed is not None:
             return missed
         steps = steps[:1]
+    if isinstance(form, AtMost | AlwaysEnds):
+        steps = [each for each in steps if fails(nodes[each.path], each.step.outcome)] or steps
     return Turn(nodes[steps[-1].path], steps[-1].step) if steps else None
 
 

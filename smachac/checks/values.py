@@ -10,6 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
+from smachac.analysis.units import conversion, other_units
 from smachac.checks.messages import calls, did_you_mean, own_name
 from smachac.checks.misnamed_bodies import misnamed_body
 from smachac.checks.robot import (
@@ -26,6 +27,7 @@ from smachac.checks.robot import (
 from smachac.checks.rule import rule
 from smachac.checks.value_places import steps_to_number
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, either, listed
 from smachac.ir.leaf import variable_of
@@ -38,7 +40,7 @@ from smachac.ir.types import Type
     "SM520",
     "out-of-limits",
     Severity.ERROR,
-    effect="the state type is not made for such a value: the state can fail or do a wrong thing",
+    effect="the number is used as it is",
 )
 def out_of_limits(context: Context) -> Iterator[Finding]:
     """A number is outside the limits that the interface of a state type gives.
@@ -138,18 +140,27 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
     for number in dict.fromkeys(_outside(flow.value, limits)):
         held = "is" if number == flow.value else "contains"
         message = f"`{origin.key}` {held} {number}, but the {kind} `{cell.key}` of {owner} must be"
-        found = at(
+        yield at(
             flow,
             f"{message} {in_words(limits)}",
             ("write " if limits.choices else "write a number ")
             + in_words(limits)
-            + (f", in `{unit}`" if unit else ""),
+            + (f", in `{unit}`" if unit else "")
+            + _converted(number, unit, limits),
             (str(number),),
             more,
             part=steps_to_number(flow.value, number),
+            effect=f"the number is used as it is: {owner} works with {number} {unit}".rstrip(),
         )
-        outside = f"{number} {unit} is outside of what the state type accepts: the state can fail"
-        yield replace(found, effect=f"{outside} or do a wrong thing") if unit else found
+
+
+def _converted(number: int | float, unit: str, limits: Limits) -> str:
+    """The end of a help for a number that is within the limits if it is in another unit: 12 mm."""
+    for other in other_units(unit):
+        factor = conversion(other, unit)
+        if factor is not None and _is_within(number * factor, limits):
+            return f"; {number} `{other}` is `{number * factor:.6g}`"
+    return ""
 
 
 def in_words(limits: Limits) -> str:
@@ -437,9 +448,9 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
             large[origin] = any(min(FULL_TURN, FARTHEST) < abs(x) for x in numbers(origin.value))
         if large[origin] and (_degrees(each) or _millimetres(each, simulated)):
             wrong.append(each)
-    flows: dict[TypeFlow, list[TypeFlow]] = {}
+    flows: dict[Span, list[TypeFlow]] = {}
     for flow in reaching_flows(wrong):
-        flows.setdefault(flow.origin, []).append(flow)
+        flows.setdefault(flow.origin.span, []).append(flow)
     for alike in flows.values():
         yield from _doubtful(alike, simulated, context.machine.robot)
 

@@ -34,7 +34,7 @@ SUFFIXES = (".urdf", ".xml", ".xacro")
 """The endings of URDF files; a description ends with `.yml`, any other text is a robot's name."""
 
 
-NO_SCENE = "without the scene, names of bodies are not checked, and no simulated world is built"
+NO_SCENE = "the bodies are not known: their names are not checked, and no program is generated"
 
 
 def robot_of(base: State, source: Source, library: Library, report: Report) -> Robot | None:

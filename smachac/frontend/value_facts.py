@@ -147,8 +147,11 @@ def limits_of(tree: Tree, type_: Type, role: str, report: Report) -> Limits | No
     )
     highest = tree.get("max")
     if found.least > found.most and highest is not None:
-        message = f"no number is from {found.least:g} to {found.most:g}"
-        help = "exchange `min` and `max`, or correct one of them"
+        message = f"`min` is {found.least:g}, which is greater than `max`, {found.most:g}"
+        help = f"write `min: {found.most:g}, max: {found.least:g}`, or correct one of them"
+        if bounds["min"] is None:
+            message = f"`max` is {found.most:g}, but no value is less than {found.least:g}"
+            help = f"write a number greater than {found.least:g}"
         report.append(wrong_shape(highest.value.span, message, help, arguments=("max", "min")))
         return None
     return found if found != Limits(exclusive=found.exclusive) else None

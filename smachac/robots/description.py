@@ -21,6 +21,7 @@ from smachac.robots.fields import (
     Shape,
     Table,
     guess,
+    in_metres,
 )
 
 DOWN: Pose = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
@@ -205,7 +206,7 @@ def _width(given: Fields) -> tuple[float, float]:
     if opened > WIDEST:
         message = f"a gripper that opens {opened:g} m wide is larger than an arm"
         place = (*given.place, "open")
-        raise DataError(message, place, "lengths are in metres, not in millimetres")
+        raise DataError(message, place, in_metres(opened))
     return closed, opened
 
 
@@ -469,9 +470,9 @@ def _inside(name: str, position: float, joint: UrdfJoint, place: Place) -> None:
     )
     help = f"the limits are in {unit}"
     if joint.turns and abs(position) > 2 * math.pi:
-        help = "angles are in radians, not in degrees"
+        help = f"write `{math.radians(position):.4g}`: angles are in radians, not in degrees"
     if not joint.turns and joint.lower <= position / 1000 <= joint.upper:
-        help = "lengths are in metres, not in millimetres"
+        help = in_metres(position)
     raise DataError(message, place, help)
 
 

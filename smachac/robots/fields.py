@@ -262,8 +262,13 @@ def near(data: Any, place: Place) -> float:
     length = number(data, place)
     if abs(length) > FARTHEST:
         message = f"{length:g} m is farther away than {FARTHEST:g} m"
-        raise DataError(message, place, "lengths are in metres, not in millimetres")
+        raise DataError(message, place, in_metres(length))
     return length
+
+
+def in_metres(length: float) -> str:
+    """The help for a length (mm) where one in metres is expected."""
+    return f"write `{length / 1000:g}`: lengths are in metres, not in millimetres"
 
 
 EXTENT: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": FARTHEST}

@@ -378,7 +378,7 @@ _SHORT_VALUE = re.compile(r":[ ]+([\w.+-]+)[ ]*(?=[,}\n#]|$)")
     "SM018",
     "bad-robot",
     Severity.ERROR,
-    effect="without a description, joint limits, lengths and frames are not checked",
+    effect="the robot is not known: no motion is checked, and no program is generated",
 )
 def bad_robot(
     word: Word,
