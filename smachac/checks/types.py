@@ -407,13 +407,19 @@ def _part(clash: Clash) -> str:
 
 def _wrong_rotation(clash: Clash, aliases: Mapping[str, str]) -> str:
     """The message on a pose whose rotation has a wrong number of numbers; empty for others."""
-    given, wanted, whole = clash.misfit.given, clash.misfit.wanted, present(clash.cell.declared)
+    given, wanted, value = clash.misfit.given, clash.misfit.wanted, clash.flow.value
     count = length_of(given)
-    if wanted.name != "Quaternion" or count is None or whole.name not in ("Pose", "Transform"):
+    if wanted.name != "Quaternion" or count is None or not isinstance(value, tuple | Struct):
         return ""
-    key, numbers = clash.flow.origin.cell.key, f"{count} number{'s' if count != 1 else ''}"
+    steps = steps_to_misfit(value, clash.cell.declared)[:-1]
+    whole = type_at(clash.cell.declared, steps)
+    if whole.name not in ("Pose", "Transform"):
+        return ""
+    numbers = f"{count} number{'s' if count != 1 else ''}"
     needs = f"a `{whole.name}` needs 4 (a quaternion)"
-    return f"the rotation in `{key}` has {numbers}, but {needs}: {_read(clash.cell, aliases)}"
+    place = place_in_words(clash.flow.origin.cell.key, steps)
+    reader = "" if steps else f": {_read(clash.cell, aliases)}"
+    return f"the rotation in {place} has {numbers}, but {needs}{reader}"
 
 
 def _unit_in_record(clash: Clash, aliases: Mapping[str, str]) -> str:
@@ -441,16 +447,14 @@ def _wrong_part(clash: Clash, aliases: Mapping[str, str]) -> str:
     """The message for a literal of which a part does not fit; empty for other clashes."""
     value, (given, wanted) = clash.flow.value, (clash.misfit.given, clash.misfit.wanted)
     is_part = isinstance(value, (tuple, Struct)) and clash.flow.origin is clash.flow
-    one = given.name in ("float", "int", "bool") or (
-        given.name == "literal" and len(given.args) == 1
-    )
-    if not is_part or not _part(clash) or not one:
+    if not is_part or not _part(clash) or _missing_fields(clash):
         return ""
     steps = steps_to_misfit(value, clash.cell.declared)
     data = part_at(value, steps)
-    if not steps or not isinstance(data, str | int | float):
+    if not steps or (given.name == "literal" and len(given.args) != 1):
         return ""
-    what = f"the text `{data}`" if isinstance(data, str) else f"`{json.dumps(data)}`"
+    what = f"`{json.dumps(data)}`" if isinstance(data, int | float) else in_words(given)
+    what = f"the text `{data}`" if isinstance(data, str) else what
     owner = named(type_at(clash.cell.declared, steps[:-1]), aliases)
     first = f"{place_in_words(clash.flow.cell.key, steps)} is {what}"
     if owner in aliases:

@@ -187,8 +187,9 @@ def accepts(type_: StateType, name: str) -> bool:
 def with_meant_fields(
     entries: dict[str, Entry], owner: FieldOwner, type_: StateType
 ) -> dict[str, Entry]:
-    """The fields, with those of unknown names also under the names that are meant, where
-    that is certain: then one misspelt name is one finding."""
+    """The fields, with those of unknown names also under the names that are meant, where that is
+    certain: then one misspelt name is one finding. The role of a variable means the variable, as
+    `conditions` in a ConditionalOutcomeState."""
     unknown = [
         key
         for key in entries
@@ -199,6 +200,8 @@ def with_meant_fields(
         return entries
     guess = guesser_of((*schema.names_for(owner), *type_.variables))
     meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
+    roles: dict[str, str] = {each.role: name for name, each in type_.variables.items() if each.role}
+    meant |= {roles[key]: entries[key] for key in unknown if key in roles}
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
@@ -250,7 +253,8 @@ def _known_fields(
             word = Word(str(entry.key.value), entry.key.span)
             whose = _owner_of(owner, type_, of_type=owner == "state")
             own = [name for name in type_.variables if name not in known]
-            sure = "template" if entries.get("template") is entry else None
+            also = [name for name, each in entries.items() if each is entry and name != key]
+            sure = also[0] if also else None
             target = name_of(entry.value) if key in _outcomes(entries, type_) else None
             if target is not None:
                 strays.append((word, target))

@@ -141,7 +141,7 @@ def test_the_only_variable_under_another_name() -> None:
     script = script.replace("TRANSITIONS", "done: WAIT, lost: aborted")
     wait = "  - WAIT: {template: SleepState, duration: 1.5, transitions: {succeeded: SAY}}\n"
     found = reported({"main.yml": script.replace("  - SAY", wait + "  - SAY")})
-    assert found == [("SM003", "duration", "its variable is `time`")]
+    assert found == [("SM003", "duration", "did you mean `time`?")]
 
 
 def test_a_userdata_key_one_slip_away_from_the_one_that_is_read() -> None:
