@@ -206,7 +206,7 @@ class _Inference:
         names = remapping(node)
         for key in node.inputs:
             inner = scope.at(key.name, place_of(node, key))
-            self.declare(inner, key.type, inner.span)
+            self.declare(inner, key.type, declaration_of(node, key))
             if around is not None:
                 around.at(names.get(key.name, key.name)).links.append(inner)
             else:
@@ -219,7 +219,7 @@ class _Inference:
             self.literal(cell, preset.value.data, preset.value.span)
         for key in node.outputs:
             inner = scope.at(key.name, place_of(node, key))
-            self.declare(inner, key.type, place_of(node, key))
+            self.declare(inner, key.type, declaration_of(node, key))
             if around is not None:
                 inner.links.append(around.at(names.get(key.name, key.name)))
         if isinstance(node, nodes.Iterator):
@@ -570,6 +570,11 @@ class Computation:
     reads: Mapping[str, Cell]
     expression: Expression | None = None
     items: bool = False
+
+
+def declaration_of(node: Container, key: Key) -> Span:
+    """The span of the declaration of a key, also in a sub-script."""
+    return key.span if key.span.source is not NOWHERE.source else place_of(node, key)
 
 
 def place_of(node: Node, key: Key) -> Span:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from smachac.analysis.accesses import callback_names, userdata_fields
@@ -20,6 +19,7 @@ from smachac.checks.code_slots import function_reads
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
+from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code
 from smachac.checks.unsent_keys import unsent_keys
@@ -38,11 +38,9 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap
-from smachac.ir.traversal import expressions, remapping, walk
+from smachac.ir.nodes import Container, Key, Leaf, Node, Remap
+from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY
-
-_PARAM_IN_CODE = re.compile(r"\bparams(?:\.|\[['\"])(\w+)")
 
 
 @rule(
@@ -467,23 +465,6 @@ def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -
     )
 
 
-def _params_in_code(machine: Machine) -> set[str]:
-    """The params that code of the script names as if they were variables: `params.limit`."""
-    codes = [code.text for _, node in walk(machine.root) for code in expressions(node)]
-    return {name for text in codes for name in _PARAM_IN_CODE.findall(text)}
-
-
-def _names_as_text(context: Context, names: Collection[str]) -> dict[str, Span]:
-    """The texts in the variables of states that are the name of a param, each the only one."""
-    found: dict[str, list[Span]] = {}
-    for _, leaf in context.leaves_with_variables:
-        for held in leaf.variables:
-            data = held.value.data
-            if isinstance(data, str) and data in names and data == held.value.span.text:
-                found.setdefault(data, []).append(held.value.span)
-    return {name: spans[0] for name, spans in found.items() if len(spans) == 1}
-
-
 def _param_meant(name: str, known: Sequence[str]) -> str | None:
     """The param that is probably meant by an unused one: one of a similar name, or the only one
     that has a word of its name, as `force` for `grip_force`."""
@@ -497,18 +478,20 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
     machine = context.machine
     if not machine.unused:
         return
-    in_code = _params_in_code(machine)
-    names = {each.word.text for each in machine.unused if each.what == "param"}
-    as_text = _names_as_text(context, names)
+    in_code = params_in_code(machine)
+    as_text = params_as_text(context)
+    wrong = {each.flow.origin.span for each in context.clashes["type"]} if as_text else set()
     for what, word, via, known in machine.unused:
         if what == "param" and word.text in in_code:  # SM019
             continue
         if what == "param" and (place := as_text.get(word.text)) is not None:
+            if place in wrong:  # SM304
+                continue
             yield Finding(
                 span=place,
                 message=f"`{word.text}` is a text here, and nothing uses the param `{word.text}`",
                 arguments=(what, word.text),
-                help=f"write `[params, {word.text}]` for the value of the param",
+                help=look_up_help(word.text),
                 effect=f"the state gets the text `{word.text}`, not the value of the param",
                 related=other_place(word.span, "the param is defined here"),
                 node=machine.root.name,

@@ -8,9 +8,13 @@ from collections.abc import Iterator, Mapping
 
 from smachac.analysis.code_slots import CodeSlot, results
 from smachac.analysis.context import Context
+from smachac.analysis.expression_types import type_of_call
+from smachac.analysis.type_lattice import unit_of
+from smachac.analysis.units import conversion
 from smachac.checks.messages import calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
+from smachac.ir.code_places import node_place
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Leaf, Node, VariableRole
 
@@ -148,3 +152,29 @@ def _true_condition(
         node=path,
         severity=Severity.WARNING,
     )
+
+
+def wrong_units(context: Context) -> Iterator[Finding]:
+    """The functions of a state whose result has another unit than the variable (SM504)."""
+    types = context.machine.state_types
+    for path, node, slot, tree in readable_slots(context):
+        fact = types[node.type].variables.get(slot.name) if node.type in types else None
+        wanted = unit_of(fact.type) if fact is not None else ""
+        if not wanted or not isinstance(node, Leaf) or not isinstance(tree, ast.Lambda):
+            continue
+        given = unit_of(type_of_call(slot.code, context.types.names(path, node)))
+        factor = conversion(given, wanted)
+        if not given or given == wanted:
+            continue
+        body = ast.unparse(tree.body)
+        simple = isinstance(tree.body, ast.Attribute | ast.Call | ast.Name | ast.Subscript)
+        product = f"{body if simple else f'({body})'} * {factor:.6g}" if factor else ""
+        yield Finding(
+            span=node_place(slot.code, tree.body),
+            message=f"{slot_owner(slot, node)} is in `{wanted}`, but its function returns a number"
+            f" in `{given}`",
+            arguments=(slot.name, given, wanted),
+            help=f"write `{product}`" if product else f"return a number in `{wanted}`",
+            related=calls(node, slot.code.span),
+            node=path,
+        )

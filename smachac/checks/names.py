@@ -21,7 +21,7 @@ from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
@@ -88,7 +88,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
         yield _nowhere(fault, paths.get(fault.step.target))
     for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
-            yield from _idle_transitions(path, container)
+            yield from _idle_transitions(context, path, container)
 
 
 def _lost(path: str, container: Container) -> Iterator[_Lost]:
@@ -184,7 +184,9 @@ def _same_case(word: str, name: str) -> bool:
     return same and word.casefold() != name.casefold()
 
 
-def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
+def _idle_transitions(context: Context, path: str, container: Container) -> Iterator[Finding]:
+    """The transitions of the children of a concurrence or an iterator, except those of a sub-script
+    that a state machine calls as well."""
     why = "an iterator repeats its child or ends"
     help = "remove it; `loop_outcomes` lists the outcomes that continue the loop"
     if isinstance(container, Concurrence):
@@ -192,7 +194,7 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
         help = f"remove it; the rules in `outcome_map` decide how `{container.name}` ends"
     for child in container.children:
         steps = [step for step in child.transitions if step.origin == "written"]
-        if steps:
+        if steps and not (child.via and _is_taken_elsewhere(context, steps[0].span)):
             first, several = steps[0], len(steps) > 1
             what = f"transition{'s' * several} for {both(step.outcome for step in steps)}"
             yield Finding(
@@ -204,6 +206,17 @@ def _idle_transitions(path: str, container: Container) -> Iterator[Finding]:
                 severity=Severity.WARNING,
                 node=f"{path}/{child.name}",
             )
+
+
+def _is_taken_elsewhere(context: Context, span: Span) -> bool:
+    """Whether the transition with a place is one of a state in a container with transitions."""
+    return any(
+        step.span == span
+        for _, container in context.containers
+        if not isinstance(container, Concurrence | nodes.Iterator)
+        for child in container.children
+        for step in child.transitions
+    )
 
 
 @rule(

@@ -11,6 +11,7 @@ from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.checks.expressions import mixed_units
+from smachac.checks.function_results import wrong_units
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas
 from smachac.checks.rule import rule
@@ -347,6 +348,7 @@ def unit_mismatch(context: Context) -> Iterator[Finding]:
     """
     yield from clash_findings(context.clashes["unit"], context.machine.aliases)
     yield from mixed_units(context)
+    yield from wrong_units(context)
 
 
 def as_float(data: Data) -> float:

@@ -6,6 +6,7 @@ import json
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import pairwise
 from types import MappingProxyType
 
@@ -28,6 +29,7 @@ from smachac.analysis.units import conversion
 from smachac.checks.class_values import wrong_loops, wrong_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
+from smachac.checks.param_texts import look_up_help, params_as_text
 from smachac.checks.rule import rule
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit, type_at
@@ -37,7 +39,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Expression, Leaf, StateType, Struct, is_number
+from smachac.ir.nodes import Container, Expression, Leaf, StateType, Struct, is_number
 from smachac.ir.traversal import outcome_names
 
 
@@ -94,7 +96,10 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     clashes = [each for each in context.clashes["type"] if not _is_function(each)]
-    yield from clash_findings(clashes, context.machine.aliases)
+    params = {span: name for name, span in params_as_text(context).items()} if clashes else {}
+    for found in clash_findings(clashes, context.machine.aliases):
+        name = params.get(found.span)
+        yield found if name is None else replace(found, help=look_up_help(name))
     yield from _lists_for_items(context)
     yield from _without_items(context)
     yield from _wrong_steps(context)
@@ -576,9 +581,14 @@ def _rewrite(clash: Clash) -> str:
     found = example(wanted)
     value = f"a value of the type `{wanted}`" + (f", such as `{found}`" if found else "")
     change = _other_change(clash)
-    if clash.flow.origin.how != "value":
-        owner = _owner(clash.flow.origin.cell)
-        return f"let {owner} write {value}{change}"
+    origin = clash.flow.origin
+    if origin.how == "declared" and isinstance(origin.cell.node, Container):
+        inputs = [key.name for key in origin.cell.node.inputs]
+        keys = "input_keys" if origin.cell.key in inputs else "output_keys"
+        declared = f"`{origin.cell.key}: {wanted}` in the `{keys}` of {_owner(origin.cell)}"
+        return f"write {declared}, if that is its type{change}"
+    if origin.how != "value":
+        return f"let {_owner(origin.cell)} write {value}{change}"
     return f"write {value}{change}"
 
 

@@ -233,3 +233,164 @@ def test_properties_without_dashes() -> None:
     report = analysed({"main.yml": text.replace("KIND", "SleepState, time: 1.0")}).report
     (found,) = [each for each in report if each.code == "SM004"]
     assert found.help == "begin each property with a dash: `- after: {LIT: DARK}`"
+
+
+GRIPS = """
+name: sm
+template: PyBulletBase
+outcomes: [done, failed]
+PROPERTY
+userdata: {up: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]}
+states:
+  - CLOSE:
+      template: GripperState
+      command: close
+      transitions: {succeeded: GO, aborted: LET_GO, preempted: failed}
+  - GO:
+      template: MoveToJointPositionsState
+      remapping: {positions: up}
+      transitions: {succeeded: RELEASE, aborted: failed, preempted: failed}
+  - RELEASE:
+      template: GripperState
+      command: open
+      transitions: {succeeded: HOME, aborted: failed, preempted: failed}
+  - LET_GO:
+      template: GripperState
+      command: open
+      transitions: {succeeded: HOME, aborted: failed, preempted: failed}
+  - HOME:
+      template: MoveToJointPositionsState
+      remapping: {positions: up}
+      transitions: {succeeded: done, aborted: failed, preempted: failed}
+"""
+
+
+def test_a_state_with_the_same_work_can_be_added_to_until() -> None:
+    rule = "properties: [{never: {after: CLOSE, until: RELEASE, enter: HOME}}]"
+    (found,) = helps(GRIPS.replace("PROPERTY", rule), "SM701")
+    assert "has the same variables: write `[RELEASE, LET_GO]`" in found
+    assert "swapped" not in found
+
+
+def test_a_swap_that_forbids_nothing_is_no_help() -> None:
+    """With the names swapped the property would hold only because GO never follows RELEASE."""
+    rule = "properties: [{never: {after: CLOSE, until: RELEASE, enter: GO}}]"
+    (found,) = helps(GRIPS.replace("PROPERTY", rule), "SM701")
+    assert "swapped" not in found
+
+
+def test_the_retry_is_one_of_a_failure() -> None:
+    rule = "properties: [always_ends]"
+    text = GRIPS.replace("PROPERTY", rule).replace(
+        "succeeded: RELEASE, aborted: failed", "succeeded: RELEASE, aborted: CLOSE"
+    )
+    (found,) = helps(text, "SM701")
+    assert "in `GO`: write `retry: {on: [aborted], max: 3}`" in found
+
+
+WAIT = """
+name: sm
+template: Base
+outcomes: [done]
+userdata: {wait: {type: "float<UNIT>", value: 3000}}
+states:
+  - WAIT:
+      template: SleepState
+      time: "`lambda ud: CODE`"
+      input_keys: [wait]
+      transitions: {succeeded: done, preempted: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("unit", "code", "help"),
+    [
+        ("ms", "ud.wait", "write `ud.wait * 0.001`"),
+        ("ms", "ud.wait + 5", "write `(ud.wait + 5) * 0.001`"),
+        ("s", "ud.wait", None),
+        ("ms", "ud.wait / 1000.0 if ud.wait else 1", None),
+        ("ms", "ud.wait * 0.001", None),
+        ("ms", "(ud.wait + 5) * 0.001", None),
+    ],
+)
+def test_the_result_of_a_function_has_the_unit_of_the_variable(
+    unit: str, code: str, help: str | None
+) -> None:
+    found = helps(WAIT.replace("UNIT", unit).replace("CODE", code), "SM504")
+    assert found == ([help] if help else [])
+
+
+TURN = """
+name: sm
+template: Base
+outcomes: [done]
+TYPES
+userdata: VALUE
+states:
+  - LOOK:
+      template: ScriptedState
+      input_keys: {parts: "list[Part]"}
+      outcomes: [done]
+      transitions: {done: done}
+"""
+
+
+def test_a_rotation_in_an_item_of_a_list() -> None:
+    text = TURN.replace("TYPES", "types: {Part: {id: int, at: Pose}}")
+    text = text.replace("VALUE", "{parts: [{id: 1, at: [[0, 0, 0], [0, 0, 1]]}]}")
+    report = analysed({"main.yml": text}).report
+    (found,) = [each for each in report if each.code == "SM501"]
+    assert found.message.startswith("the rotation in `at` of the first item of `parts` has 3")
+    assert found.span.text == "[0, 0, 1]"
+
+
+FORCE = """
+name: sm
+template: Base
+outcomes: [done]
+params: {seconds: 2.0}
+states:
+  - WAIT:
+      template: SleepState
+      time: seconds
+      transitions: {succeeded: done, preempted: done}
+"""
+
+
+def test_a_param_as_a_text_is_one_finding() -> None:
+    report = analysed({"main.yml": FORCE}).report
+    assert [(each.code, each.help) for each in report] == [
+        ("SM304", "write `[params, seconds]` for the value of the param")
+    ]
+
+
+CALLS = """
+name: sm
+template: Base
+outcomes: [done, failed]
+states:
+  - ONE: {script: part, transitions: {done: BOTH}}
+  - BOTH:
+      template: Concurrence
+      outcomes: [done, failed]
+      default_outcome: failed
+      outcome_map: {done: {L: done, R: done}}
+      states:
+        - L: {script: part}
+        - R: {script: part}
+      transitions: {done: done, failed: failed}
+"""
+PART = """
+- PART:
+    template: StateMachine
+    outcomes: [done, failed]
+    transitions: {failed: failed}
+    states:
+      - A: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: done, bad: failed}}
+"""
+
+
+def test_a_transition_of_a_sub_script_that_one_call_needs() -> None:
+    assert helps(CALLS, "SM101", **{"part.yml": PART}) == []
+    alone = CALLS.replace("  - ONE: {script: part, transitions: {done: BOTH}}\n", "")
+    assert helps(alone, "SM101", **{"part.yml": PART})

@@ -162,3 +162,21 @@ code: {python: "cell:Say"}
         "SM301",
         "rename `word` to `words`, or write `remapping: {words: word}` in `SAY`",
     )
+
+
+def test_the_role_of_a_variable_means_the_variable() -> None:
+    script = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {n: 1}
+states:
+  - ASK:
+      template: ConditionalOutcomeState
+      outcomes: [low]
+      input_keys: [n]
+      conditions: {low: 'lambda ud: ud.n < 3'}
+      default_outcome: high
+      transitions: {low: done, high: done}
+"""
+    assert reported({"main.yml": script}) == [("SM003", "conditions", "did you mean `callbacks`?")]

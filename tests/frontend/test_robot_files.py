@@ -192,8 +192,8 @@ def test_several_robots() -> None:
 @pytest.mark.parametrize(
     ("before", "after", "help", "effect"),
     [
-        ("robot: arm.yml", "robot: amr.yml", "did you mean `arm.yml`?", "without a description"),
-        ("scene: table.yml", "scene: tabel.yml", "did you mean `table.yml`?", "without the scene"),
+        ("robot: arm.yml", "robot: amr.yml", "did you mean `arm.yml`?", "the robot is not known"),
+        ("scene: table.yml", "scene: tabel.yml", "did you mean `table.yml`?", "the bodies are not known"),
     ],
 )
 def test_a_file_with_nearly_the_name(

@@ -133,10 +133,10 @@ def test_a_mistake_has_its_place(
 
 def test_a_wrong_unit_has_help() -> None:
     wrong = {
-        (*LEFT, "home", 1): (57.0, "angles are in radians, not in degrees"),
+        (*LEFT, "home", 1): (57.0, "write `0.9948`: angles are in radians, not in degrees"),
         (*LEFT, "gripper", "joints", "f", "open"): (
             40,
-            "lengths are in metres, not in millimetres",
+            "write `0.04`: lengths are in metres, not in millimetres",
         ),
     }
     for place, (value, help) in wrong.items():
