@@ -193,7 +193,12 @@ def test_several_robots() -> None:
     ("before", "after", "help", "effect"),
     [
         ("robot: arm.yml", "robot: amr.yml", "did you mean `arm.yml`?", "the robot is not known"),
-        ("scene: table.yml", "scene: tabel.yml", "did you mean `table.yml`?", "the bodies are not known"),
+        (
+            "scene: table.yml",
+            "scene: tabel.yml",
+            "did you mean `table.yml`?",
+            "the bodies are not known",
+        ),
     ],
 )
 def test_a_file_with_nearly_the_name(
