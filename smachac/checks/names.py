@@ -9,23 +9,26 @@ from typing import NamedTuple
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
-    children_names,
     is_catch_all,
     is_open,
     places_of,
-    strays,
     unknown_outcomes,
 )
 from smachac.checks.declarations import meant_keys
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
+from smachac.checks.misplaced_states import (
+    misplaced_finding,
+    misplaced_states,
+    stray_transitions,
+)
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
 from smachac.ir.outcome_names import GOOD, SUCCESSES
 from smachac.ir.traversal import PREEMPTED, outcome_names
 
@@ -81,10 +84,17 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               transitions: {done: stacked}
     """
     lost = context.at_containers(_lost)
+    misplaced = misplaced_states(context) if lost else []
+    for each in misplaced:
+        yield misplaced_finding(each)
+    causes = {(each.meant_path, each.child.name) for each in misplaced}
+    moved = {each.path for each in misplaced}
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
         paths.setdefault(node.name, context.plain_paths.get(path, path))
     for fault in lost:
+        if (fault.path, fault.step.target) in causes or f"{fault.path}/{fault.child.name}" in moved:
+            continue
         yield _nowhere(fault, paths.get(fault.step.target))
     for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
@@ -92,16 +102,12 @@ def unknown_target(context: Context) -> Iterator[Finding]:
 
 
 def _lost(path: str, container: Container) -> Iterator[_Lost]:
-    if not isinstance(container, StateMachine | nodes.Sequence):
-        return
-    names = children_names(container)
-    exits = frozenset(outcome_names(container))
-    guess = places_of(container)
-    for child in container.children:
-        for step in strays(child, names, exits):
-            if not _was_reported(step):
-                meant, sure = guess(step.target), guess.sure(step.target)
-                yield _Lost(path, container, child, step, meant, sure)
+    guess: Guesser | None = None
+    for _, linear, child, step in stray_transitions(path, container):
+        guess = guess or places_of(container)
+        if not _was_reported(step):
+            meant, sure = guess(step.target), guess.sure(step.target)
+            yield _Lost(path, linear, child, step, meant, sure)
 
 
 def _was_reported(step: Transition) -> bool:

@@ -13,6 +13,7 @@ from smachac.analysis.control_flow import (
     strays,
 )
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
+from smachac.checks.misplaced_states import ends_of_misplaced, misplaced_states
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
@@ -86,10 +87,11 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
             continue
         if hidden and missed is None:
             missed = missed_states(context)
+            missed |= {each.path for each in misplaced_states(context)}
         before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
         for child in hidden:
             if f"{path}/{child.name}" in (missed or ()):
-                continue  # SM701 reports the transition that must lead to it
+                continue  # SM701 reports the transition that must lead to it, SM101 its place
             twice = _led_twice(container, seen) if not before.get(child.name) else None
             yield Finding(
                 span=child.span,
@@ -235,6 +237,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
     """
     linear = iter(context.corrected)
     again = {found.stop.path for found in context.stop_paths.again}
+    moved: set[tuple[str, str]] | None = None
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
         possible = context.of_container(_possible_outcomes, path, whole)
@@ -246,7 +249,9 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
             known.add(misnamed.meant.name)  # SM104
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in possible | known:
-                yield _impossible(path, container, outcome)
+                moved = ends_of_misplaced(context) if moved is None else moved
+                if (path, outcome.name) not in moved:  # SM101
+                    yield _impossible(path, container, outcome)
 
 
 def _possible_outcomes(container: Container) -> frozenset[str] | None:
