@@ -20,12 +20,13 @@ _ENDLESS = ("count", "cycle", "repeat")
 class PathEnds:
     """Whether statements end each path, in a module with `names`.
 
-    `never_returns` decides on a called function. Where it cannot be judged whether a path goes on,
-    the answer is that it ends.
+    `never_returns` decides on a called function, `never_exhausted` on one whose call gives items.
+    Where it cannot be judged whether a path goes on, the answer is that it ends.
     """
 
     names: Names
     never_returns: Callable[[ast.expr], bool]
+    never_exhausted: Callable[[ast.expr], bool] = lambda _: False
 
     def block(self, body: list[ast.stmt]) -> bool:
         """Whether control never reaches the end of statements: they return, raise or loop for
@@ -97,6 +98,8 @@ class PathEnds:
                 items = inner
             case items:
                 pass
+        if isinstance(items, ast.Call) and self.never_exhausted(items.func):
+            return True
         match items:
             case ast.Call(func=ast.Attribute(value=ast.Name(id="itertools"), attr=name)):
                 pass

@@ -21,6 +21,7 @@ from smachac.frontend.python_functions import (
     Access,
     access_of,
     alternatives,
+    is_generator,
     is_plain,
     returns_of,
 )
@@ -92,7 +93,7 @@ class _Reader:
         self.function = function
         self.userdata = userdata
         self.nodes = list(ast.walk(function))
-        self.path_ends = PathEnds(module.names, self._never_returns)
+        self.path_ends = PathEnds(module.names, self._never_returns, self._never_exhausted)
         self.own_name = _first_argument(function)
         self.called: dict[ast.Call, Flow | None] = {}
         self.effect: dict[ast.AST, frozenset[str]] = {}
@@ -244,6 +245,26 @@ class _Reader:
         flow = self.flows.of(module, function, "")
         return (
             flow is not None and flow.complete and not (flow.silent or flow.endings or flow.passed)
+        )
+
+    def _never_exhausted(self, called: ast.expr) -> bool:
+        """Whether a function of the user is a generator that raises an exception or loops on each
+        of its paths."""
+        match called:
+            case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner == self.own_name:
+                found = None if name in self.flows.assigned else self.flows.own.method(name)
+            case ast.Name(id=name):
+                found = None if self._is_local(name) else self._function(called)
+            case _:
+                return False
+        if found is None:
+            return False
+        _, function = found
+        return (
+            is_generator(function)
+            and not function.decorator_list
+            and not any(returns_of(function.body))
+            and self.path_ends.block(function.body)
         )
 
     def _function(self, called: ast.expr) -> tuple[Module, ast.FunctionDef] | None:

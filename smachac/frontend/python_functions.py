@@ -14,10 +14,10 @@ _Functions = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.expr
 
 def is_plain(function: ast.FunctionDef) -> bool:
     """Whether a function runs when it is called: it is no generator and has no decorator."""
-    return not function.decorator_list and not _is_generator(function)
+    return not function.decorator_list and not is_generator(function)
 
 
-def _is_generator(function: ast.FunctionDef) -> bool:
+def is_generator(function: ast.FunctionDef) -> bool:
     """Whether a function itself, not one inside it, has a `yield`."""
     todo: list[ast.AST] = [*function.body]
     while todo:

@@ -644,3 +644,31 @@ class Reader(smach.State):
 def test_a_helper_reads_a_field_of_its_argument(body: str, found: list[str]) -> None:
     report = analysed(FIELD_FILES | {"own.py": HELPED.replace("BODY", body)}).report
     assert [item.span.text for item in report if item.code == "SM311"] == found
+
+
+GENERATOR = """
+    def tries(self, userdata):
+        while True:
+            if self.preempt_requested():
+                raise Stopped
+            yield userdata.tries
+"""
+
+
+@pytest.mark.parametrize(
+    ("generator", "found"),
+    [
+        (GENERATOR, []),
+        (GENERATOR.replace("raise Stopped", "return"), ["SM309 cell/find.py:11 execute"]),
+        (GENERATOR.replace("while True", "while self.speed"), ["SM309 cell/find.py:11 execute"]),
+    ],
+)
+def test_a_loop_over_a_generator(generator: str, found: list[str]) -> None:
+    """A generator that only raises or loops does not end the loop over its items."""
+    text = changed((FIRST, "        for _ in self.tries(userdata):\n"))
+    text = text.replace('        return "lost"\n', "")
+    text = text.replace('"found", "lost", "preempted"', '"found", "preempted"')
+    interface = INTERFACE.replace("lost: {}, ", "")
+    script = SCRIPT.replace(" lost: lost,", "")
+    report = findings(text + generator, interface, script)
+    assert [each for each in lines(report) if each.startswith("SM309")] == found
