@@ -73,6 +73,15 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
     return [(step, near[step.outcome] or alike.get(step.outcome)) for step in unknown]
 
 
+def outcome_of_one_meaning(child: Node, name: str) -> str | None:
+    """The outcome of a state that is probably meant by an unknown one: the only success or the only
+    failure."""
+    left = [each for each in outcome_names(child) if each != PREEMPTED]
+    meaning = _meaning(name, is_failure(name))
+    alike = [each for each in left if _meaning(each, fails(child, each)) == meaning]
+    return alike[0] if meaning in ("success", "failure") and len(alike) == 1 else None
+
+
 def _of_one_meaning(child: Node, others: list[str], left: list[str]) -> dict[str, str]:
     """For unknown outcomes the ones in `left` that are probably meant: the only success, the only
     failure, the only one that remains."""

@@ -144,9 +144,14 @@ def _with_keys(slot: CodeSlot, tree: ast.expr, name: str, node: Node) -> str:
 
 
 def _as_code(slot: CodeSlot, text: str) -> str:
-    """Code as the script must write it: in backticks and quotes where a plain text is no code."""
-    plain = not slot.must_be_called and "`" not in slot.code.span.text
-    return in_quotes(f"`{text}`") if plain else f"`{text}`"
+    """Code as the script must write it: in backticks and quotes where a plain text is no code, and
+    in quotes where it has none, because a plain text of YAML cannot contain a colon."""
+    source, start = slot.code.span.source, slot.code.span.start
+    before = source.text[max(0, start - 1) : start + 1]
+    if not slot.must_be_called and "`" not in slot.code.span.text:
+        return in_quotes(f"`{text}`")
+    quoted = any(each in before for each in "'\"`|>") or "\n" in slot.code.span.text
+    return f"`{text}`" if quoted else f"`{in_quotes(text)}`"
 
 
 def _as_key(slot: CodeSlot) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import is_open
+from smachac.analysis.control_flow import is_open, outcome_of_one_meaning
 from smachac.analysis.outcome_rules import (
     Combination,
     CorrectedConcurrence,
@@ -194,7 +194,8 @@ def _example(container: Concurrence) -> str:
 def _other_outcome(child: Node, outcome: str) -> str:
     names = outcome_names(child)
     known = f"use one of its outcomes: {listed(names)}" if names else "it has no outcomes"
-    return did_you_mean(guesser(names)(outcome)) or ends_of(child) or known
+    meant = guesser(names)(outcome) or outcome_of_one_meaning(child, outcome)
+    return did_you_mean(meant) or ends_of(child) or known
 
 
 def _shadowed_rules(each: Judged) -> Iterator[Finding]:

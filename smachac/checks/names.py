@@ -9,9 +9,11 @@ from typing import NamedTuple
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
+    children_names,
     is_catch_all,
     is_open,
     places_of,
+    strays,
     unknown_outcomes,
 )
 from smachac.checks.declarations import meant_keys
@@ -103,11 +105,26 @@ def unknown_target(context: Context) -> Iterator[Finding]:
 
 def _lost(path: str, container: Container) -> Iterator[_Lost]:
     guess: Guesser | None = None
+    copied = copied_name(container)
     for _, linear, child, step in stray_transitions(path, container):
         guess = guess or places_of(container)
-        if not _was_reported(step):
+        if not _was_reported(step) and step.target != copied:  # SM106
             meant, sure = guess(step.target), guess.sure(step.target)
             yield _Lost(path, linear, child, step, meant, sure)
+
+
+def copied_name(container: Container) -> str | None:
+    """The name that one of two states of the same name should have: the only unknown target of
+    transitions in their container, if it is not a misspelt name."""
+    names = children_names(container)
+    is_linear = isinstance(container, nodes.StateMachine | nodes.Sequence)
+    if not is_linear or len(container.children) - len(names) != 1:
+        return None
+    exits = frozenset(outcome_names(container))
+    steps = [step for child in container.children for step in strays(child, names, exits)]
+    targets = {step.target for step in steps}
+    target = targets.pop() if len(targets) == 1 else None
+    return target if target and places_of(container).sure(target) is None else None
 
 
 def _was_reported(step: Transition) -> bool:
@@ -194,10 +211,13 @@ def _idle_transitions(context: Context, path: str, container: Container) -> Iter
     """The transitions of the children of a concurrence or an iterator, except those of a sub-script
     that a state machine calls as well."""
     why = "an iterator repeats its child or ends"
-    help = "remove it; `loop_outcomes` lists the outcomes that continue the loop"
+    help = "remove it: `loop_outcomes` lists the outcomes that continue the loop"
     if isinstance(container, Concurrence):
         why = "the branches of a concurrence start together"
-        help = f"remove it; the rules in `outcome_map` decide how `{container.name}` ends"
+        help = (
+            f"remove it: the rules in `outcome_map` decide how `{container.name}` ends; for an"
+            " order put the states into a Sequence in one branch"
+        )
     for child in container.children:
         steps = [step for step in child.transitions if step.origin == "written"]
         if steps and not (child.via and _is_taken_elsewhere(context, steps[0].span)):
@@ -207,7 +227,7 @@ def _idle_transitions(context: Context, path: str, container: Container) -> Iter
                 span=first.span,
                 message=f"the {what} {'are' if several else 'is'} never taken: {why}",
                 arguments=(own_name(child, first.span), first.target, first.outcome),
-                help=help.replace("it;", "them;", 1) if several else help,
+                help=help.replace("it:", "them:", 1) if several else help,
                 related=calls(child, first.span),
                 severity=Severity.WARNING,
                 node=f"{path}/{child.name}",
@@ -406,12 +426,18 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
         for child in container.children:
             known = first.setdefault(child.name, child)
             if known is not child:
+                meant = copied_name(container)
+                help = (
+                    f"rename one of the two, for example to `{_new_name(child.name, first)}`,"
+                    " also in the transitions that mean it"
+                )
+                if meant is not None:
+                    help = f"rename one of the two to `{meant}`, to which transitions lead"
                 yield Finding(
                     span=child.span,
                     message=f"`{container.name}` already has a state `{child.name}`",
                     arguments=(child.name,),
-                    help=f"rename one of the two, for example to `{_new_name(child.name, first)}`,"
-                    " also in the transitions that mean it",
+                    help=help,
                     related=(
                         *other_place(known.span, "the first state of this name"),
                         *calls(child, child.span),

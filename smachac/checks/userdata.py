@@ -337,13 +337,20 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
     if not node.remaps or path == node.name:  # the machine has no userdata around it
         return
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
-    for remap, meant, certain in unknown_remaps(node):
+    unknown = unknown_remaps(node)
+    turned = [remap for remap, meant, _ in unknown if remap.to in own and meant is None]
+    for remap, meant, certain in unknown:
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
-        if remap.to in own:
-            known = f"the key of the state comes first: write `{remap.to}: {remap.key}`"
+        if remap in turned:
+            if remap is not turned[0]:
+                continue
+            right = ", ".join(f"{each.to}: {each.key}" for each in turned)
+            right = f"{{{right}}}" if len(turned) > 1 else right
+            known = f"the key of the state comes first: write `{right}`"
         yield Finding(
             span=remap.span,
-            message=f"`{node.name}` has no userdata key `{remap.key}` to remap to `{remap.to}`",
+            message=f"`{remap.key}` in the remapping of `{node.name}` is not one of its userdata"
+            " keys",
             arguments=(remap.key, remap.to),
             help=did_you_mean(meant) or known,
             effect="SMACH ignores the entry: the state uses the keys under its own names",

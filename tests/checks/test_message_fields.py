@@ -74,7 +74,7 @@ def test_slots_of_the_response_are_those_of_the_second_part() -> None:
         (
             "width",
             "the response of `cell_msgs/Grasp` has no field `width`",
-            "use one of its fields: `held`",
+            "write `held`, its only field, in place of `width`",
         )
     ]
     assert faults(service("response_slots: [held]\n      output_keys: [held]")) == []

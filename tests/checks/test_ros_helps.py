@@ -41,7 +41,7 @@ states:
         (WATCH, "lambda ud, msg", "lambda msg", "SM317", "msg", "begin it with `lambda ud, msg:`"),
         (
             WATCH, "'lambda ud, msg: msg.data > 10.0'", "ud.n > 0", "SM316", "ud",
-            "write `lambda ud, message: ud.n > 0`",
+            "write `'lambda ud, message: ud.n > 0'`",
         ),
         (
             GRIP, "lambda ud, response", "lambda ud", "SM317", "ud",

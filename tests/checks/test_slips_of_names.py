@@ -47,7 +47,10 @@ def test_outcomes_of_two_branches_that_are_swapped() -> None:
 def test_transitions_of_a_branch_are_one_finding() -> None:
     branch = "- DRIVE: {template: ScriptedState, outcomes: [done, lost]"
     found = patrol(branch, f"{branch}, transitions: {{done: LIGHT, lost: LIGHT}}")
-    help = "remove them; the rules in `outcome_map` decide how `BOTH` ends"
+    help = (
+        "remove them: the rules in `outcome_map` decide how `BOTH` ends; for an order put the"
+        " states into a Sequence in one branch"
+    )
     assert [each for each in found if each[0] == "SM101"] == [("SM101", "done", help)]
 
 
@@ -208,3 +211,42 @@ states:
   - SHOW: {{template: PrintUserdataState, input_keys: [spot], transitions: {{succeeded: done}}}}
 """
     assert reported({"main.yml": text}) == found
+
+
+def test_a_copied_state_that_was_not_renamed() -> None:
+    text = """\
+name: sm
+outcomes: [done]
+states:
+  - DROP_LEFT: {template: ScriptedState, outcomes: [ok], transitions: {ok: DROP_RIGHT}}
+  - DROP_LEFT: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+"""
+    help = "rename one of the two to `DROP_RIGHT`, to which transitions lead"
+    assert reported({"main.yml": text}) == [("SM106", "DROP_LEFT", help)]
+    misspelt = text.replace("DROP_RIGHT", "DROP_LEFTT")
+    assert {code for code, *_ in reported({"main.yml": misspelt})} == {"SM101", "SM106"}
+
+
+def test_a_remapping_the_wrong_way_round_is_one_finding() -> None:
+    text = """\
+name: sm
+outcomes: [done]
+userdata: {a: 1, b: 2}
+states:
+  - SHOW:
+      template: ScriptedState
+      input_keys: [x, y]
+      outcomes: [ok]
+      remapping: {a: x, b: y}
+      transitions: {ok: done}
+"""
+    found = [each for each in reported({"main.yml": text}) if each[0] == "SM302"]
+    help = "the key of the state comes first: write `{x: a, y: b}`"
+    assert found == [("SM302", "a", help)]
+
+
+def test_a_failure_of_another_name_in_a_rule() -> None:
+    main = PATROL.replace(RULE, "outcome_map: {ready: {LIGHT: done, DRIVE: failed}}")
+    main = main.replace("lost", "aborted")
+    found = [each for each in reported({"main.yml": main}) if each[0] == "SM403"]
+    assert found == [("SM403", "failed", "did you mean `aborted`?")]
