@@ -70,6 +70,7 @@ from smachac.frontend.state_fields import (
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import (
     SUB_SCRIPT_HELP,
+    one_for_all_calls,
     overridden,
     params_at_call,
     params_beside_call,
@@ -194,6 +195,7 @@ class _Resolver:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
+        self.report[:] = one_for_all_calls(self.report)
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)

@@ -9,6 +9,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.errors.references import (
     bad_sub_script,
+    look_up_of_all_calls,
     look_up_of_call,
     unresolved_look_up,
 )
@@ -150,3 +151,36 @@ def params_at_call(
         ):
             kept.append(item)
     return kept
+
+
+def one_for_all_calls(found: Sequence[Diagnostic]) -> Report:
+    """The findings, with one finding at a look-up in a sub-script in place of those at its calls,
+    if several calls give the param under the same other name."""
+    groups: dict[tuple[Span, str], list[Diagnostic]] = {}
+    for item in found:
+        place = _look_up_of_other_name(item)
+        if place is not None:
+            groups.setdefault((place, item.finding.arguments[0]), []).append(item)
+    first = {id(items[0]): key for key, items in groups.items() if len(items) > 1}
+    others = {id(each) for items in groups.values() if len(items) > 1 for each in items[1:]}
+    kept: Report = []
+    for item in found:
+        if id(item) in others:
+            continue
+        if id(item) in first:
+            place, given = first[id(item)]
+            calls = [each.span for each in groups[place, given]]
+            item = replace(item, finding=look_up_of_all_calls(item.finding, place, given, calls))
+        kept.append(item)
+    return kept
+
+
+def _look_up_of_other_name(item: Diagnostic) -> Span | None:
+    """The look-up in a sub-script that failed because the call gives a param of another name, if a
+    finding at the call is about it."""
+    related = item.finding.related
+    if item.kind is not unresolved_look_up.code or len(related) != 1:
+        return None
+    place = related[0].span
+    moved = place.source is not item.span.source and item.finding.arguments[0] != place.text
+    return place if moved else None

@@ -250,3 +250,20 @@ def test_a_failure_of_another_name_in_a_rule() -> None:
     main = main.replace("lost", "aborted")
     found = [each for each in reported({"main.yml": main}) if each[0] == "SM403"]
     assert found == [("SM403", "failed", "did you mean `aborted`?")]
+
+
+def test_a_param_that_all_calls_give_under_another_name() -> None:
+    main = """\
+name: sm
+outcomes: [done]
+states:
+  - ONE: {script: part, params: {what: 1.5}, transitions: {succeeded: TWO, preempted: done}}
+  - TWO: {script: part, params: {what: 2.5}, transitions: {succeeded: done, preempted: done}}
+"""
+    part = "- PART: {template: SleepState, time: [params, object]}\n"
+    found = reported({"main.yml": main, "part.yml": part})
+    help = "write `what` in place of `object` here, or rename the param in each call"
+    assert found == [("SM015", "object", help)]
+    alone = main.replace("what: 2.5", "object: 2.5")
+    (one,) = reported({"main.yml": alone, "part.yml": part})
+    assert one == ("SM015", "what", "write `object: 1.5` in place of `what: 1.5`")

@@ -361,6 +361,20 @@ def look_up_of_call(
     )
 
 
+def look_up_of_all_calls(found: Finding, place: Span, given: str, calls: Sequence[Span]) -> Finding:
+    """SM015 at a look-up in a sub-script, several of whose calls give a param of another name."""
+    shown = calls[:2]
+    return replace(
+        found,
+        span=place,
+        message=f"this sub-script reads the param `{place.text}`, but its calls give `{given}`",
+        arguments=(place.text, given),
+        help=f"write `{given}` in place of `{place.text}` here, or rename the param in each call",
+        related=tuple(Related(span=each, message=f"`{given}` is given here") for each in shown),
+        edits=(),
+    )
+
+
 def _renamed_param(wrong: Word, name: str) -> str:
     """The help for a param of a call that has another name in the sub-script."""
     source, end = wrong.span.source, wrong.span.end
