@@ -16,6 +16,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name, reader_at
 from smachac.checks.code_slots import function_reads
+from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
@@ -117,6 +118,10 @@ def dead_key(context: Context) -> Iterator[Finding]:
             loop = loop_over_the_word(container, key)
             if loop is not None:
                 yield word_as_list(f"{scope.path}/{loop.name}", loop, key)
+                continue
+            copied = copied_remap(container, key)
+            if copied is not None:
+                yield copied_finding(scope.path, copied, key)
                 continue
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
@@ -418,7 +423,10 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         for key in container.inputs:
             if key.name in used or (scope.path, key.name) in kept:
                 continue
-            if not isinstance(container, nodes.Iterator) or not is_over_the_word(
+            copied = copied_remap(container, key.name)
+            if copied is not None:
+                yield copied_finding(scope.path, copied, key.name)
+            elif not isinstance(container, nodes.Iterator) or not is_over_the_word(
                 container, key.name
             ):
                 yield _unused(scope.path, container, key, "input")

@@ -325,6 +325,9 @@ def _effect(clash: Clash) -> str | None:
         return f"Python raises a KeyError where code reads the field `{name}`"
     if wanted.name == "one_of":
         return "the interface allows these values only: the code may fail with another one"
+    node = clash.cell.node
+    if clash.cell.role == "variable" and isinstance(node, Leaf) and node.built_in:
+        return "the state fails at its first visit"
     if wanted.name in ("int", "float") and kinds(given) == {"text"}:
         return "the state gets a text, not a number: arithmetic with it raises a TypeError"
     if wanted.name == "int" and kinds(given) == {"number"} and clash.flow.type == given:

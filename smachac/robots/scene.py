@@ -183,6 +183,14 @@ def _scene(given: Fields) -> tuple[Body, ...]:
                 help = guess(name, above[2:])
                 raise DataError(message, (*place, "apart", name), help, key=True)
         above.append(body.name)
+    places: dict[object, str] = {}
+    for body in bodies:
+        same = (body.model, body.path, body.box, body.pose, body.frame, body.spread)
+        other = places.setdefault(same, body.name)
+        if other != body.name and body.spread == (0.0, 0.0, 0.0):
+            message = f"`{body.name}` is at the same place as `{other}`"
+            help = "write another pose: two bodies in one place push each other away"
+            raise DataError(message, ("bodies", body.name, "pose"), help)
     return bodies
 
 

@@ -267,3 +267,30 @@ states:
     alone = main.replace("what: 2.5", "object: 2.5")
     (one,) = reported({"main.yml": alone, "part.yml": part})
     assert one == ("SM015", "what", "write `object: 1.5` in place of `what: 1.5`")
+
+
+SIDES = """\
+name: sm
+outcomes: [done]
+userdata: {left_home: 1.5, right_home: 2.5}
+states:
+  - LEFT:
+      template: ScriptedState
+      input_keys: [home]
+      outcomes: [ok]
+      remapping: {home: left_home}
+      transitions: {ok: RIGHT}
+  - RIGHT:
+      template: ScriptedState
+      input_keys: [home]
+      outcomes: [ok]
+      remapping: {home: left_home}
+      transitions: {ok: done}
+"""
+
+
+def test_a_copied_remapping() -> None:
+    help = "write `home: right_home`, or remove `right_home` if this is intended"
+    assert reported({"main.yml": SIDES}) == [("SM305", "left_home", help)]
+    other = SIDES.replace("right_home: 2.5", "grip_force: 2.5")
+    assert [each[1] for each in reported({"main.yml": other})] == ["grip_force"]
