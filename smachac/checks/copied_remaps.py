@@ -36,11 +36,12 @@ def copied_remap(container: Container, key: str) -> CopiedRemap | None:
     found = []
     for (_, to), alike in groups.items():
         wanted = _words([key]) - _words([to])
-        shared = _words([key]) & _words([to])
         named = [(child, remap) for child, remap in alike if wanted & _words(_names(child))]
-        if len(alike) > 1 and shared and len(named) == 1:
-            child, remap = named[0]
-            other = next(each for each, _ in alike if each is not child)
+        if len(alike) < 2 or len(named) != 1:
+            continue
+        child, remap = named[0]
+        other = next(each for each, _ in alike if each is not child)
+        if _words([key]) & _words([to]) or _words([to]) & _words(_names(other)):
             found.append(CopiedRemap(child, remap, other))
     return found[0] if len(found) == 1 else None
 

@@ -20,6 +20,7 @@ from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
+from smachac.checks.misplaced_states import keys_of_misplaced
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code
@@ -91,6 +92,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
         unset.setdefault(each.scope.path, set()).add(each.key)
     reported |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}
     reported |= _swapped_lists(context)
+    reported |= keys_of_misplaced(context)
     in_functions = function_reads(context)
     for scope in flow.scopes.values():
         container = scope.container
@@ -511,6 +513,7 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
             message=f"the {what} `{word.text}` is defined, but nothing uses it",
             arguments=(what, word.text),
             help=did_you_mean(_param_meant(word.text, known))
+            or (f"write `{known[0]}`, the param that is used here" if len(known) == 1 else None)
             or (f"the params that are used here are {listed(known)}" if known else None)
             or "remove it, or correct its name",
             effect="its value has no effect" if what == "param" else None,

@@ -213,7 +213,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
     outcomes = outcome_names(leaf) if leaf.variables and not leaf.open else []
     if not outcomes:
         return
-    for word, what in _endings(leaf):
+    for word, what, effect in _endings(leaf):
         if word.text not in outcomes:
             meant = did_you_mean(guesser(outcomes)(word.text))
             yield Finding(
@@ -223,21 +223,23 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
                 help=meant
                 or f"add `{word.text}` to the `outcomes` of `{leaf.name}` and to its transitions,"
                 f" or use one of its outcomes: {listed(outcomes)}",
-                effect="SMACH accepts only declared outcomes: the machine stops with an error",
+                effect=effect,
                 related=calls(leaf, word.span),
                 node=path,
             )
 
 
-def _endings(leaf: Leaf) -> Iterator[tuple[Word, str]]:
-    """The outcomes in the conditions and steps of a leaf, each with the start of its message."""
+def _endings(leaf: Leaf) -> Iterator[tuple[Word, str, str]]:
+    """The outcomes in the conditions and steps of a leaf, each with the start of its message, and
+    with the effect of an unknown one."""
     conditions = variable_of(leaf, "conditions")
     for outcome, site in (functions(leaf, "conditions") or {}).items():
         span = site.span
         if conditions is not None and outcome not in outcome_names(leaf):
             place = place_of_part(conditions.value.span, (outcome,), key=True)
             span = place if place != conditions.value.span else span
-        yield Word(outcome, span), f"a condition of `{leaf.name}` leads to"
+        what = f"a condition of `{leaf.name}` leads to"
+        yield Word(outcome, span), what, f"`{leaf.name}` never uses the condition"
     held = variable_of(leaf, "steps")
     if held is None or not isinstance(held.value.data, tuple):
         return
@@ -245,7 +247,9 @@ def _endings(leaf: Leaf) -> Iterator[tuple[Word, str]]:
         end = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
         if isinstance(end, str) and end and end not in outcome_names(leaf):
             place = place_of_part(held.value.span, (at, "outcome"))
-            yield Word(end, place), f"a step of `{leaf.name}` ends with"
+            what = f"a step of `{leaf.name}` ends with"
+            effect = "SMACH accepts only declared outcomes: the machine stops with an error"
+            yield Word(end, place), what, effect
 
 
 MOST_SOURCES = 3

@@ -10,7 +10,7 @@ from smachac.analysis.control_flow import Linear, children_names, strays
 from smachac.checks.messages import calls, other_place
 from smachac.diagnostics.diagnostic import Finding
 from smachac.ir.nodes import Container, Node, Sequence, StateMachine, Transition
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, remapping
 
 
 class Misplaced(NamedTuple):
@@ -80,6 +80,16 @@ def ends_of_misplaced(context: Context) -> set[tuple[str, str]]:
         (each.meant_path, step.target)
         for each in misplaced_states(context)
         for step in each.child.transitions
+    }
+
+
+def keys_of_misplaced(context: Context) -> set[tuple[str, str]]:
+    """The keys that misplaced states would read in the container that was meant, each with the path
+    of the container."""
+    return {
+        (each.meant_path, remapping(each.child).get(key.name, key.name))
+        for each in misplaced_states(context)
+        for key in each.child.inputs
     }
 
 

@@ -481,16 +481,21 @@ def _name_fault(fault: NameFault, context: Context) -> Finding:
         )
     what = {"path": "state", "tag": "state with the tag", "type": "state of the type"}
     subject = what.get(atom.subject, "state with a claim of")
-    sure = guesser(fault.known).sure(atom.name)
+    known: Sequence[str] = fault.known
+    if atom.subject == "path":  # without the states that a retry or a time limit adds
+        written = [each.plain.rpartition("/")[2] for each in walk_script(context.machine.root)
+                   if not each.added]  # fmt: skip
+        known = [name for name in known if name in written]
+    sure = guesser(known).sure(atom.name)
     edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
-    names = listed(fault.known)
+    names = listed(known)
     return Finding(
         span=atom.span,
         message=f"there is no {subject} `{atom.name}`",
         arguments=("unknown", atom.subject, atom.name),
         help=_other_subject(atom, context)
-        or did_you_mean(atom.name, fault.known)
-        or _by_words(atom, fault.known)
+        or did_you_mean(atom.name, known)
+        or _by_words(atom, known)
         or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
         edits=edits,
     )

@@ -283,6 +283,9 @@ def _finding(group: list[Clash], aliases: Mapping[str, str], *, at_origin: bool)
             show(where, message)
         if at_origin:
             show(each.cell.span, _read(each.cell, aliases))
+        declared = _in_interface(each.cell)
+        if declared is not None:
+            show(declared, f"the interface declares `{each.cell.key}` here")
     lacking = _without_fields(clash)
     first = lacking or written(origin) + _part(clash)
     second = _read(cell, aliases)
@@ -358,6 +361,16 @@ def _misspelt_fields(clash: Clash) -> Iterator[tuple[str, str]]:
         near = guesser(others)(name)
         if near is not None:
             yield name, near
+
+
+def _in_interface(cell: Cell) -> Span | None:
+    """The place of an input key in an interface of the user."""
+    node = cell.node
+    if not isinstance(node, Leaf) or node.built_in or cell.role != "input":
+        return None
+    spans = [key.span for key in node.inputs if key.name == cell.key]
+    outside = [each for each in spans if each.source is not node.span.source]
+    return outside[0] if outside and outside[0].source is not NOWHERE.source else None
 
 
 def _owner(cell: Cell) -> str:

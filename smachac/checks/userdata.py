@@ -25,7 +25,7 @@ from smachac.checks.rule import rule
 from smachac.checks.type_words import placeholder
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -338,7 +338,7 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
         return
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     unknown = unknown_remaps(node)
-    turned = [remap for remap, meant, _ in unknown if remap.to in own and meant is None]
+    turned = [remap for remap, _, _ in unknown if remap.to in own]
     for remap, meant, certain in unknown:
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
         if remap in turned:
@@ -352,11 +352,11 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
             message=f"`{remap.key}` in the remapping of `{node.name}` is not one of its userdata"
             " keys",
             arguments=(remap.key, remap.to),
-            help=did_you_mean(meant) or known,
+            help=known if remap in turned else did_you_mean(meant) or known,
             effect="SMACH ignores the entry: the state uses the keys under its own names",
             related=calls(node, remap.span),
             node=path,
-            edits=respelt(Word(remap.key, remap.span), certain),
+            edits=() if remap in turned else respelt(Word(remap.key, remap.span), certain),
         )
 
 
@@ -546,8 +546,13 @@ def lost_output(context: Context) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {succeeded: held}
     """
+    shown: set[tuple[Span, str]] = set()
     for lost in context.lost_outputs:
         keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
+        called = bool(keeper.via) and written.source is not keeper.span.source
+        if called and (written, lost.own) in shown:
+            continue  # another call of the same sub-script
+        shown.add((written, lost.own))
         inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
         gets = "an unset key" if lost.is_missing else "an older value"
         wrong, reader = lost.misspelt, lost.reader.node.name
@@ -560,13 +565,15 @@ def lost_output(context: Context) -> Iterator[Finding]:
             effect = f"each run of `{reader}` begins with the value that was set before the first"
         fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
-            span=wrong.span if wrong is not None else keeper.span,
+            span=wrong.span if wrong is not None else written if called else keeper.span,
             message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
             f" `{keeper.name}`: {happens}",
             arguments=(lost.own,),
-            help=fix or f"add `{lost.own}` to the `output_keys` of `{keeper.name}`",
+            help=fix
+            or f"add `{lost.own}` to the `output_keys` of"
+            + (f" the state in `{written.source.name}`" if called else f" `{keeper.name}`"),
             related=(
-                *other_place(written, f"`{lost.writer.name}` sets it here"),
+                *(other_place(written, f"`{lost.writer.name}` sets it here") if not called else ()),
                 *other_place(lost.reader.span, lost.reader.words),
                 *_list_of(keeper, keeper.outputs, "output_keys"),
                 *calls(keeper, keeper.span),
@@ -574,5 +581,7 @@ def lost_output(context: Context) -> Iterator[Finding]:
             effect=effect,
             severity=Severity.ERROR if lost.is_missing else None,
             node=lost.keeper.path,
-            edits=with_output(keeper, lost.own) if lost.is_missing and wrong is None else (),
+            edits=()
+            if called or wrong is not None or not lost.is_missing
+            else with_output(keeper, lost.own),
         )

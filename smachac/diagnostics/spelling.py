@@ -43,11 +43,15 @@ class Guesser:
         self._shared: set[str] = set()
 
     def __call__(self, word: str) -> str | None:
-        """The nearest name, or None. A name with another meaning is no guess."""
+        """The nearest name, or the only one of which the word is a part (`blue` of `blue_block`);
+        None without one. A name with another meaning is no guess."""
         index = self._slips()
         nearest = next((index[slip] for slip in slips(word) if slip in index), None)
         if nearest is None and len(self.names) <= MOST_COMPARED and len(word) <= LONGEST_SLIP:
-            nearest = next(iter(difflib.get_close_matches(word, self.names, n=1)), None)
+            parts = [name for name in self.names if word.casefold() in name.casefold().split("_")]
+            if len(parts) != 1 or len(word) < SHORTEST_SLIP:
+                parts = difflib.get_close_matches(word, self.names, n=1)
+            nearest = next(iter(parts), None)
         return None if nearest is None or are_unlike(word, nearest) else nearest
 
     def sure(self, word: str) -> str | None:
