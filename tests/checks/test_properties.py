@@ -267,3 +267,21 @@ def test_the_guess_for_a_state_by_its_first_words() -> None:
             each.help for each in analysed({"main.yml": text}).report if each.code == "SM703"
         ]
         assert ((help or "") == "did you mean `LIFT`?") == guess
+
+
+@pytest.mark.parametrize(
+    "sugar",
+    [
+        "retry: {on: [lost], max: 2}",
+        "retry: {on: [lost], max: 2, delay: 1s}",
+        "retry: {on: [lost], max: 2, delay: 1s}\n      timeout: 5s",
+    ],
+)
+def test_the_state_inside_its_retry(tmp_path: Path, sugar: str) -> None:
+    states = STATES.replace("- PICK:\n", f"- PICK:\n      {sugar}\n", 1)
+    more = "exhausted: aborted, timeout: aborted" if "timeout" in sugar else "exhausted: aborted"
+    states = states.replace("lost: aborted", more, 1)
+    assert findings(tmp_path, "  - at_most: {PICK: 1, PICK/PICK: 2}\n", states) == []
+    assert len(findings(tmp_path, "  - at_most: {PICK/PICK: 1}\n", states)) == 1
+    (wrong,) = findings(tmp_path, "  - at_most: {CARRY/CARRY: 1}\n", states)
+    assert wrong.startswith("SM703")
