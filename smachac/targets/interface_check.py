@@ -39,7 +39,7 @@ Words = tuple[Word, ...]
 class Declared:
     """The interface that a class declares, with the names of the state type where they correspond.
 
-    A part that could not be read is None. `others` are further differences, each with its place.
+    A part that could not be read is None. `others` are further differences.
     `stale` is the place of an outdated interface hash in the class, with the present hash.
     `faults` are those of a class that does not exist or does not work as a state.
     """
@@ -49,7 +49,7 @@ class Declared:
     outcomes: Words | None = None
     inputs: Words | None = None
     outputs: Words | None = None
-    others: Words = ()
+    others: tuple[Difference, ...] = ()
     stale: Word | None = None
     faults: tuple[ClassFault, ...] = ()
 
@@ -255,8 +255,7 @@ def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:
             continue
         names = [each.name for each in wanted]
         yield from _unlike(f"`{type_.name}.yml`", what, words, names, found.span)
-    for word in found.others:
-        yield Difference(word, f"correct the class, or the interface in `{type_.name}.yml`")
+    yield from found.others
 
 
 def _unlike(

@@ -279,3 +279,9 @@ def test_an_output_that_a_path_skips(code: str, marked: list[int]) -> None:
     found = [each for each in report if "without setting its output key" in each.message]
     assert [each.span.line for each in found] == marked
     assert all(each.span.text == "return Outcome::done" for each in found)
+
+
+def test_the_declaration_of_a_field_is_in_the_help() -> None:
+    (line,) = push_findings(("struct In { double depth", "struct In { float depth"))
+    help = "write `double depth`, or correct the interface in `Push.yml`"
+    assert line == f"SM603 6 depth: {help}"

@@ -20,6 +20,7 @@ from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import member_faults
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import ClassCode, class_code, field_type, interface_hash
+from smachac.targets.errors import Difference
 from smachac.targets.interface_check import Declared, Words
 
 LONGEST = 200_000
@@ -87,8 +88,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         inputs=_names(inputs, type_.input_keys),
         outputs=_names(outputs, type_.output_keys),
         others=(
-            *_other_fields("In", inputs, type_.input_keys),
-            *_other_fields("Out", outputs, type_.output_keys),
+            *_other_fields(type_.name, "In", inputs, type_.input_keys),
+            *_other_fields(type_.name, "Out", outputs, type_.output_keys),
         ),
         stale=stale,
         faults=(
@@ -229,8 +230,8 @@ def _names(fields: Sequence[_Field] | None, keys: Iterable[Key]) -> Words | None
 
 
 def _other_fields(
-    part: str, fields: Sequence[_Field] | None, keys: Iterable[Key]
-) -> Iterator[Word]:
+    type_name: str, part: str, fields: Sequence[_Field] | None, keys: Iterable[Key]
+) -> Iterator[Difference]:
     """Fields of another type than in the interface, or in another order."""
     if not fields:
         return
@@ -242,11 +243,18 @@ def _other_fields(
         except UnportableError:
             continue
         if right and _surely_other(each.type, right):
-            yield Word(f"`{part}::{name}` must be `{right}`", each.word.span)
+            text = f"`{part}::{name}` must be `{right}`"
+            declaration = f"{right} {name}".replace("& ", "&")
+            help = f"write `{declaration}`, or correct the interface in `{type_name}.yml`"
+            yield Difference(Word(text, each.word.span), help)
     have = [each.word.text for each in fields]
     if have != [*wanted] and sorted(have) == sorted(wanted):
         order = ", ".join(f"`{name}`" for name in wanted)
-        yield Word(f"the fields of `{part}` must be in the order {order}", fields[0].word.span)
+        text = f"the fields of `{part}` must be in the order {order}"
+        types = {each.word.text: each.type for each in fields}
+        right = "; ".join(f"{types[name]} {name}".replace("& ", "&") for name in wanted)
+        help = f"write `struct {part} {{ {right}; }};`, or correct the interface in"
+        yield Difference(Word(text, fields[0].word.span), f"{help} `{type_name}.yml`")
 
 
 def _surely_other(text: str, wanted: str) -> bool:
