@@ -26,9 +26,10 @@ from smachac.robots.models import MODELS, RGB, Box, Model
 class Body:
     """A body of a scene: a built-in model, the model of a file, or a box of its own.
 
-    `pose` is given in `frame` (`base`, `world`, or a body before it in the file), before a uniform random shift
-    of at most +-`spread` (x m, y m, yaw rad). `apart` are least distances in x and y to other
-    bodies (m). `colour` replaces that of the model. One of `model`, `path` and `box` is set.
+    `pose` is given in `frame` (`base`, `world`, or a body before it in the file), before a uniform
+    random shift of at most +-`spread` (x m, y m, yaw rad). `apart` are least distances in x and
+    y to other bodies (m). `colour` replaces that of the model. One of `model`, `path` and `box` is
+    set.
     """
 
     name: str
