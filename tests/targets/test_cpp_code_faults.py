@@ -285,3 +285,10 @@ def test_the_declaration_of_a_field_is_in_the_help() -> None:
     (line,) = push_findings(("struct In { double depth", "struct In { float depth"))
     help = "write `double depth`, or correct the interface in `Push.yml`"
     assert line == f"SM603 6 depth: {help}"
+
+
+def test_a_misspelt_type_of_the_interface_is_one_finding() -> None:
+    interface = PUSH.replace("depth: float", "depth: flaot")
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": PUSH_CLASS}
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    assert [(each.code, each.span.text) for each in report] == [("SM017", "flaot")]

@@ -15,6 +15,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
+from smachac.ir.types import unknown_words
 from smachac.targets.cpp.header_text import Part, without_literals
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import member_faults
@@ -79,8 +80,10 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     inputs, outputs = (_fields(body, name, derived=derived) for name in ("In", "Out"))
     place = whole.word(name, *head.span("name"))
     outcomes = _outcomes(body, [each.name for each in type_.outcomes])
-    stale = _stale(body, interface_hash(type_))
-    others = () if derived or stale else member_faults(code, whole, body, outcomes)
+    # A misspelt type is reported in the interface; the class can fit the type that is meant.
+    unsure = _has_unknown_type(type_)
+    stale = _stale(body, interface_hash(type_)) if not unsure else None
+    others = () if derived or stale or unsure else member_faults(code, whole, body, outcomes)
     return Declared(
         name=code.name.removeprefix("::"),
         span=place.span,
@@ -94,10 +97,16 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         stale=stale,
         faults=(
             *_faults(body, place, outcomes, derived=derived),
-            *_without_number(whole, body, place, interface_hash(type_), derived=derived),
+            *_without_number(whole, body, place, interface_hash(type_), derived=derived or unsure),
             *others,
         ),
     )
+
+
+def _has_unknown_type(type_: StateType) -> bool:
+    """Whether the interface has a type that does not exist."""
+    named = (*type_.variables.values(), *type_.input_keys, *type_.output_keys)
+    return any(unknown_words(each.type) for each in named)
 
 
 def _absent(code: ClassCode, fault: ClassFault | None) -> Declared | None:
