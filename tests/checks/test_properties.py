@@ -66,8 +66,7 @@ def test_time_limits_are_paths(tmp_path: Path) -> None:
     limited = states.replace("{done: PLACE}", "{done: PLACE, timeout: aborted, preempted: LET_GO}")
     limited = limited.replace("outcomes: [done]\n", "outcomes: [done]\n      timeout: 2s\n", 1)
     (found,) = findings(tmp_path, "  - after: {PICK: [PLACE, LET_GO]}\n", limited)
-    assert "TIMER (succeeded)" in found
-    assert found.endswith("aborted")
+    assert found.endswith("CARRY (timeout) aborted")
 
 
 def test_a_state_that_cannot_be_reached_is_one_fault(tmp_path: Path) -> None:
@@ -285,3 +284,15 @@ def test_the_state_inside_its_retry(tmp_path: Path, sugar: str) -> None:
     assert len(findings(tmp_path, "  - at_most: {PICK/PICK: 1}\n", states)) == 1
     (wrong,) = findings(tmp_path, "  - at_most: {CARRY/CARRY: 1}\n", states)
     assert wrong.startswith("SM703")
+
+
+def test_a_timer_is_shown_as_its_state(tmp_path: Path) -> None:
+    states = STATES.replace("aborted, preempted: aborted", "LET_GO, timeout: LET_GO", 1)
+    states = states.replace("- PICK:\n", "- PICK:\n      timeout: 2s\n", 1)
+    given = "  - after: {PICK: [PLACE, LET_GO]}\n"
+    stopped = states.replace("timeout: LET_GO", "timeout: LET_GO, preempted: aborted", 1)
+    (found,) = findings(tmp_path, given, stopped)
+    assert found.endswith(" | PICK (stop request, preempted) aborted")
+    timed = states.replace("timeout: LET_GO", "timeout: aborted, preempted: LET_GO", 1)
+    (found,) = findings(tmp_path, given, timed)
+    assert found.endswith(" | PICK (timeout) aborted")
