@@ -102,6 +102,24 @@ def test_a_header_without_a_folder(header: str, known: bool) -> None:
     assert [f"{item.code} {item.help}" for item in report] == expected
 
 
+@pytest.mark.parametrize(
+    ("files", "help"),
+    [
+        ({"grip/grasp.hpp": CLASS}, "did you mean `grip/grasp.hpp`?"),
+        ({"grasp.hpp": CLASS}, "did you mean `grasp.hpp`?"),
+        ({"grip/grasp.hpp": CLASS.replace("namespace arm", "namespace grip")}, None),
+        ({"grip/grasp.hpp": CLASS.replace("class Grasp {", "class Grasp;")}, None),
+        ({"grip/grasp.hpp": CLASS, "grap/grasp.hpp": CLASS}, None),
+        ({"grip/other.hpp": CLASS}, None),
+    ],
+)
+def test_a_header_in_another_folder(files: dict[str, str], help: str | None) -> None:
+    given = {"main.yml": SCRIPT, "templates/Grasp.yml": INTERFACE, **files}
+    report = analyse(Source("main.yml", SCRIPT), memory_library(given, BUILT_IN), []).report
+    expected = [("SM608", "arm/grasp.hpp", help)] if help else []
+    assert [(each.code, each.span.text, each.help) for each in report] == expected
+
+
 PUSH = """
 name: Push
 variables: {speed: {type: float, default: 0.1}, name: {type: str, default: left}}

@@ -64,7 +64,9 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         return None
     if source is None:
         header = Word(code.header, type_.class_spans.get(("cpp", "header"), NOWHERE))
-        return _absent(code, absent_header(header, library))
+        return _absent(
+            code, absent_header(header, library) or _header_elsewhere(header, code, library)
+        )
     if len(source.text) > LONGEST:
         return None
     whole = Part(source=source, text=without_literals(source.text))
@@ -128,6 +130,28 @@ def absent_header(header: Word, library: Library) -> ClassFault | None:
         return None
     meant = f"{folder}/{near}" if folder and near is not None else near
     return ClassFault(kind="no module", name=header, near=meant)
+
+
+def _header_elsewhere(header: Word, code: ClassCode, library: Library) -> ClassFault | None:
+    """The fault that a header is in no searched folder, where the project has a file of its name in
+    one other folder, and that defines the class in its namespace."""
+    folder, _, file = header.text.rpartition("/")
+    found = []
+    for other in ("", *library.code_names("")):
+        path = f"{other}/{file}" if other else file
+        source = library.code(path) if other != folder else None
+        if source is not None and len(source.text) <= LONGEST and _defines(source.text, code):
+            found.append(path)
+    return ClassFault(kind="no module", name=header, near=found[0]) if len(found) == 1 else None
+
+
+def _defines(text: str, code: ClassCode) -> bool:
+    """Whether a header defines a class, with the namespaces of its name."""
+    *spaces, name = code.name.removeprefix("::").split("::")
+    plain = without_literals(text)
+    opened = set(re.findall(r"\w+", " ".join(re.findall(r"\bnamespace\s+([\w:\s]+)\{", plain))))
+    pattern = _CLASS.format(re.escape(name))
+    return opened.issuperset(spaces) and re.search(pattern, plain) is not None
 
 
 def _absent_class(name: Word, whole: Part, header: str) -> ClassFault | None:
