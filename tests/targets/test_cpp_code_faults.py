@@ -310,3 +310,69 @@ def test_a_misspelt_type_of_the_interface_is_one_finding() -> None:
     files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": PUSH_CLASS}
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
     assert [(each.code, each.span.text) for each in report] == [("SM017", "flaot")]
+
+
+JUDGE = """
+name: Judge
+input_keys: {limit: float}
+output_keys: {worst: float}
+outcomes: {within: {}, outside: {}}
+code: {cpp: {header: arm/judge.hpp, class: "arm::Judge"}}
+"""
+JUDGE_CLASS = """\
+#include "smachac/smachac.hpp"
+namespace arm {
+class Judge {
+public:
+  enum class Outcome { within, outside };
+  struct In { double limit; };
+  struct Out { smachac::Key<double> &worst; };
+  Outcome execute(In in, Out out) {
+    if (empty()) return Outcome::outside;
+    out.worst = measured();
+    return in.limit > 1.0 ? Outcome::within : Outcome::outside;
+  }
+  static constexpr std::uint32_t smachac_interface = 0x375625f1U;
+};
+}
+"""
+JUDGE_SCRIPT = """
+name: sm
+outcomes: [good, bad]
+userdata: {limit: 0.4}
+states:
+  - JUDGE: {template: Judge, transitions: {within: good, outside: WRITE}}
+  - WRITE: {template: PrintUserdataState, input_keys: [worst], transitions: {succeeded: bad}}
+"""
+
+EARLY = "    if (empty()) return Outcome::outside;\n"
+SET = "    out.worst = measured();\n"
+
+
+@pytest.mark.parametrize(
+    ("script", "old", "new", "count"),
+    [
+        (JUDGE_SCRIPT, "", "", 1),
+        (JUDGE_SCRIPT, EARLY, "", 0),
+        (JUDGE_SCRIPT, EARLY + SET, SET + EARLY, 0),
+        (JUDGE_SCRIPT, "if (empty())", "while (empty())", 0),
+        (JUDGE_SCRIPT, "if (empty())", "if (fill(out))", 0),
+        (JUDGE_SCRIPT.replace("{limit: 0.4}", "{limit: 0.4, worst: 0.0}"), "", "", 0),
+        (JUDGE_SCRIPT.replace("[worst]", "[limit]"), "", "", 0),
+        (JUDGE_SCRIPT.replace("{within: good, outside: WRITE}", "{within: WRITE, outside: bad}"),
+         "", "", 0),
+    ],
+)  # fmt: skip
+def test_a_return_before_an_output_that_is_read(
+    script: str, old: str, new: str, count: int
+) -> None:
+    text = JUDGE_CLASS
+    text = text.replace(old, new) if old else text
+    files = {"main.yml": script, "templates/Judge.yml": JUDGE, "arm/judge.hpp": text}
+    report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
+    found = [each for each in report if each.code in ("SM604", "SM608", "SM609")]
+    assert [each.span.text for each in found] == ["return Outcome::outside"] * count
+    for each in found:
+        assert (
+            "returns `Outcome::outside` here before its output key `worst` is set" in each.message
+        )
