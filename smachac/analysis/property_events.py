@@ -32,6 +32,7 @@ class NamedStates:
         self.nodes = states
         self.numbers: dict[str, int] = {}
         self._ends: dict[str, list[int]] = {}
+        self._inner: dict[str, list[int]] = {}
         self._tags: dict[str, list[int]] = {}
         self._types: dict[str, list[int]] = {}
         self._claims: dict[str, list[int]] = {}
@@ -39,8 +40,11 @@ class NamedStates:
         for number, (path, node) in enumerate(zip(paths, states, strict=True)):
             self.numbers.setdefault(path, number)
             name = path.rpartition("/")[2]
-            if not _is_inner(path, sugared):
+            around = _sugar_around(path, sugared)
+            if around is None:
                 self._ends.setdefault(name, []).append(number)
+            else:
+                self._inner.setdefault(f"{around}/{name}", []).append(number)
             for tag in node.tags:
                 self._tags.setdefault(tag, []).append(number)
             if path not in sugared:
@@ -77,7 +81,8 @@ class NamedStates:
 
     def _of_path(self, name: str) -> list[int]:
         """The states whose path a name is, or is the end of. A state inside its own time limit,
-        retry or loop is only found by its whole path, or by two names of its end."""
+        retry or loop is only found by its whole path, or by two names of its end, between which the
+        containers made for it can be left out."""
         if name in self.numbers:
             return [self.numbers[name]]
         last = name.rpartition("/")[2]
@@ -87,17 +92,24 @@ class NamedStates:
         if found or "/" not in name:
             return found
         ending = f"/{name}"
-        return [number for number, path in enumerate(self.paths) if path.endswith(ending)]
+        found = [number for number, path in enumerate(self.paths) if path.endswith(ending)]
+        return found or [
+            number
+            for path, numbers in self._inner.items()
+            if f"/{path}".endswith(ending)
+            for number in numbers
+        ]
 
 
-def _is_inner(path: str, sugared: set[str]) -> bool:
-    """Whether a state is inside a container that was made for it, and has its name."""
+def _sugar_around(path: str, sugared: set[str]) -> str | None:
+    """The path of the container that was made for a state, and has its name; None if the state is
+    in no such container."""
     outside, _, name = path.rpartition("/")
     while outside in sugared:
-        outside, _, around = outside.rpartition("/")
-        if around == name:
-            return True
-    return False
+        if outside.rpartition("/")[2] == name:
+            return outside
+        outside = outside.rpartition("/")[0]
+    return None
 
 
 def _is_sugar(node: Node) -> bool:

@@ -32,7 +32,7 @@ from smachac.ir.properties import (
     either,
     in_words,
 )
-from smachac.ir.script_paths import walk_script
+from smachac.ir.script_paths import sugared_child, walk_script
 from smachac.ir.traversal import walk
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def property_fails(context: Context) -> Iterator[Finding]:
             arguments=(given.name, in_words(given.form)),
             help=f"{first}{_replayed(shown, number, script)}",
             related=_turn_place(turn),
-            path=witness(example._replace(visits=_shown(context, example.visits))),
+            path=witness(example._replace(visits=_shown(context, example))),
             node=example.node or context.machine.root.name,
         )
 
@@ -262,18 +262,41 @@ def _before(events: Atoms) -> str:
 _CORRECT = "correct the property if this path is right"
 
 
-def _shown(context: Context, visits: Sequence[Visit]) -> tuple[Visit, ...]:
-    """The visits without those of pauses, and of timers that their state stopped, except those at
-    which a stop request arrives."""
+def _shown(context: Context, example: Counterexample) -> tuple[Visit, ...]:
+    """The visits as the script shows them, without those of pauses and timers.
+
+    A pause or timer at which a stop request arrives, and a timer that ends its state, are shown as
+    an outcome of their state. A timer is kept where its state has states inside, of which some are
+    visited after it, and where the property is about the end of the state inside.
+    """
     added = {each.full for each in walk_script(context.machine.root) if each.added}
     containers = dict(context.containers) if added else {}
-
-    def ends_nothing(visit: Visit) -> bool:
-        holder = containers[visit.path.rpartition("/")[0]]
-        ended = visit.outcome == PREEMPTED or not isinstance(holder, Concurrence)
-        return ended and not visit.stop
-
-    return tuple(each for each in visits if each.path not in added or not ends_nothing(each))
+    shown: list[Visit] = []
+    skipped = ""  # the state that a timer ended, until its own visit
+    for visit in example.visits:
+        if visit.path not in added:
+            if visit.path != skipped:
+                shown.append(visit)
+            skipped = ""
+            continue
+        outside = visit.path.rpartition("/")[0]
+        holder = containers[outside]
+        ended = isinstance(holder, Concurrence) and visit.outcome != PREEMPTED
+        inside = sugared_child(holder)
+        if inside is None or not (ended or visit.stop):
+            continue
+        path = f"{outside}/{inside.name}"
+        if path == example.node or (ended and not isinstance(inside, Leaf)):
+            shown.append(visit)
+            continue
+        if shown and shown[-1].path == path and visit.stop:
+            shown.pop()
+        outcome = visit.outcome
+        if isinstance(holder, Concurrence) and not visit.stop:
+            outcome = holder.default_outcome  # the time is over
+        shown.append(visit._replace(path=path, outcome=outcome))
+        skipped = path if ended else ""
+    return tuple(shown)
 
 
 def _turn_place(turn: Turn | None) -> tuple[Related, ...]:

@@ -77,7 +77,28 @@ def properties_of(
             help = _dashes(tree) or f"write a list: `- {EXAMPLES['before'].strip('`')}`"
             report.append(_fault(tree, message, help, "properties", kind_of(tree)))
         return ()
-    return tuple(found for item in tree.items for found in _Reader(report).item(item))
+    reader = _Reader(report)
+    split = {at for at, item in enumerate(tree.items[:-1]) if _is_split(item, tree.items[at + 1])}
+    for at in split:
+        form = cast(Map, tree.items[at + 1]).entries[0].key
+        line, word = form.span.line, form.value
+        help = f"remove the `-` before `{word}` in line {line}"
+        reader.fault(tree.items[at], "this item has only a name", help, "no form")
+    return tuple(
+        found
+        for at, item in enumerate(tree.items)
+        if at not in split
+        for found in reader.item(item)
+    )
+
+
+def _is_split(item: Tree, after: Tree) -> bool:
+    """Whether an item has only a name, and the next one has a form and no name: they are probably
+    one property."""
+    if not (isinstance(item, Map) and isinstance(after, Map) and item.entries and after.entries):
+        return False
+    here, there = ([str(each.key.value) for each in one.entries] for one in (item, after))
+    return here == ["name"] and there[0] in FORMS and "name" not in there
 
 
 def _file(word: Scalar, source: Source, library: Library, report: Report) -> Tree | None:

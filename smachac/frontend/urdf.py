@@ -113,6 +113,7 @@ class _Reader:
         self.links: dict[str, None] = {}
         self.joints: dict[str, _Link] = {}
         self._open: list[str] = []
+        self._starts: list[tuple[int, int]] = []  # of the open elements: line, column
         self._count = 0
         self._joint: _Link | None = None
         self._parser = expat.ParserCreate("utf-8")
@@ -130,11 +131,37 @@ class _Reader:
             parser.Parse(text.encode("utf-8", "replace"), True)
         except expat.ExpatError as error:
             words = expat.ErrorString(error.code)
+            place = self.at(error.lineno, error.offset)
+            if self._open and words == expat.errors.XML_ERROR_TAG_MISMATCH:
+                raise self.mismatch(place) from None
+            if self._open and words == expat.errors.XML_ERROR_NO_ELEMENTS:
+                raise self.not_closed() from None
             raise UrdfError(
                 f"the file is not valid XML: {words}",
-                self.at(error.lineno, error.offset),
+                place,
                 help="correct the tags there: each `<link>` needs its `</link>`, or `<link/>`",
             ) from None
+
+    def mismatch(self, end: Span) -> UrdfError:
+        """The error for an end tag whose name is at `end`, and not that of the innermost open
+        element. Where an element around it has this name, the innermost one is not closed."""
+        found = re.compile(r"[^\s<>]+").match(self.source.text, end.start)
+        name = found.group() if found is not None else ""
+        if not name or name in self._open:
+            return self.not_closed()
+        tag = self._open[-1]
+        span = Span(self.source, end.start, end.start + len(name))
+        message = f"`</{name}>` ends no element: `<{tag}>` in line {self._starts[-1][0]} is open"
+        return UrdfError(message, span, help=f"write `</{tag}>`, or remove `</{name}>`")
+
+    def not_closed(self) -> UrdfError:
+        """The error that the innermost open element has no end tag."""
+        tag = self._open[-1]
+        start = self.at(*self._starts[-1]).start
+        end = self.source.text.find(">", start)
+        span = Span(self.source, start, end + 1)
+        help = f"write `/>` at the end of this tag, or add `</{tag}>` after its content"
+        return UrdfError(f"`<{tag}>` is not closed", span, help=help)
 
     def at(self, line: int, column: int) -> Span:
         starts = self.source.line_starts
@@ -167,6 +194,8 @@ class _Reader:
             raise self.error(f"`<{tag}>` is not an element of URDF", help=XACRO)
         above = self._open[-1] if self._open else ""
         self._open.append(tag)
+        parser = self._parser
+        self._starts.append((parser.CurrentLineNumber, parser.CurrentColumnNumber))
         if depth == 0:
             if tag != "robot":
                 raise self.error(f"the outermost element is `<{tag}>`, not `<robot>`")
@@ -209,6 +238,7 @@ class _Reader:
 
     def end(self, tag: str) -> None:
         self._open.pop()
+        self._starts.pop()
 
 
 def _limited(link: _Link) -> Joint:

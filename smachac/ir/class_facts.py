@@ -50,6 +50,7 @@ FaultKind = Literal[
     "other answer",
     "unset output",
     "skipped output",
+    "early return",
     "undefined name",
     "other scope",
     "other userdata",

@@ -26,9 +26,10 @@ from smachac.robots.models import MODELS, RGB, Box, Model
 class Body:
     """A body of a scene: a built-in model, the model of a file, or a box of its own.
 
-    `pose` is given in `frame` (`base`, `world`, or a body above it), before a uniform random shift
-    of at most +-`spread` (x m, y m, yaw rad). `apart` are least distances in x and y to other
-    bodies (m). `colour` replaces that of the model. One of `model`, `path` and `box` is set.
+    `pose` is given in `frame` (`base`, `world`, or a body before it in the file), before a uniform
+    random shift of at most +-`spread` (x m, y m, yaw rad). `apart` are least distances in x and
+    y to other bodies (m). `colour` replaces that of the model. One of `model`, `path` and `box` is
+    set.
     """
 
     name: str
@@ -109,13 +110,13 @@ _BODY: Table = {
         "Its pose in `frame`: [[x, y, z], [qx, qy, qz, qw]] in metres, or [x, y, z].",
         IDENTITY,
     ),
-    "frame": Field(fields.text, "`base`, `world`, or a body above it in the file.", "base"),
+    "frame": Field(fields.text, "`base`, `world`, or a body before it in the file.", "base"),
     "spread": Field(
         _spread, "The largest random shift in x, y (m) and yaw (rad).", (0.0, 0.0, 0.0)
     ),
     "apart": Field(
         fields.named(fields.positive, least=0),
-        "The least distances in x and y to bodies above it, by name (m).",
+        "The least distances in x and y to bodies before it in the file, by name (m).",
         (),
     ),
 }
@@ -170,19 +171,25 @@ _SCENE: Table = {
 @fields.record(_SCENE)
 def _scene(given: Fields) -> tuple[Body, ...]:
     bodies: tuple[Body, ...] = given["bodies"]
-    above = [*fields.FRAMES]
+    names = {body.name for body in bodies}
+    before = [*fields.FRAMES]
     for body in bodies:
         place: Place = ("bodies", body.name)
-        if body.frame not in above:
-            message = f"there is no frame `{body.frame}` above this body"
-            raise DataError(message, (*place, "frame"), guess(body.frame, above))
+        if body.frame not in before:
+            if body.frame in names and body.frame != body.name:
+                message = f"the frame `{body.frame}` is defined after `{body.name}`"
+                help = f"move `{body.frame}` before `{body.name}`"
+            else:
+                message = f"there is no frame `{body.frame}` before `{body.name}` in the file"
+                help = guess(body.frame, before)
+            raise DataError(message, (*place, "frame"), help)
         for name, _ in body.apart:
-            if name not in above[2:]:
+            if name not in before[2:]:
                 message = f"`apart` of `{body.name}` names `{name}`, but no body before it in the"
                 message += " file has this name"
-                help = guess(name, above[2:])
+                help = guess(name, before[2:])
                 raise DataError(message, (*place, "apart", name), help, key=True)
-        above.append(body.name)
+        before.append(body.name)
     places: dict[object, str] = {}
     for body in bodies:
         same = (body.model, body.path, body.box, body.pose, body.frame, body.spread)

@@ -234,6 +234,12 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "write `out.{word} = ...` before this `return`, or remove `{word}` from `{near}` in the"
         " `writes:` of `{type}.yml`",
     ),
+    "early return": (
+        "`execute` of `{name}` returns `Outcome::{near}` here before its output key `{word}` is"
+        " set",
+        "write `out.{word} = ...` before this `return`, or lead `{near}` to a state that does not"
+        " read `{word}`",
+    ),
     "no parameter": (
         "`__init__` of `{name}` does not accept `{word}`, a variable of the interface `{type}`",
         "add the parameter `{word}` to `__init__`",
@@ -296,6 +302,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "other answer",
         "unset output",
         "skipped output",
+        "early return",
         "parameter order",
         "not called",
         "function not called",
@@ -343,6 +350,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no member": "the code raises AttributeError when it runs: the machine stops",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
+    "early return": "a state that reads the key afterwards gets an old value, or fails",
     "skipped output": "a state that reads the key afterwards gets an old value, or fails",
     "unset output": "a state that reads the key afterwards gets an old value, or fails",
 }
@@ -387,6 +395,7 @@ WRITTEN = frozenset[FaultKind](
         "parameter order",
         "no number",
         "skipped output",
+        "early return",
         "other parameter",
         "renamed parameter",
         "no base constructor call",

@@ -7,6 +7,7 @@ class. Parts that cannot be read are not checked.
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -16,8 +17,8 @@ from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, Parameter
-from smachac.ir.nodes import Leaf, Machine, StateType
-from smachac.ir.traversal import walk
+from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
+from smachac.ir.traversal import remapping, walk
 from smachac.targets.class_faults import CHECKED_ONLY
 from smachac.targets.errors import (
     Difference,
@@ -39,7 +40,7 @@ Words = tuple[Word, ...]
 class Declared:
     """The interface that a class declares, with the names of the state type where they correspond.
 
-    A part that could not be read is None. `others` are further differences, each with its place.
+    A part that could not be read is None. `others` are further differences.
     `stale` is the place of an outdated interface hash in the class, with the present hash.
     `faults` are those of a class that does not exist or does not work as a state.
     """
@@ -49,7 +50,7 @@ class Declared:
     outcomes: Words | None = None
     inputs: Words | None = None
     outputs: Words | None = None
-    others: Words = ()
+    others: tuple[Difference, ...] = ()
     stale: Word | None = None
     faults: tuple[ClassFault, ...] = ()
 
@@ -78,7 +79,7 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
                 targets[language] = load(language)
             target = targets[language]
             if target is not None:
-                found.extend(type_faults(leaf, type_, target, library, checked=True))
+                found.extend(type_faults(leaf, type_, target, library, machine))
     for item in _once(found):
         yield replace(item, severity=Severity.WARNING)
     for item in (*argument_faults(machine, library), *_smacha_faults(machine, library)):
@@ -175,10 +176,15 @@ def own_types(machine: Machine, library: Library) -> Iterator[tuple[Leaf, StateT
 
 
 def type_faults(
-    leaf: Leaf, type_: StateType, target: Language, library: Library, *, checked: bool = False
+    leaf: Leaf,
+    type_: StateType,
+    target: Language,
+    library: Library,
+    machine: Machine | None = None,
 ) -> Iterator[Diagnostic]:
-    """The faults of the code of one state type in one language. `checked`: the rules report what
-    the code of its Python class does beyond its interface."""
+    """The faults of the code of one state type in one language. With the machine in a check, whose
+    rules report what the code of its Python class does beyond its interface."""
+    checked = machine is not None
     found = target.declared(type_, library)
     if found is None:
         return
@@ -188,6 +194,11 @@ def type_faults(
         used: tuple[Related, ...] = (
             Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`"),
         )
+        if fault.kind == "early return":
+            reader = _reader(machine, type_, fault) if machine is not None else None
+            if reader is None:
+                continue
+            used = (reader, *used)
         if fault.name.span.source is NOWHERE.source:
             fault = replace(fault, name=Word(fault.name.text, leaf.span))
             used = ()
@@ -214,6 +225,43 @@ def type_faults(
     elif differences:
         here = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`")
         yield interfaces_differ(here, target.name, type_.name, found.name, differences)
+
+
+def _reader(machine: Machine, type_: StateType, fault: ClassFault) -> Related | None:
+    """The state that reads an output key directly after the outcome with which it is not set, where
+    nothing else in the state machine sets it."""
+    key, outcome = fault.name.text, fault.near
+    for _, container in walk(machine.root):
+        if not isinstance(container, StateMachine):
+            continue
+        states = {each.name: each for each in container.children}
+        setters: Counter[str] | None = None
+        for leaf in container.children:
+            if not isinstance(leaf, Leaf) or leaf.type != type_.name:
+                continue
+            outer = remapping(leaf).get(key, key)
+            targets = {each.outcome: each.target for each in leaf.transitions}
+            reader = states.get(targets.get(outcome or "", ""))
+            if not isinstance(reader, Leaf) or reader is leaf:
+                continue
+            setters = _setters(container) if setters is None else setters
+            names = remapping(reader)
+            reads = {names.get(each.name, each.name) for each in reader.inputs
+                     if each.type.name != "optional"}  # fmt: skip
+            if outer in reads and setters[outer] == 1:
+                text = f"`{reader.name}` reads `{outer}` after `{leaf.name}` ends with `{outcome}`"
+                return Related(span=reader.span, message=text)
+    return None
+
+
+def _setters(container: StateMachine) -> Counter[str]:
+    """How many places give each key of a container a value: its inputs, presets and states."""
+    found = Counter(each.name for each in container.inputs)
+    found.update(each.key for each in container.userdata)
+    for child in container.children:
+        names = remapping(child)
+        found.update({names.get(each.name, each.name) for each in child.outputs})
+    return found
 
 
 def _lists(type_: StateType) -> str:
@@ -255,8 +303,7 @@ def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:
             continue
         names = [each.name for each in wanted]
         yield from _unlike(f"`{type_.name}.yml`", what, words, names, found.span)
-    for word in found.others:
-        yield Difference(word, f"correct the class, or the interface in `{type_.name}.yml`")
+    yield from found.others
 
 
 def _unlike(

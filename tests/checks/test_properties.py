@@ -66,8 +66,7 @@ def test_time_limits_are_paths(tmp_path: Path) -> None:
     limited = states.replace("{done: PLACE}", "{done: PLACE, timeout: aborted, preempted: LET_GO}")
     limited = limited.replace("outcomes: [done]\n", "outcomes: [done]\n      timeout: 2s\n", 1)
     (found,) = findings(tmp_path, "  - after: {PICK: [PLACE, LET_GO]}\n", limited)
-    assert "TIMER (succeeded)" in found
-    assert found.endswith("aborted")
+    assert found.endswith("CARRY (timeout) aborted")
 
 
 def test_a_state_that_cannot_be_reached_is_one_fault(tmp_path: Path) -> None:
@@ -267,3 +266,33 @@ def test_the_guess_for_a_state_by_its_first_words() -> None:
             each.help for each in analysed({"main.yml": text}).report if each.code == "SM703"
         ]
         assert ((help or "") == "did you mean `LIFT`?") == guess
+
+
+@pytest.mark.parametrize(
+    "sugar",
+    [
+        "retry: {on: [lost], max: 2}",
+        "retry: {on: [lost], max: 2, delay: 1s}",
+        "retry: {on: [lost], max: 2, delay: 1s}\n      timeout: 5s",
+    ],
+)
+def test_the_state_inside_its_retry(tmp_path: Path, sugar: str) -> None:
+    states = STATES.replace("- PICK:\n", f"- PICK:\n      {sugar}\n", 1)
+    more = "exhausted: aborted, timeout: aborted" if "timeout" in sugar else "exhausted: aborted"
+    states = states.replace("lost: aborted", more, 1)
+    assert findings(tmp_path, "  - at_most: {PICK: 1, PICK/PICK: 2}\n", states) == []
+    assert len(findings(tmp_path, "  - at_most: {PICK/PICK: 1}\n", states)) == 1
+    (wrong,) = findings(tmp_path, "  - at_most: {CARRY/CARRY: 1}\n", states)
+    assert wrong.startswith("SM703")
+
+
+def test_a_timer_is_shown_as_its_state(tmp_path: Path) -> None:
+    states = STATES.replace("aborted, preempted: aborted", "LET_GO, timeout: LET_GO", 1)
+    states = states.replace("- PICK:\n", "- PICK:\n      timeout: 2s\n", 1)
+    given = "  - after: {PICK: [PLACE, LET_GO]}\n"
+    stopped = states.replace("timeout: LET_GO", "timeout: LET_GO, preempted: aborted", 1)
+    (found,) = findings(tmp_path, given, stopped)
+    assert found.endswith(" | PICK (stop request, preempted) aborted")
+    timed = states.replace("timeout: LET_GO", "timeout: aborted, preempted: LET_GO", 1)
+    (found,) = findings(tmp_path, given, timed)
+    assert found.endswith(" | PICK (timeout) aborted")

@@ -140,3 +140,14 @@ def test_names_are_ends_of_paths_also_where_sugar_repeats_a_name() -> None:
     assert faults("- after: {C/IN: C, 'C/IN:timeout': 'C:done'}")[0].startswith("SM701")
     assert faults("- before: {C/IN: B/IN}\n- before: {'C:again': 'claim arm:done'}") == []
     assert faults("- before: {'C/IN:timeout': C/IN}") == []
+
+
+def test_an_item_with_only_a_name() -> None:
+    split = "- name: no B after A\n- never: {after: A, enter: B}"
+    line = STATES.count("\n") + 3
+    help = f"remove the `-` before `never` in line {line}"
+    first, second = faults(split)
+    assert first == f"SM004 name: no B after A | {help}"
+    assert second.startswith("SM701 never")  # the form is read
+    named = split.replace("- never", "- name: two\n  never")
+    assert faults(named)[0].startswith("SM004 name: no B after A | use one of `after`")

@@ -94,7 +94,7 @@ OUTSIDE = '<!DOCTYPE robot SYSTEM "file:///etc/passwd"><robot name="x"/>'
     [
         ("", "no element found"),
         ("hello", "not valid XML"),
-        ("<robot>", "no element found"),
+        ("<robot>", "`<robot>` is not closed"),
         ("<sdf/>", "the outermost element is `<sdf>`"),
         (BILLION, "a document type"),
         (OUTSIDE, "a document type"),
@@ -196,7 +196,7 @@ states:
             "sub/broken.urdf",
             [
                 "the robot file `sub/broken.urdf` has a mistake: "
-                + "the file is not valid XML: mismatched tag"
+                + "`</a>` ends no element: `<robot>` in line 1 is open"
             ],
         ),
         ("sub/none.urdf", ["the file `sub/none.urdf` was not found"]),
@@ -217,3 +217,22 @@ def test_the_robot_of_a_script(tmp_path: Path, name: str, expected: list[str]) -
     (folder / "main.yml").write_text(SCRIPT.format(robot=name))
     report = smachac.check(folder / "main.yml")
     assert [item.finding.message for item in report if item.code in ("SM018", "SM007")] == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "words"),
+    [
+        ('<robot name="a">\n <link name="b"/><link name="c">\n <link name="d"></link>\n</robot>',
+         '<link name="c">', "`<link>` is not closed"),
+        ('<robot name="a">\n <link name="b">', '<link name="b">', "`<link>` is not closed"),
+        ('<robot name="a">\n <link name="b"/>', '<robot name="a">', "`<robot>` is not closed"),
+        ('<robot name="a">\n <link name="b"></lnk>\n</robot>', "lnk",
+         "`</lnk>` ends no element: `<link>` in line 2 is open"),
+        ('<robot name="a">\n <link name=b/>\n</robot>', "b",
+         "the file is not valid XML: not well-formed (invalid token)"),
+    ],
+)  # fmt: skip
+def test_a_tag_that_is_not_closed(text: str, place: str, words: str) -> None:
+    with pytest.raises(UrdfError) as caught:
+        read_urdf(Source("arm.urdf", text))
+    assert (caught.value.message, caught.value.span.text) == (words, place)

@@ -237,3 +237,24 @@ def test_widths_that_are_swapped_or_wrong(width: str, message: str, help: str | 
     with pytest.raises(DataError) as error:
         description.read(plain(text))
     assert (error.value.message, error.value.help) == (message, help)
+
+
+@pytest.mark.parametrize(
+    ("frame", "message", "help"),
+    [
+        ("tray", "the frame `tray` is defined after `gear`", "move `tray` before `gear`"),
+        ("gear", "there is no frame `gear` before `gear` in the file", ""),
+        ("tabel", "there is no frame `tabel` before `gear` in the file", "did you mean `table`?"),
+    ],
+)
+def test_the_frame_of_a_body_that_is_not_before_it(frame: str, message: str, help: str) -> None:
+    pose = [[0, 0, 0], [0, 0, 0, 1]]
+    bodies = {
+        "table": {"model": "table", "pose": pose},
+        "gear": {"model": "block", "pose": pose, "frame": frame},
+        "tray": {"model": "block", "pose": pose, "frame": "table"},
+    }
+    with pytest.raises(DataError) as caught:
+        scene.read({"bodies": bodies})
+    assert caught.value.message == message
+    assert help in (caught.value.help or "")

@@ -102,6 +102,24 @@ def test_a_header_without_a_folder(header: str, known: bool) -> None:
     assert [f"{item.code} {item.help}" for item in report] == expected
 
 
+@pytest.mark.parametrize(
+    ("files", "help"),
+    [
+        ({"grip/grasp.hpp": CLASS}, "did you mean `grip/grasp.hpp`?"),
+        ({"grasp.hpp": CLASS}, "did you mean `grasp.hpp`?"),
+        ({"grip/grasp.hpp": CLASS.replace("namespace arm", "namespace grip")}, None),
+        ({"grip/grasp.hpp": CLASS.replace("class Grasp {", "class Grasp;")}, None),
+        ({"grip/grasp.hpp": CLASS, "grap/grasp.hpp": CLASS}, None),
+        ({"grip/other.hpp": CLASS}, None),
+    ],
+)
+def test_a_header_in_another_folder(files: dict[str, str], help: str | None) -> None:
+    given = {"main.yml": SCRIPT, "templates/Grasp.yml": INTERFACE, **files}
+    report = analyse(Source("main.yml", SCRIPT), memory_library(given, BUILT_IN), []).report
+    expected = [("SM608", "arm/grasp.hpp", help)] if help else []
+    assert [(each.code, each.span.text, each.help) for each in report] == expected
+
+
 PUSH = """
 name: Push
 variables: {speed: {type: float, default: 0.1}, name: {type: str, default: left}}
@@ -279,3 +297,82 @@ def test_an_output_that_a_path_skips(code: str, marked: list[int]) -> None:
     found = [each for each in report if "without setting its output key" in each.message]
     assert [each.span.line for each in found] == marked
     assert all(each.span.text == "return Outcome::done" for each in found)
+
+
+def test_the_declaration_of_a_field_is_in_the_help() -> None:
+    (line,) = push_findings(("struct In { double depth", "struct In { float depth"))
+    help = "write `double depth`, or correct the interface in `Push.yml`"
+    assert line == f"SM603 6 depth: {help}"
+
+
+def test_a_misspelt_type_of_the_interface_is_one_finding() -> None:
+    interface = PUSH.replace("depth: float", "depth: flaot")
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": PUSH_CLASS}
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    assert [(each.code, each.span.text) for each in report] == [("SM017", "flaot")]
+
+
+JUDGE = """
+name: Judge
+input_keys: {limit: float}
+output_keys: {worst: float}
+outcomes: {within: {}, outside: {}}
+code: {cpp: {header: arm/judge.hpp, class: "arm::Judge"}}
+"""
+JUDGE_CLASS = """\
+#include "smachac/smachac.hpp"
+namespace arm {
+class Judge {
+public:
+  enum class Outcome { within, outside };
+  struct In { double limit; };
+  struct Out { smachac::Key<double> &worst; };
+  Outcome execute(In in, Out out) {
+    if (empty()) return Outcome::outside;
+    out.worst = measured();
+    return in.limit > 1.0 ? Outcome::within : Outcome::outside;
+  }
+  static constexpr std::uint32_t smachac_interface = 0x375625f1U;
+};
+}
+"""
+JUDGE_SCRIPT = """
+name: sm
+outcomes: [good, bad]
+userdata: {limit: 0.4}
+states:
+  - JUDGE: {template: Judge, transitions: {within: good, outside: WRITE}}
+  - WRITE: {template: PrintUserdataState, input_keys: [worst], transitions: {succeeded: bad}}
+"""
+
+EARLY = "    if (empty()) return Outcome::outside;\n"
+SET = "    out.worst = measured();\n"
+
+
+@pytest.mark.parametrize(
+    ("script", "old", "new", "count"),
+    [
+        (JUDGE_SCRIPT, "", "", 1),
+        (JUDGE_SCRIPT, EARLY, "", 0),
+        (JUDGE_SCRIPT, EARLY + SET, SET + EARLY, 0),
+        (JUDGE_SCRIPT, "if (empty())", "while (empty())", 0),
+        (JUDGE_SCRIPT, "if (empty())", "if (fill(out))", 0),
+        (JUDGE_SCRIPT.replace("{limit: 0.4}", "{limit: 0.4, worst: 0.0}"), "", "", 0),
+        (JUDGE_SCRIPT.replace("[worst]", "[limit]"), "", "", 0),
+        (JUDGE_SCRIPT.replace("{within: good, outside: WRITE}", "{within: WRITE, outside: bad}"),
+         "", "", 0),
+    ],
+)  # fmt: skip
+def test_a_return_before_an_output_that_is_read(
+    script: str, old: str, new: str, count: int
+) -> None:
+    text = JUDGE_CLASS
+    text = text.replace(old, new) if old else text
+    files = {"main.yml": script, "templates/Judge.yml": JUDGE, "arm/judge.hpp": text}
+    report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
+    found = [each for each in report if each.code in ("SM604", "SM608", "SM609")]
+    assert [each.span.text for each in found] == ["return Outcome::outside"] * count
+    for each in found:
+        assert (
+            "returns `Outcome::outside` here before its output key `worst` is set" in each.message
+        )

@@ -15,11 +15,13 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
+from smachac.ir.types import unknown_words
 from smachac.targets.cpp.header_text import Part, without_literals
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import member_faults
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import ClassCode, class_code, field_type, interface_hash
+from smachac.targets.errors import Difference
 from smachac.targets.interface_check import Declared, Words
 
 LONGEST = 200_000
@@ -62,7 +64,9 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         return None
     if source is None:
         header = Word(code.header, type_.class_spans.get(("cpp", "header"), NOWHERE))
-        return _absent(code, absent_header(header, library))
+        return _absent(
+            code, absent_header(header, library) or _header_elsewhere(header, code, library)
+        )
     if len(source.text) > LONGEST:
         return None
     whole = Part(source=source, text=without_literals(source.text))
@@ -78,8 +82,10 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     inputs, outputs = (_fields(body, name, derived=derived) for name in ("In", "Out"))
     place = whole.word(name, *head.span("name"))
     outcomes = _outcomes(body, [each.name for each in type_.outcomes])
-    stale = _stale(body, interface_hash(type_))
-    others = () if derived or stale else member_faults(code, whole, body, outcomes)
+    # A misspelt type is reported in the interface; the class can fit the type that is meant.
+    unsure = _has_unknown_type(type_)
+    stale = _stale(body, interface_hash(type_)) if not unsure else None
+    others = () if derived or stale or unsure else member_faults(code, whole, body, outcomes)
     return Declared(
         name=code.name.removeprefix("::"),
         span=place.span,
@@ -87,16 +93,22 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         inputs=_names(inputs, type_.input_keys),
         outputs=_names(outputs, type_.output_keys),
         others=(
-            *_other_fields("In", inputs, type_.input_keys),
-            *_other_fields("Out", outputs, type_.output_keys),
+            *_other_fields(type_.name, "In", inputs, type_.input_keys),
+            *_other_fields(type_.name, "Out", outputs, type_.output_keys),
         ),
         stale=stale,
         faults=(
             *_faults(body, place, outcomes, derived=derived),
-            *_without_number(whole, body, place, interface_hash(type_), derived=derived),
+            *_without_number(whole, body, place, interface_hash(type_), derived=derived or unsure),
             *others,
         ),
     )
+
+
+def _has_unknown_type(type_: StateType) -> bool:
+    """Whether the interface has a type that does not exist."""
+    named = (*type_.variables.values(), *type_.input_keys, *type_.output_keys)
+    return any(unknown_words(each.type) for each in named)
 
 
 def _absent(code: ClassCode, fault: ClassFault | None) -> Declared | None:
@@ -118,6 +130,28 @@ def absent_header(header: Word, library: Library) -> ClassFault | None:
         return None
     meant = f"{folder}/{near}" if folder and near is not None else near
     return ClassFault(kind="no module", name=header, near=meant)
+
+
+def _header_elsewhere(header: Word, code: ClassCode, library: Library) -> ClassFault | None:
+    """The fault that a header is in no searched folder, where the project has a file of its name in
+    one other folder, and that defines the class in its namespace."""
+    folder, _, file = header.text.rpartition("/")
+    found = []
+    for other in ("", *library.code_names("")):
+        path = f"{other}/{file}" if other else file
+        source = library.code(path) if other != folder else None
+        if source is not None and len(source.text) <= LONGEST and _defines(source.text, code):
+            found.append(path)
+    return ClassFault(kind="no module", name=header, near=found[0]) if len(found) == 1 else None
+
+
+def _defines(text: str, code: ClassCode) -> bool:
+    """Whether a header defines a class, with the namespaces of its name."""
+    *spaces, name = code.name.removeprefix("::").split("::")
+    plain = without_literals(text)
+    opened = set(re.findall(r"\w+", " ".join(re.findall(r"\bnamespace\s+([\w:\s]+)\{", plain))))
+    pattern = _CLASS.format(re.escape(name))
+    return opened.issuperset(spaces) and re.search(pattern, plain) is not None
 
 
 def _absent_class(name: Word, whole: Part, header: str) -> ClassFault | None:
@@ -229,8 +263,8 @@ def _names(fields: Sequence[_Field] | None, keys: Iterable[Key]) -> Words | None
 
 
 def _other_fields(
-    part: str, fields: Sequence[_Field] | None, keys: Iterable[Key]
-) -> Iterator[Word]:
+    type_name: str, part: str, fields: Sequence[_Field] | None, keys: Iterable[Key]
+) -> Iterator[Difference]:
     """Fields of another type than in the interface, or in another order."""
     if not fields:
         return
@@ -242,11 +276,18 @@ def _other_fields(
         except UnportableError:
             continue
         if right and _surely_other(each.type, right):
-            yield Word(f"`{part}::{name}` must be `{right}`", each.word.span)
+            text = f"`{part}::{name}` must be `{right}`"
+            declaration = f"{right} {name}".replace("& ", "&")
+            help = f"write `{declaration}`, or correct the interface in `{type_name}.yml`"
+            yield Difference(Word(text, each.word.span), help)
     have = [each.word.text for each in fields]
     if have != [*wanted] and sorted(have) == sorted(wanted):
         order = ", ".join(f"`{name}`" for name in wanted)
-        yield Word(f"the fields of `{part}` must be in the order {order}", fields[0].word.span)
+        text = f"the fields of `{part}` must be in the order {order}"
+        types = {each.word.text: each.type for each in fields}
+        right = "; ".join(f"{types[name]} {name}".replace("& ", "&") for name in wanted)
+        help = f"write `struct {part} {{ {right}; }};`, or correct the interface in"
+        yield Difference(Word(text, fields[0].word.span), f"{help} `{type_name}.yml`")
 
 
 def _surely_other(text: str, wanted: str) -> bool:

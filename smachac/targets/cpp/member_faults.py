@@ -283,6 +283,7 @@ def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault
     out = re.escape(named[1])
     if re.search(rf"\b{out}\b(?!\s*\.)", run.text):
         return  # other code gets it
+    yield from _early(code, run, out)
     for outcome, keys in code.type.writes:
         returned = rf"\breturn\s+Outcome\s*::\s*{re.escape(identifier(outcome))}\s*;"
         for end in re.finditer(returned, run.text):
@@ -295,6 +296,22 @@ def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault
                 if set_ and (not before or (len(before) == 1 and _only_if(run, before[0], end))):
                     place = run.word(key, end.start(), end.end() - 1)
                     yield ClassFault(kind="skipped output", name=place, near=outcome)
+
+
+def _early(code: ClassCode, run: Part, out: str) -> Iterator[ClassFault]:
+    """The returns before the first place that sets an output key without `writes:`, by outcome.
+    Only a script that reads the key after that outcome makes them a fault."""
+    listed = {key for _, keys in code.type.writes for key in keys}
+    for key in code.type.output_keys:
+        set_ = re.search(rf"\b{out}\s*\.\s*{re.escape(identifier(key.name))}\b", run.text)
+        if key.name in listed or set_ is None:
+            continue
+        for outcome in code.type.outcomes:
+            name = re.escape(identifier(outcome.name))
+            end = re.search(rf"\breturn\s+Outcome\s*::\s*{name}\s*;", run.text)
+            if outcome.name != PREEMPTED and end is not None and end.start() < set_.start():
+                place = run.word(key.name, end.start(), end.end() - 1)
+                yield ClassFault(kind="early return", name=place, near=outcome.name)
 
 
 def _only_if(run: Part, at: int, end: re.Match[str]) -> bool:
