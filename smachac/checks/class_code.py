@@ -16,7 +16,6 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
-from smachac.frontend.yaml_tree import Map, Seq, parse
 from smachac.ir import nodes
 from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.code_places import python_tree
@@ -39,7 +38,7 @@ def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, L
             yield path, leaf, facts
 
 
-def _own_types(
+def own_types(
     context: Context, *, declared: bool
 ) -> Iterator[tuple[str, Leaf, StateType, ClassFacts]]:
     """As `leaves_by_type`, for the types of the user."""
@@ -82,7 +81,7 @@ def _own_names(leaf: Leaf) -> TypeNames:
     )
 
 
-def _used_here(leaf: Leaf) -> tuple[Related, ...]:
+def used_here(leaf: Leaf) -> tuple[Related, ...]:
     """The first state of a type, as a related place."""
     return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
 
@@ -175,7 +174,7 @@ def _wrong_returns(
                 message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
                 help=near or f"{known}{'' if ending.possible else _or_declare(ending, leaf)}",
-                related=(*(returned if ending.defined else ()), *_used_here(leaf)),
+                related=(*(returned if ending.defined else ()), *used_here(leaf)),
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
@@ -189,7 +188,7 @@ def _wrong_returns(
             help=f"write `return {' '.join(facts.open_end.span.text.split())}`"
             if alone and facts.open_end
             else f"{_after_loop(facts)}end each path with a `return`; {known}{_hooks(facts)}",
-            related=(*_open_end(facts), *_used_here(leaf)),
+            related=(*_open_end(facts), *used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
         )
@@ -328,7 +327,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 arguments=(word.text,),
                 help=help,
                 effect=effect,
-                related=_used_here(leaf),
+                related=used_here(leaf),
                 node=path,
             )
 
@@ -357,7 +356,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 help=guess
                 or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "output_keys", word.text),
-                related=_used_here(leaf),
+                related=used_here(leaf),
                 node=path,
             )
 
@@ -369,193 +368,6 @@ def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
         found.setdefault(word.text, word)
     left = found.keys() - set(known)
     return [word for word in found.values() if word.text in left]
-
-
-@rule(
-    "SM314",
-    "unwritten-output",
-    Severity.WARNING,
-    effect="a state that reads the key afterwards gets an old value, or fails with KeyError",
-)
-def unwritten_output(context: Context) -> Iterator[Finding]:
-    """The class of a state type returns an outcome without setting an output key that its
-    interface promises for that outcome.
-
-    The rules and the next states rely on the interface: a state that reads the key stops the
-    machine with an error, or works with an old value.
-
-    Exactly: the class is read, never run: methods of the class and functions of its module are
-    followed, and a class that passes the userdata to other code is not checked. `writes:` in the
-    interface names the outcomes that set a key. There is a finding at a `return` of such an outcome
-    if no path to it sets the key, or if a branch, an exception or the end of a loop leads past the
-    assignment straight to it. Behind a further condition, and where a condition was examined
-    before, the key counts as set, because the conditions can depend on each other. A key that is
-    not in `writes:` must be set before one `return` at least; after the others it counts as unset
-    (SM301).
-
-    Wrong:
-        name: sm
-        template: Base
-        outcomes: [seen, lost]
-        output_keys: [pose]
-        states:
-          - FIND:
-              template: FindPart
-              transitions: {found: seen, lost: lost}
-        == templates/FindPart.yml ==
-        name: FindPart
-        output_keys: {pose: Pose}
-        outcomes: {found: {}, lost: {}}
-        writes: {found: [pose]}
-        code: {python: "cell.find_part:FindPart"}
-        == cell/find_part.py ==
-        import smach
-
-
-        class FindPart(smach.State):
-            def __init__(self):
-                super().__init__(outcomes=["found", "lost"], output_keys=["pose"])
-
-            def execute(self, userdata):
-                pose = camera.look()
-                return "lost" if pose is None else "found"
-
-    Right:
-        name: sm
-        template: Base
-        outcomes: [seen, lost]
-        output_keys: [pose]
-        states:
-          - FIND:
-              template: FindPart
-              transitions: {found: seen, lost: lost}
-        == templates/FindPart.yml ==
-        name: FindPart
-        output_keys: {pose: Pose}
-        outcomes: {found: {}, lost: {}}
-        writes: {found: [pose]}
-        code: {python: "cell.find_part:FindPart"}
-        == cell/find_part.py ==
-        import smach
-
-
-        class FindPart(smach.State):
-            def __init__(self):
-                super().__init__(outcomes=["found", "lost"], output_keys=["pose"])
-
-            def execute(self, userdata):
-                pose = camera.look()
-                if pose is None:
-                    return "lost"
-                userdata.pose = pose
-                return "found"
-    """
-    for path, leaf, type_, facts in _own_types(context, declared=True):
-        if any(each.role == "callbacks" for each in type_.variables.values()):
-            continue
-        kept = {key.name for key in type_.input_keys}  # set before, perhaps changed in place
-        outputs = [key.name for key in type_.output_keys if key.name not in kept]
-        guess = guesser(outputs)
-        misspelt = {guess(word.text) for word in facts.writes if word.text not in outputs}
-        unused = dict(facts.unused)
-        for key in outputs:
-            if key in misspelt:
-                continue
-            found = [*_unwritten(path, leaf, type_, facts, key)]
-            if found and key in unused:
-                found = [_local(path, leaf, key, unused[key])]
-            yield from found
-
-
-def _local(path: str, leaf: Leaf, key: str, meant: Word) -> Finding:
-    """The finding on a local variable or an attribute of `self` with the name of an output key that
-    is not set."""
-    kept = meant.span.text.startswith("self.")
-    what = "an attribute of the object" if kept else "a local variable"
-    return Finding(
-        span=meant.span,
-        message=f"`{meant.span.text}` is {what} here: the output key `{key}` of `{leaf.type}` is"
-        " not set",
-        arguments=(leaf.type, key),
-        help=f"write `{meant.text}`",
-        related=_used_here(leaf),
-        node=path,
-    )
-
-
-def _unwritten(
-    path: str, leaf: Leaf, type_: StateType, facts: ClassFacts, key: str
-) -> Iterator[Finding]:
-    """The returns that break a promise of `writes:`, or the whole `execute` if it never sets a key
-    that is not in `writes:`."""
-    promised = {outcome for outcome, keys in type_.writes if key in keys}
-    missing = [each for each in facts.endings if each.written is not None]
-    missing = [each for each in missing if key not in (each.written or ())]
-    if promised:
-        for ending in facts.endings:
-            if ending.outcome.text in promised:
-                yield from _broken_promise(path, leaf, type_, ending, key)
-    elif facts.complete and facts.execute is not None and missing == [*facts.endings] != []:
-        yield Finding(
-            span=facts.execute,
-            message=f"`execute` of `{leaf.type}` never sets its output key `{key}`",
-            arguments=(leaf.type, key),
-            help=f"set `userdata.{key}`, or remove it from the interface `{leaf.type}`",
-            related=_used_here(leaf),
-            node=path,
-        )
-
-
-WAY_PAST = {
-    "if": "if this is false, `{key}` is not set",
-    "else": "if this is true, `{key}` is not set",
-    "match": "not every `case` sets `{key}`",
-    "except": "after this exception, `{key}` is not set",
-    "loop": "this loop can end without setting `{key}`",
-    "return": "this `return` comes before `{key}` is set",
-}
-"""The place that leads past the assignment to an output key, by its kind."""
-
-
-def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
-    """The place in the interface that promises a key for an outcome; none if the interface is not a
-    file of its own."""
-    place = next((each.span for each in type_.output_keys if each.name == key), None)
-    if place is None or not place.source.name.endswith((".yml", ".yaml")):
-        return ()
-    tree = parse(place.source, [])
-    writes = tree.get("writes") if isinstance(tree, Map) else None
-    entry = (
-        writes.value.get(outcome) if writes is not None and isinstance(writes.value, Map) else None
-    )
-    items = entry.value.items if entry is not None and isinstance(entry.value, Seq) else ()
-    found = next((each for each in items if getattr(each, "value", None) == key), None)
-    return () if found is None else other_place(found.span, f"`writes:` promises `{key}` here")
-
-
-def _broken_promise(
-    path: str, leaf: Leaf, type_: StateType, ending: Ending, key: str
-) -> Iterator[Finding]:
-    """The finding on a return that breaks a promise of `writes:`, on all paths to it or on some."""
-    place = dict(ending.skipped).get(key)
-    never = ending.written is not None and key not in ending.written
-    if place is None and not never:
-        return
-    does, where = ("returns", "before") if place is None else ("can return", "on each path to")
-    past = other_place(place.span, WAY_PAST[place.text].format(key=key)) if place else ()
-    promise = _promise(type_, ending.outcome.text, key)
-    other = f"correct `writes:` in the interface `{leaf.type}`"
-    if promise:
-        other = f"remove `{key}` from `{ending.outcome.text}` in the `writes:` of the interface"
-    yield Finding(
-        span=ending.outcome.span,
-        message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
-        f" `{key}`",
-        arguments=(leaf.type, key, ending.outcome.text),
-        help=f"set `userdata.{key}` {where} this `return`, or {other}",
-        related=(*past, *promise, *_used_here(leaf)),
-        node=path,
-    )
 
 
 @rule(
@@ -629,7 +441,7 @@ def never_returned(context: Context) -> Iterator[Finding]:
                     belt.wait(0.1)
                 return "arrived"
     """
-    for path, leaf, type_, facts in _own_types(context, declared=False):
+    for path, leaf, type_, facts in own_types(context, declared=False):
         known = facts.complete and facts.returns and facts.execute is not None
         if not known or facts.stub or type_.optional:
             continue
@@ -684,7 +496,7 @@ def _never(
         related=(
             *limits,
             *other_place(place, f"`{outcome}` is declared here"),
-            *_used_here(leaf),
+            *used_here(leaf),
         ),
         effect="the robot goes on until the state ends by itself" if outcome == PREEMPTED else None,
         node=path,
