@@ -22,7 +22,7 @@ from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, remapping
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
@@ -300,8 +300,11 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
     containers = dict(context.containers)
     names = _names_by_type(context)
     for path, leaf, facts in leaves_by_type(context, declared=True):
-        inputs = names.get(leaf.type, _own_names(leaf)).inputs
+        _, inputs, outputs = names.get(leaf.type, _own_names(leaf))
         around = containers[path.rpartition("/")[0]]
+        levels = [around]
+        while levels[-1].sugar and (path_ := path.rsplit("/", len(levels) + 1)[0]) in containers:
+            levels.append(containers[path_])
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
         for word in _first_of_each(facts.reads, known):
             effect: str | None = None
@@ -313,6 +316,13 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )
+            if word.text in outputs:
+                message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
+                message += " key of its interface"
+                if _sets_first(facts, word) or not any(
+                    _comes_from_outside(leaf, each, word.text) for each in levels
+                ):
+                    help = _local_variable(word)
             if word.text in DICTIONARY_METHODS and _is_called(word):
                 name = _owner(word)
                 message = (
@@ -330,6 +340,38 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 related=used_here(leaf),
                 node=path,
             )
+
+
+def _sets_first(facts: ClassFacts, word: Word) -> bool:
+    """Whether code sets a key that it reads without reading it there, as `+=` does."""
+    places = {each.span for each in facts.reads}
+    return any(each.text == word.text and each.span not in places for each in facts.writes)
+
+
+def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
+    """Whether a key of a leaf can have a value before the leaf sets it."""
+    outer = remapping(leaf).get(key, key)
+    known = {each.key for each in around.userdata} | {each.name for each in around.inputs}
+    return outer in known or any(
+        remapping(child).get(each.name, each.name) == outer
+        for child in around.children
+        if child is not leaf
+        for each in child.outputs
+    )
+
+
+def _local_variable(word: Word) -> str:
+    """The help for a read of a key that the code itself sets: the way to do without it."""
+    after = word.span.source.text[word.span.end :][:20].lstrip(" ]")
+    what = "compute the value" if after.startswith(("+=", "-=", "*=", "/=")) else "keep the value"
+    if after.startswith(COLLECTS):
+        what = "collect the items"
+    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
+    return f"{what} in a local variable, and set `{key}` once, before the return"
+
+
+COLLECTS = (".append(", ".extend(", ".insert(", ".add(", ".update(")
+"""The calls by which code collects items in a list, a set or a dictionary."""
 
 
 def dropped_writes(context: Context) -> Iterator[Finding]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from smachac.analysis.accesses import callback_names, scripted_steps
+from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
 from smachac.analysis.code_slots import undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
@@ -170,11 +170,28 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     yield from unknown_function_reads(context)
 
 
+def lone_input(leaf: Leaf, container: Container) -> str | None:
+    """The only input key of a leaf that its code does not read, if the code reads exactly one key
+    that is not declared and is no misspelt one; otherwise None."""
+    item = container.item_key if isinstance(container, nodes.Iterator) else None
+    wrong = [key for key, _ in undeclared_reads(leaf) if key != item]
+    called = [*(functions(leaf, "callbacks") or {}).values(),
+              *(functions(leaf, "conditions") or {}).values()]  # fmt: skip
+    fields = [userdata_fields(code.text) for code in called] if len(wrong) == 1 else []
+    if not fields or guesser(each.name for each in leaf.inputs)(wrong[0]) is not None:
+        return None
+    used = {key for each in fields if each is not None for key in (*each.read, *each.tested)}
+    left = [key for key in leaf.inputs if key.name not in used]
+    sure = None not in fields and len(left) == 1 and left[0].role == "argument"
+    return left[0].name if sure else None
+
+
 def _undeclared_accesses(
     path: str, container: Container, types: Mapping[str, StateType]
 ) -> Iterator[Finding]:
     for inner, leaf in leaves_with_code(path, container):
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
+        lone = lone_input(leaf, container) if len(read) == 1 else None
         guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
         for key, code in read:
             if isinstance(container, nodes.Iterator) and key == container.item_key:
@@ -186,6 +203,11 @@ def _undeclared_accesses(
                 " input keys",
                 arguments=(key,),
                 help=did_you_mean(guess(key))
+                or (
+                    f"its input key `{lone}` is read by nothing: did you mean `{lone}`?"
+                    if lone
+                    else None
+                )
                 or f"add `{key}` to the `input_keys` of `{leaf.name}`, and set it before, for"
                 f" example in `userdata: {{{key}: ...}}`",
                 related=calls(leaf, code.span),

@@ -1,4 +1,4 @@
-"""The rule on output keys that a class does not set although its interface promises them (SM314)."""
+"""The rule on output keys that an interface promises and its class does not set (SM314)."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
     assignment straight to it. Behind a further condition, and where a condition was examined
     before, the key counts as set, because the conditions can depend on each other. A key that is
     not in `writes:` must be set before one `return` at least; after the others it counts as unset
-    (SM301). Of a key that is also an input there is a finding only if `writes:` promises it, its type
-    is a number or a text, and the class never sets it.
+    (SM301). Of a key that is also an input there is a finding only if `writes:` promises it, its
+    type is a number or a text, and the class never sets it.
 
     Wrong:
         name: sm

@@ -64,7 +64,8 @@ def test_a_sum_that_is_not_written_back() -> None:
 
 def test_nothing_sets_the_key() -> None:
     (item,) = reported("arm.log(userdata.count)")
-    assert item.help is not None and item.help.startswith("set `userdata.count` before this")
+    assert item.help is not None
+    assert item.help.startswith("set `userdata.count` before this")
 
 
 @pytest.mark.parametrize(
