@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.class_members import missing_constants
 from smachac.frontend.class_names import (
     STATE_METHODS,
     undefined_in_base,
@@ -224,6 +225,7 @@ def _undefined(
     yield from lost_results(own)
     yield from lost_outcomes(own, library)
     yield from missing_members(own, library)
+    yield from missing_constants(own, library)
     yield from module_slips(own, library)
     yield from texts_as_lists(own)
 
