@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.base_calls import base_call_faults
 from smachac.frontend.class_members import missing_constants
 from smachac.frontend.class_names import (
     STATE_METHODS,
@@ -289,7 +290,7 @@ def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFaul
         certain = not own.binds("get_registered_outcomes")
         return [*found, _at_class("no state", module, node)] if certain else found
     return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own),
-            *_call_faults(own), *_list_faults(own)]  # fmt: skip
+            *_call_faults(own), *base_call_faults(own), *_list_faults(own)]  # fmt: skip
 
 
 def _at_class(

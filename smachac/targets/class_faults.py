@@ -131,6 +131,27 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`smach.State.__init__` has no argument `{word}`",
         "its arguments are `outcomes`, `input_keys`, `output_keys` and `io_keys`",
     ),
+    "no base argument": (
+        "`__init__` of `{owner}` has no parameter `{word}`",
+        "its parameters are {more}",
+    ),
+    "argument twice": (
+        "`__init__` of `{owner}` gets `{word}` twice: by its place, and by its name",
+        "remove one of the two arguments",
+    ),
+    "too many arguments": (
+        "`__init__` of `{owner}` has no parameter for `{word}`",
+        "its parameters are {more}",
+    ),
+    "missing base argument": (
+        "`__init__` of `{owner}` requires {more}, which this call does not pass",
+        "write `{near}`",
+    ),
+    "shifted arguments": (
+        "the outcomes `{word}` are passed as `{more}` of `__init__` of `{owner}`, and `{file}` as"
+        " `outcomes`",
+        "write `{near}`",
+    ),
     "no state class": (
         "`{word}` is not a class of SMACH",
         "write `{near}`",
@@ -351,6 +372,8 @@ EFFECTS: Mapping[FaultKind, str] = {
 _PASSED = "the program passes each variable by its name: the call raises a TypeError"
 _CALLED = "the program makes the state without this argument: the call raises a TypeError"
 
+_RAISED = "the call raises a TypeError when the program makes the state"
+
 PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no state": "SMACH uses attributes of `smach.State` that the object does not have",
     "no execute": "`execute` of `smach.State` raises a NotImplementedError when the state runs",
@@ -361,7 +384,13 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no base constructor call": "what the base class sets is missing, also the outcomes and keys:"
     " the program stops",
     "no comma": "SMACH knows the joined name only: the machine stops with an error",
-    "no argument": "the call raises a TypeError when the program makes the state",
+    "no argument": _RAISED,
+    "no base argument": _RAISED,
+    "argument twice": _RAISED,
+    "too many arguments": _RAISED,
+    "missing base argument": _RAISED,
+    "shifted arguments": "the state does not have the outcomes that it returns: the machine stops"
+    " with an error",
     "no state class": "the definition of the class raises an error when the program starts",
     "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
     "no parameter": _PASSED,
@@ -374,7 +403,7 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "other guard": "the program stops with a NameError when it makes the state",
     "argument order": "each parameter gets the value of another one",
     "no quotes": "the program stops with a NameError when it makes the state",
-    "not accepted": "the call raises a TypeError when the program makes the state",
+    "not accepted": _RAISED,
 }
 """What happens in a program in Python, where it is certain."""
 
@@ -401,6 +430,8 @@ WRITTEN = frozenset[FaultKind](
         "no tuple",
         "no result",
         "no state class",
+        "missing base argument",
+        "shifted arguments",
         "not called",
         "function not called",
         "no effect",
