@@ -36,6 +36,8 @@ FaultKind = Literal[
     "not passed",
     "not accepted",
     "argument order",
+    "no keyword",
+    "no argument here",
     "no quotes",
     "other guard",
     "no outcome",

@@ -298,6 +298,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " parameters",
         "write `{near}`",
     ),
+    "no keyword": (
+        "the template passes `{word}`, but `__init__` of `{name}` has no parameter `{word}`",
+        "its parameters are {more}",
+    ),
+    "no argument here": (
+        "the template does not pass `{word}`, which `__init__` of `{name}` requires",
+        "add `{word}={{{{ {word} }}}}` to the call, or give `{word}` a default value in `__init__`",
+    ),
     "no quotes": (
         "the template prints the text of `{word}` without quotes: here the name `{more}`, which"
         " nothing defines",
@@ -385,6 +393,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     " the program stops",
     "no comma": "SMACH knows the joined name only: the machine stops with an error",
     "no argument": _RAISED,
+    "no keyword": _RAISED,
+    "no argument here": _RAISED,
     "no base argument": _RAISED,
     "argument twice": _RAISED,
     "too many arguments": _RAISED,
