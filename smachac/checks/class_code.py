@@ -306,7 +306,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
         while levels[-1].sugar and (path_ := path.rsplit("/", len(levels) + 1)[0]) in containers:
             levels.append(containers[path_])
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
-        for word in _first_of_each(facts.reads, known):
+        for word in first_of_each(facts.reads, known):
             effect: str | None = None
             message = (
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
@@ -383,7 +383,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
         unknown = {word.text for word in facts.reads}.difference(inputs)
         written = {word.text for word in facts.writes}
         sure = facts.endings and all(each.written is not None for each in facts.endings)
-        for word in _first_of_each(facts.writes, [*outputs, *unknown]):
+        for word in first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
             what = "only an input key" if only else "not an output key of its interface"
             unset = [key for key in outputs if key not in written and key not in inputs]
@@ -403,7 +403,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
             )
 
 
-def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
+def first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
     """The first occurrence of each unknown word."""
     found: dict[str, Word] = {}
     for word in words:

@@ -13,6 +13,7 @@ from smachac.checks.code_slots import unknown_function_reads
 from smachac.checks.edits import with_output
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
+from smachac.checks.unlisted_keys import unlisted_reads, unlisted_writes
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
@@ -58,6 +59,7 @@ def lossy_write(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_lossy_writes)
     yield from dropped_writes(context)
+    yield from unlisted_writes(context)
 
 
 def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
@@ -167,6 +169,7 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
     yield from unknown_reads(context)
+    yield from unlisted_reads(context)
     yield from unknown_function_reads(context)
 
 

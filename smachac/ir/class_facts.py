@@ -180,8 +180,9 @@ class ClassFacts:
     parameter of the constructor that it is. `unused` are the local variables, and the attributes of
     `self`, that it assigns and does not use, each with the userdata key of that name. `parts` are
     the parts of userdata keys that it reads itself: `userdata.pose.x`. `state_call`: the built-in
-    `State.tpl.py` makes the state. `hooks` are the methods of FlexBE's states, such as `on_enter`,
-    that nothing in the class calls.
+    `State.tpl.py` makes the state. `unlisted_reads` and `unlisted_writes` are the accesses of a
+    class without an interface to keys that the constants in its constructor do not list. `hooks`
+    are the methods of FlexBE's states, such as `on_enter`, that nothing in the class calls.
     """
 
     name: Word | None = None
@@ -207,6 +208,8 @@ class ClassFacts:
     parts: tuple[Part, ...] = ()
     loops: tuple[tuple[str, Word], ...] = ()
     state_call: StateCall | None = None
+    unlisted_reads: tuple[Word, ...] = ()
+    unlisted_writes: tuple[Word, ...] = ()
     hooks: tuple[str, ...] = ()
 
     @property
