@@ -69,6 +69,7 @@ FaultKind = Literal[
     "no comma",
     "no tuple",
     "no result",
+    "no return",
     "no argument",
     "no base argument",
     "argument twice",
@@ -143,9 +144,10 @@ class Ending:
     defined: Span | None = None
 
 
-Step = tuple[Literal["attribute", "item", "each"], str | int]
+Step = tuple[Literal["attribute", "item", "each", "names"], str | int]
 """A step to a part of a value: the name of an attribute, an index or field in brackets, or, with an
-empty name, any item in a loop."""
+empty name, any item in a loop. `names` is the last step: the number of names to which a value is
+unpacked."""
 
 
 class Part(NamedTuple):
@@ -183,6 +185,8 @@ class ClassFacts:
     `State.tpl.py` makes the state. `unlisted_reads` and `unlisted_writes` are the accesses of a
     class without an interface to keys that the constants in its constructor do not list. `hooks`
     are the methods of FlexBE's states, such as `on_enter`, that nothing in the class calls.
+    `operations` are the comparisons and calculations of `execute` over userdata keys, whose name
+    is `userdata`; `numbers` are the places of written values that are one number.
     """
 
     name: Word | None = None
@@ -211,6 +215,9 @@ class ClassFacts:
     unlisted_reads: tuple[Word, ...] = ()
     unlisted_writes: tuple[Word, ...] = ()
     hooks: tuple[str, ...] = ()
+    operations: tuple[Word, ...] = ()
+    userdata: str = ""
+    numbers: tuple[Span, ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

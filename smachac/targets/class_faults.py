@@ -127,6 +127,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`{word}` changes a collection and returns None: the variable becomes None",
         "write `{near}`",
     ),
+    "no return": (
+        "`{word}` never returns a value, but `{name}` uses the result of `{more}`",
+        "end `{word}` with `return ...`",
+    ),
     "no argument": (
         "`smach.State.__init__` has no argument `{word}`",
         "its arguments are `outcomes`, `input_keys`, `output_keys` and `io_keys`",
@@ -336,6 +340,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "lost outcome",
         "lost text",
         "no value",
+        "no return",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -346,6 +351,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "undefined method": "the code raises AttributeError when it runs: the machine stops",
     "no attribute": "the code raises AttributeError when it runs: the machine stops",
     "no result": "",
+    "no return": "the result is None: code that uses it as a value fails, or goes on without it",
     "no tuple": "each letter of the text counts as a name",
     "unset attribute": "the code raises AttributeError when it runs: the machine stops",
     "no import": "the code raises NameError when it runs: the machine stops",
@@ -482,7 +488,7 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
     if fault.kind == "no parameter":
         what = f"rename the parameter `{near}` to `{fault.name.text}`"
         return message, f"{what}, or correct the name in the interface"
-    written = fault.kind == "no list" or near.startswith('"') or "." in near
+    written = fault.kind in ("no list", "no return") or near.startswith('"') or "." in near
     if fault.kind == "no attribute":
         written = near.endswith(")")
     return message, f"write `{near}`" if written else f"did you mean `{near}`?"
