@@ -89,7 +89,7 @@ def _arguments(
             return call.args if known and not again else None
         case ast.Attribute(value=ast.Name(id=name), attr="__init__") if name == base.name:
             match call.args:
-                case [ast.Name(id=first), *others] if [first] == me:
+                case [ast.Name(id=passed), *others] if [passed] == me:
                     return others
     return None
 
@@ -139,8 +139,8 @@ def _count_faults(call: _Call) -> Iterator[ClassFault]:
         left_out = _left_out(call)
         near = _with(call, left_out) if left_out is not None else None
         if near is None:
-            more = [f"{name}={name if name in own else '...'}" for name in missing]
-            near = f"{span.text}({', '.join([*_written(call), *more])})"
+            added = [f"{name}={name if name in own else '...'}" for name in missing]
+            near = f"{span.text}({', '.join([*_written(call), *added])})"
         yield ClassFault(kind="missing base argument", name=Word(span.text, span), near=near,
                          owner=call.owner, more=listed(missing))  # fmt: skip
 

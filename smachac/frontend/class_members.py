@@ -100,7 +100,7 @@ def _has(module: Module, node: ast.ClassDef, member: str) -> bool:
     kind = _kind(module, node)
     if member.startswith("_") or (kind is not None and member in ("name", "value")):
         return True
-    bases = [getattr(enum, kind, str), enum.EnumMeta] if kind is not None else [type]
+    bases: list[type] = [getattr(enum, kind, str), enum.EnumMeta] if kind is not None else [type]
     bases += [getattr(builtins, each.id) for each in node.bases
               if isinstance(each, ast.Name) and each.id in VALUES]  # fmt: skip
     if kind == "StrEnum":

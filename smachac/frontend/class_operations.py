@@ -77,8 +77,8 @@ def number_writes(module: Module, function: ast.FunctionDef) -> tuple[Span, ...]
 
 def _local_values(every: list[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
     """The local names that are bound once, by an assignment, each with its value."""
-    names = [each for each in every if isinstance(each, ast.Name)]
-    bound = Counter(each.id for each in names if not isinstance(each.ctx, ast.Load))
+    stored = [each for each in every if isinstance(each, ast.Name)]
+    bound = Counter(each.id for each in stored if not isinstance(each.ctx, ast.Load))
     bound.update(each.arg for each in every if isinstance(each, ast.arg))
     for each in every:
         match each:
