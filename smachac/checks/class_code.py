@@ -16,14 +16,13 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
-from smachac.frontend.yaml_tree import Map, Seq, parse
 from smachac.ir import nodes
 from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, remapping
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
@@ -39,7 +38,7 @@ def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, L
             yield path, leaf, facts
 
 
-def _own_types(
+def own_types(
     context: Context, *, declared: bool
 ) -> Iterator[tuple[str, Leaf, StateType, ClassFacts]]:
     """As `leaves_by_type`, for the types of the user."""
@@ -82,7 +81,7 @@ def _own_names(leaf: Leaf) -> TypeNames:
     )
 
 
-def _used_here(leaf: Leaf) -> tuple[Related, ...]:
+def used_here(leaf: Leaf) -> tuple[Related, ...]:
     """The first state of a type, as a related place."""
     return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
 
@@ -175,7 +174,7 @@ def _wrong_returns(
                 message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
                 help=near or f"{known}{'' if ending.possible else _or_declare(ending, leaf)}",
-                related=(*(returned if ending.defined else ()), *_used_here(leaf)),
+                related=(*(returned if ending.defined else ()), *used_here(leaf)),
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
@@ -189,7 +188,7 @@ def _wrong_returns(
             help=f"write `return {' '.join(facts.open_end.span.text.split())}`"
             if alone and facts.open_end
             else f"{_after_loop(facts)}end each path with a `return`; {known}{_hooks(facts)}",
-            related=(*_open_end(facts), *_used_here(leaf)),
+            related=(*_open_end(facts), *used_here(leaf)),
             severity=None if facts.always_silent else Severity.WARNING,
             node=path,
         )
@@ -301,10 +300,13 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
     containers = dict(context.containers)
     names = _names_by_type(context)
     for path, leaf, facts in leaves_by_type(context, declared=True):
-        inputs = names.get(leaf.type, _own_names(leaf)).inputs
+        _, inputs, outputs = names.get(leaf.type, _own_names(leaf))
         around = containers[path.rpartition("/")[0]]
+        levels = [around]
+        while levels[-1].sugar and (path_ := path.rsplit("/", len(levels) + 1)[0]) in containers:
+            levels.append(containers[path_])
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
-        for word in _first_of_each(facts.reads, known):
+        for word in first_of_each(facts.reads, known):
             effect: str | None = None
             message = (
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
@@ -314,6 +316,13 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )
+            if word.text in outputs:
+                message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
+                message += " key of its interface"
+                if _sets_first(facts, word) or not any(
+                    _comes_from_outside(leaf, each, word.text) for each in levels
+                ):
+                    help = _local_variable(word)
             if word.text in DICTIONARY_METHODS and _is_called(word):
                 name = _owner(word)
                 message = (
@@ -328,9 +337,41 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 arguments=(word.text,),
                 help=help,
                 effect=effect,
-                related=_used_here(leaf),
+                related=used_here(leaf),
                 node=path,
             )
+
+
+def _sets_first(facts: ClassFacts, word: Word) -> bool:
+    """Whether code sets a key that it reads without reading it there, as `+=` does."""
+    places = {each.span for each in facts.reads}
+    return any(each.text == word.text and each.span not in places for each in facts.writes)
+
+
+def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
+    """Whether a key of a leaf can have a value before the leaf sets it."""
+    outer = remapping(leaf).get(key, key)
+    known = {each.key for each in around.userdata} | {each.name for each in around.inputs}
+    return outer in known or any(
+        remapping(child).get(each.name, each.name) == outer
+        for child in around.children
+        if child is not leaf
+        for each in child.outputs
+    )
+
+
+def _local_variable(word: Word) -> str:
+    """The help for a read of a key that the code itself sets: the way to do without it."""
+    after = word.span.source.text[word.span.end :][:20].lstrip(" ]")
+    what = "compute the value" if after.startswith(("+=", "-=", "*=", "/=")) else "keep the value"
+    if after.startswith(COLLECTS):
+        what = "collect the items"
+    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
+    return f"{what} in a local variable, and set `{key}` once, before the return"
+
+
+COLLECTS = (".append(", ".extend(", ".insert(", ".add(", ".update(")
+"""The calls by which code collects items in a list, a set or a dictionary."""
 
 
 def dropped_writes(context: Context) -> Iterator[Finding]:
@@ -342,7 +383,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
         unknown = {word.text for word in facts.reads}.difference(inputs)
         written = {word.text for word in facts.writes}
         sure = facts.endings and all(each.written is not None for each in facts.endings)
-        for word in _first_of_each(facts.writes, [*outputs, *unknown]):
+        for word in first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
             what = "only an input key" if only else "not an output key of its interface"
             unset = [key for key in outputs if key not in written and key not in inputs]
@@ -357,205 +398,18 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 help=guess
                 or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "output_keys", word.text),
-                related=_used_here(leaf),
+                related=used_here(leaf),
                 node=path,
             )
 
 
-def _first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
+def first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
     """The first occurrence of each unknown word."""
     found: dict[str, Word] = {}
     for word in words:
         found.setdefault(word.text, word)
     left = found.keys() - set(known)
     return [word for word in found.values() if word.text in left]
-
-
-@rule(
-    "SM314",
-    "unwritten-output",
-    Severity.WARNING,
-    effect="a state that reads the key afterwards gets an old value, or fails with KeyError",
-)
-def unwritten_output(context: Context) -> Iterator[Finding]:
-    """The class of a state type returns an outcome without setting an output key that its
-    interface promises for that outcome.
-
-    The rules and the next states rely on the interface: a state that reads the key stops the
-    machine with an error, or works with an old value.
-
-    Exactly: the class is read, never run: methods of the class and functions of its module are
-    followed, and a class that passes the userdata to other code is not checked. `writes:` in the
-    interface names the outcomes that set a key. There is a finding at a `return` of such an outcome
-    if no path to it sets the key, or if a branch, an exception or the end of a loop leads past the
-    assignment straight to it. Behind a further condition, and where a condition was examined
-    before, the key counts as set, because the conditions can depend on each other. A key that is
-    not in `writes:` must be set before one `return` at least; after the others it counts as unset
-    (SM301).
-
-    Wrong:
-        name: sm
-        template: Base
-        outcomes: [seen, lost]
-        output_keys: [pose]
-        states:
-          - FIND:
-              template: FindPart
-              transitions: {found: seen, lost: lost}
-        == templates/FindPart.yml ==
-        name: FindPart
-        output_keys: {pose: Pose}
-        outcomes: {found: {}, lost: {}}
-        writes: {found: [pose]}
-        code: {python: "cell.find_part:FindPart"}
-        == cell/find_part.py ==
-        import smach
-
-
-        class FindPart(smach.State):
-            def __init__(self):
-                super().__init__(outcomes=["found", "lost"], output_keys=["pose"])
-
-            def execute(self, userdata):
-                pose = camera.look()
-                return "lost" if pose is None else "found"
-
-    Right:
-        name: sm
-        template: Base
-        outcomes: [seen, lost]
-        output_keys: [pose]
-        states:
-          - FIND:
-              template: FindPart
-              transitions: {found: seen, lost: lost}
-        == templates/FindPart.yml ==
-        name: FindPart
-        output_keys: {pose: Pose}
-        outcomes: {found: {}, lost: {}}
-        writes: {found: [pose]}
-        code: {python: "cell.find_part:FindPart"}
-        == cell/find_part.py ==
-        import smach
-
-
-        class FindPart(smach.State):
-            def __init__(self):
-                super().__init__(outcomes=["found", "lost"], output_keys=["pose"])
-
-            def execute(self, userdata):
-                pose = camera.look()
-                if pose is None:
-                    return "lost"
-                userdata.pose = pose
-                return "found"
-    """
-    for path, leaf, type_, facts in _own_types(context, declared=True):
-        if any(each.role == "callbacks" for each in type_.variables.values()):
-            continue
-        kept = {key.name for key in type_.input_keys}  # set before, perhaps changed in place
-        outputs = [key.name for key in type_.output_keys if key.name not in kept]
-        guess = guesser(outputs)
-        misspelt = {guess(word.text) for word in facts.writes if word.text not in outputs}
-        unused = dict(facts.unused)
-        for key in outputs:
-            if key in misspelt:
-                continue
-            found = [*_unwritten(path, leaf, type_, facts, key)]
-            if found and key in unused:
-                found = [_local(path, leaf, key, unused[key])]
-            yield from found
-
-
-def _local(path: str, leaf: Leaf, key: str, meant: Word) -> Finding:
-    """The finding on a local variable or an attribute of `self` with the name of an output key that
-    is not set."""
-    kept = meant.span.text.startswith("self.")
-    what = "an attribute of the object" if kept else "a local variable"
-    return Finding(
-        span=meant.span,
-        message=f"`{meant.span.text}` is {what} here: the output key `{key}` of `{leaf.type}` is"
-        " not set",
-        arguments=(leaf.type, key),
-        help=f"write `{meant.text}`",
-        related=_used_here(leaf),
-        node=path,
-    )
-
-
-def _unwritten(
-    path: str, leaf: Leaf, type_: StateType, facts: ClassFacts, key: str
-) -> Iterator[Finding]:
-    """The returns that break a promise of `writes:`, or the whole `execute` if it never sets a key
-    that is not in `writes:`."""
-    promised = {outcome for outcome, keys in type_.writes if key in keys}
-    missing = [each for each in facts.endings if each.written is not None]
-    missing = [each for each in missing if key not in (each.written or ())]
-    if promised:
-        for ending in facts.endings:
-            if ending.outcome.text in promised:
-                yield from _broken_promise(path, leaf, type_, ending, key)
-    elif facts.complete and facts.execute is not None and missing == [*facts.endings] != []:
-        yield Finding(
-            span=facts.execute,
-            message=f"`execute` of `{leaf.type}` never sets its output key `{key}`",
-            arguments=(leaf.type, key),
-            help=f"set `userdata.{key}`, or remove it from the interface `{leaf.type}`",
-            related=_used_here(leaf),
-            node=path,
-        )
-
-
-WAY_PAST = {
-    "if": "if this is false, `{key}` is not set",
-    "else": "if this is true, `{key}` is not set",
-    "match": "not every `case` sets `{key}`",
-    "except": "after this exception, `{key}` is not set",
-    "loop": "this loop can end without setting `{key}`",
-    "return": "this `return` comes before `{key}` is set",
-}
-"""The place that leads past the assignment to an output key, by its kind."""
-
-
-def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
-    """The place in the interface that promises a key for an outcome; none if the interface is not a
-    file of its own."""
-    place = next((each.span for each in type_.output_keys if each.name == key), None)
-    if place is None or not place.source.name.endswith((".yml", ".yaml")):
-        return ()
-    tree = parse(place.source, [])
-    writes = tree.get("writes") if isinstance(tree, Map) else None
-    entry = (
-        writes.value.get(outcome) if writes is not None and isinstance(writes.value, Map) else None
-    )
-    items = entry.value.items if entry is not None and isinstance(entry.value, Seq) else ()
-    found = next((each for each in items if getattr(each, "value", None) == key), None)
-    return () if found is None else other_place(found.span, f"`writes:` promises `{key}` here")
-
-
-def _broken_promise(
-    path: str, leaf: Leaf, type_: StateType, ending: Ending, key: str
-) -> Iterator[Finding]:
-    """The finding on a return that breaks a promise of `writes:`, on all paths to it or on some."""
-    place = dict(ending.skipped).get(key)
-    never = ending.written is not None and key not in ending.written
-    if place is None and not never:
-        return
-    does, where = ("returns", "before") if place is None else ("can return", "on each path to")
-    past = other_place(place.span, WAY_PAST[place.text].format(key=key)) if place else ()
-    promise = _promise(type_, ending.outcome.text, key)
-    other = f"correct `writes:` in the interface `{leaf.type}`"
-    if promise:
-        other = f"remove `{key}` from `{ending.outcome.text}` in the `writes:` of the interface"
-    yield Finding(
-        span=ending.outcome.span,
-        message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
-        f" `{key}`",
-        arguments=(leaf.type, key, ending.outcome.text),
-        help=f"set `userdata.{key}` {where} this `return`, or {other}",
-        related=(*past, *promise, *_used_here(leaf)),
-        node=path,
-    )
 
 
 @rule(
@@ -629,7 +483,7 @@ def never_returned(context: Context) -> Iterator[Finding]:
                     belt.wait(0.1)
                 return "arrived"
     """
-    for path, leaf, type_, facts in _own_types(context, declared=False):
+    for path, leaf, type_, facts in own_types(context, declared=False):
         known = facts.complete and facts.returns and facts.execute is not None
         if not known or facts.stub or type_.optional:
             continue
@@ -684,7 +538,7 @@ def _never(
         related=(
             *limits,
             *other_place(place, f"`{outcome}` is declared here"),
-            *_used_here(leaf),
+            *used_here(leaf),
         ),
         effect="the robot goes on until the state ends by itself" if outcome == PREEMPTED else None,
         node=path,

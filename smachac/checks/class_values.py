@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from functools import reduce
 
 from smachac.analysis.context import Context
-from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.expression_errors import expression_faults
+from smachac.analysis.expression_types import parsed, type_of_data
 from smachac.analysis.type_lattice import (
     BOOL,
     FLOAT,
@@ -17,6 +19,7 @@ from smachac.analysis.type_lattice import (
     inside,
     is_open,
     length_of,
+    mapping,
     misfit,
     present,
     widened,
@@ -28,6 +31,7 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import Part, Step
+from smachac.ir.expressions import Binary, Call, Compare
 from smachac.ir.nodes import Data, Struct
 from smachac.ir.types import ANY, Type
 
@@ -45,6 +49,8 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
         for name, written in facts.values:
             key = keys.get(name)
             given = type_of_code(written.text) if key is not None else None
+            if given is None and key is not None and written.span in facts.numbers:
+                given = FLOAT if misfit(Type("int"), key.type) is not None else None
             if key is None or given is None or misfit(given, key.type) is None:
                 continue
             if misfit(given, Type("optional", (key.type,))) is None and given.name == "none":
@@ -180,6 +186,65 @@ def wrong_loops(context: Context) -> Iterator[Finding]:
                 )
 
 
+def wrong_operations(context: Context) -> Iterator[Finding]:
+    """The comparisons and calculations of a class that the types of its input keys do not support
+    (SM311)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or type_.open or not facts.operations:
+            continue
+        types = {key.name: key.type for key in type_.input_keys}
+        lists = {name for name, each in types.items() if present(each).name in ("list", "array")}
+        for word in facts.operations:
+            tree = parsed(word.text)
+            found = (
+                expression_faults(tree, mapping(types.items()), (facts.userdata,)) if tree else ()
+            )
+            for fault in found:
+                known = {*fault.keys} <= types.keys() and fault.kind == "operation"
+                array = isinstance(fault.expr, Binary) and not lists.isdisjoint(fault.keys)
+                if not known or array or not isinstance(fault.expr, Binary | Compare | Call):
+                    continue
+                places = [key.span for key in type_.input_keys if key.name in fault.keys]
+                yield Finding(
+                    span=word.span,
+                    message=f"{fault.what}, by the types in the interface of `{leaf.type}`",
+                    arguments=(leaf.type, word.text, "class"),
+                    help=_length_help(word.text, facts.userdata, lists & {*fault.keys})
+                    or fault.help
+                    or "correct the operation, or the types in the interface",
+                    related=(
+                        *(
+                            place
+                            for each in places
+                            for place in other_place(each, "the type of the key is declared here")
+                        ),
+                        *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                    ),
+                    severity=Severity.WARNING,
+                    node=path,
+                )
+                break
+
+
+def _length_help(text: str, userdata: str, lists: AbstractSet[str]) -> str | None:
+    """The help for an order of a number and a list: the length of the list is meant."""
+    try:
+        node = ast.parse(text, mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    match node:
+        case ast.Compare(ops=[ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE()]):
+            names = [f"{userdata}.{key}" for key in lists]
+        case _:
+            return None
+    for side in (node.left, node.comparators[0]):
+        name = ast.unparse(side)
+        if len(names) == 1 and name in names and text.count(name) == 1:
+            return f"write `{text.replace(name, f'len({name})')}`"
+    return None
+
+
 COORDINATES = {"x": 0, "y": 1, "z": 2, "w": 3}
 """The index in a list for the fields of a message with coordinates."""
 
@@ -200,9 +265,12 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
             if key is None or fault is None:
                 continue
             what, help = fault
+            verb, where = "reads", ""
+            if part.steps[-1][0] == "names":
+                verb, where = "unpacks", f" to {part.steps[-1][1]} names"
             yield Finding(
                 span=part.span,
-                message=f"`{leaf.type}` reads `{part.text}`, but its interface declares"
+                message=f"`{leaf.type}` {verb} `{part.text}`{where}, but its interface declares"
                 f" `{key.name}` as `{key.type}`, {what}",
                 arguments=(
                     key.name,
@@ -232,6 +300,16 @@ def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:
             names = list(fields(owner))
             meant = did_you_mean(guesser(names)(last)) or f"use one of its fields: {listed(names)}"
             return f"{which} has no field `{last}`", meant
+        case "names", int():
+            size = length_of(owner)
+            if size is None or size == last:
+                return None
+            each = first and first[-1][0] == "each"
+            what = (
+                f"in which `{part.text}` has {size} items" if first else f"which has {size} items"
+            )
+            what = f"in which each item has {size} items" if each else what
+            return what, f"write {size} names, or correct the type in the interface"
         case "item", int():
             size = length_of(owner)
             if size is None or -size <= last < size:

@@ -23,7 +23,7 @@ from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_plac
 from smachac.checks.misplaced_states import keys_of_misplaced
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
 from smachac.checks.rule import rule
-from smachac.checks.undeclared_keys import leaves_with_code
+from smachac.checks.undeclared_keys import leaves_with_code, lone_input
 from smachac.checks.unsent_keys import unsent_keys
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_finding, unwritten_keys
 from smachac.checks.word_loops import (
@@ -524,10 +524,10 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:
     for inner, leaf in leaves_with_code(path, container):
-        yield from _unused_by_code(inner, leaf)
+        yield from _unused_by_code(inner, leaf, container)
 
 
-def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
+def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Finding]:
     """The declared keys and outcomes of a leaf that its code in the script does not use."""
     callbacks, conditions = functions(leaf, "callbacks"), functions(leaf, "conditions")
     chooses = variable_of(leaf, "conditions") is not None
@@ -539,6 +539,7 @@ def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     if len(fields) == len(known):
         used = {key for each in fields for key in (*each.read, *each.tested)}
         used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
+        used |= {lone_input(leaf, container) or ""}  # SM310
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         if any(key.name not in used for key in arguments):
             used |= {name.id for code in called for name in free_in(code.text)}  # SM019

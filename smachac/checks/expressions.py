@@ -10,7 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
 from smachac.analysis.units import conversion
-from smachac.checks.class_values import wrong_parts
+from smachac.checks.class_values import wrong_operations, wrong_parts
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types import written
@@ -307,6 +307,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         severity = None if fault.always else Severity.WARNING
         yield _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
     yield from wrong_parts(context)
+    yield from wrong_operations(context)
 
 
 @rule(

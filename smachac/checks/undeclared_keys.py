@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from smachac.analysis.accesses import callback_names, scripted_steps
+from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
 from smachac.analysis.code_slots import undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
@@ -13,6 +13,7 @@ from smachac.checks.code_slots import unknown_function_reads
 from smachac.checks.edits import with_output
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
+from smachac.checks.unlisted_keys import unlisted_reads, unlisted_writes
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
@@ -58,6 +59,7 @@ def lossy_write(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_lossy_writes)
     yield from dropped_writes(context)
+    yield from unlisted_writes(context)
 
 
 def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
@@ -167,7 +169,24 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
     yield from unknown_reads(context)
+    yield from unlisted_reads(context)
     yield from unknown_function_reads(context)
+
+
+def lone_input(leaf: Leaf, container: Container) -> str | None:
+    """The only input key of a leaf that its code does not read, if the code reads exactly one key
+    that is not declared and is no misspelt one; otherwise None."""
+    item = container.item_key if isinstance(container, nodes.Iterator) else None
+    wrong = [key for key, _ in undeclared_reads(leaf) if key != item]
+    called = [*(functions(leaf, "callbacks") or {}).values(),
+              *(functions(leaf, "conditions") or {}).values()]  # fmt: skip
+    fields = [userdata_fields(code.text) for code in called] if len(wrong) == 1 else []
+    if not fields or guesser(each.name for each in leaf.inputs)(wrong[0]) is not None:
+        return None
+    used = {key for each in fields if each is not None for key in (*each.read, *each.tested)}
+    left = [key for key in leaf.inputs if key.name not in used]
+    sure = None not in fields and len(left) == 1 and left[0].role == "argument"
+    return left[0].name if sure else None
 
 
 def _undeclared_accesses(
@@ -175,6 +194,7 @@ def _undeclared_accesses(
 ) -> Iterator[Finding]:
     for inner, leaf in leaves_with_code(path, container):
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
+        lone = lone_input(leaf, container) if len(read) == 1 else None
         guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
         for key, code in read:
             if isinstance(container, nodes.Iterator) and key == container.item_key:
@@ -186,6 +206,11 @@ def _undeclared_accesses(
                 " input keys",
                 arguments=(key,),
                 help=did_you_mean(guess(key))
+                or (
+                    f"its input key `{lone}` is read by nothing: did you mean `{lone}`?"
+                    if lone
+                    else None
+                )
                 or f"add `{key}` to the `input_keys` of `{leaf.name}`, and set it before, for"
                 f" example in `userdata: {{{key}: ...}}`",
                 related=calls(leaf, code.span),

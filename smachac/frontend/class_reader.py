@@ -10,15 +10,19 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import TypedDict
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.base_calls import base_call_faults
+from smachac.frontend.class_members import missing_constants
 from smachac.frontend.class_names import (
     STATE_METHODS,
     undefined_in_base,
     undefined_methods,
     undefined_names,
 )
+from smachac.frontend.class_operations import number_writes, operations
 from smachac.frontend.class_slips import (
     is_uncalled_super,
     joined_texts,
@@ -54,6 +58,7 @@ from smachac.frontend.python_modules import (
     with_bases,
 )
 from smachac.frontend.python_source import PythonText, name_span
+from smachac.frontend.silent_results import silent_results
 from smachac.frontend.userdata_parts import parts_of_arguments, parts_read
 from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
 
@@ -157,7 +162,26 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         parts=(*parts_read(_text_of(own, execute), execute), *parts_of_arguments(own, execute))
         if execute is not None and flow.reads
         else (),
+        **_operations(own, execute if flow.reads or flow.writes else None),
     )
+
+
+class _Operations(TypedDict, total=False):
+    operations: tuple[Word, ...]
+    userdata: str
+    numbers: tuple[Span, ...]
+
+
+def _operations(own: OwnClass, execute: ast.FunctionDef | None) -> _Operations:
+    """The facts about the operations of `execute`."""
+    if execute is None:
+        return {}
+    module = next(module for module, node in own.classes if execute in node.body)
+    return {
+        "operations": operations(module, execute),
+        "userdata": execute.args.args[1].arg,
+        "numbers": number_writes(module, execute),
+    }
 
 
 HOOKS = ("on_enter", "on_exit", "on_start", "on_stop", "on_pause", "on_resume")
@@ -224,8 +248,10 @@ def _undefined(
     yield from lost_results(own)
     yield from lost_outcomes(own, library)
     yield from missing_members(own, library)
+    yield from missing_constants(own, library)
     yield from module_slips(own, library)
     yield from texts_as_lists(own)
+    yield from silent_results(own, library)
 
 
 def _is_userdata(fault: ClassFault, execute: ast.FunctionDef) -> bool:
@@ -287,7 +313,7 @@ def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFaul
         certain = not own.binds("get_registered_outcomes")
         return [*found, _at_class("no state", module, node)] if certain else found
     return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own),
-            *_call_faults(own), *_list_faults(own)]  # fmt: skip
+            *_call_faults(own), *base_call_faults(own), *_list_faults(own)]  # fmt: skip
 
 
 def _at_class(

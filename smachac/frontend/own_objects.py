@@ -31,7 +31,7 @@ def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     done = set[tuple[str, str]]()
     classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
     for module, node in own.classes:
-        others = of_other_objects(node) | _caught(node)
+        others = of_other_objects(node) | caught(node)
         every = [*ast.walk(module.text.tree)]
         set_here = {each.attr for each in every if isinstance(each, ast.Attribute)
                     and not isinstance(each.ctx, ast.Load)}  # fmt: skip
@@ -51,7 +51,7 @@ def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
             span = module.text.span(each)
             if found is None or (name, member) in done or module.text.is_filled(span):
                 continue
-            names, methods = _members(found[1])
+            names, methods = members_of(found[1])
             if member in names | set_here or member in quoted or hasattr(object, member):
                 continue
             done.add((name, member))
@@ -86,29 +86,40 @@ def _plain_class(
             return None
     if not isinstance(found, tuple):
         return None
-    other, node = found
+    return found if shows_all(module, name, *found) and has_no_base(found[1]) else None
+
+
+def has_no_base(node: ast.ClassDef) -> bool:
+    """Whether a class has no base class, decorator or metaclass."""
     plain = all(isinstance(each, ast.Name) and each.id == "object" for each in node.bases)
-    if (
-        not plain
-        or node.keywords
-        or node.decorator_list
-        or other.text.fillings(other.text.span(node))
-    ):
-        return None
+    return plain and not node.keywords and not node.decorator_list
+
+
+def shows_all(module: Module, name: str, other: Module, node: ast.ClassDef) -> bool:
+    """Whether the text of a class of the module `other`, which `module` uses under a name, shows
+    all names that it has itself."""
+    if other.text.fillings(other.text.span(node)):
+        return False
     used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
     used |= {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)}
     bound = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
     late = {"setattr", "vars", "__dict__", "locals", "exec", "globals"} & used
-    outside = any(  # `Scale.read_weight = ...`
-        isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store)
-        and isinstance(each.value, ast.Name) and each.value.id == name
-        for text in {id(one.text.tree): one.text.tree for one in (module, other)}.values()
-        for each in ast.walk(text)
-    )  # fmt: skip
-    return found if not (late or outside or LATE & bound) else None
+    trees = {id(one.text.tree): one.text.tree for one in (module, other)}.values()
+    outside = any(_sets(each, name) for tree in trees for each in ast.walk(tree))
+    return not (late or outside or LATE & bound)
 
 
-def _members(node: ast.ClassDef) -> tuple[set[str], list[str]]:
+def _sets(node: ast.AST, name: str) -> bool:
+    """Whether code sets an attribute of a class: `Scale.read = ...`, `setattr(Scale, ...)`."""
+    match node:
+        case ast.Attribute(value=ast.Name(id=owner), ctx=ast.Store()):
+            return owner == name
+        case ast.Call(func=ast.Name(id="setattr"), args=[ast.Name(id=owner), *_]):
+            return owner == name
+    return False
+
+
+def members_of(node: ast.ClassDef) -> tuple[set[str], list[str]]:
     """The names of a class and of the attributes of its objects, and its public methods."""
     names = set[str]()
     for each in ast.walk(node):
@@ -124,7 +135,7 @@ def _members(node: ast.ClassDef) -> tuple[set[str], list[str]]:
     return names, methods
 
 
-def _caught(node: ast.ClassDef) -> set[ast.AST]:
+def caught(node: ast.ClassDef) -> set[ast.AST]:
     """The nodes in a `try` that catches the error of a missing attribute."""
     found: set[ast.AST] = set()
     for each in ast.walk(node):

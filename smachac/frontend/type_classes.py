@@ -58,6 +58,7 @@ def facts_without_interface(name: str, file: str, library: Library) -> ClassFact
         return None
     written = tuple(smacha_meta.body_words(file, library.template))
     fixed = facts.outcomes is not None
+    unlisted = _unlisted(facts.reads, facts.inputs), _unlisted(facts.writes, facts.outputs)
     facts = _with_script(facts, ALL_GIVEN - {"outcomes"} if fixed else ALL_GIVEN)
     return replace(
         facts,
@@ -67,7 +68,17 @@ def facts_without_interface(name: str, file: str, library: Library) -> ClassFact
         passed=tuple((part, (*names, *written)) for part, names in facts.passed),
         endings=tuple(replace(each, written=None) for each in facts.endings),
         values=(),
+        unlisted_reads=unlisted[0],
+        unlisted_writes=unlisted[1],
     )
+
+
+def _unlisted(used: tuple[Word, ...], listed: tuple[Word, ...] | None) -> tuple[Word, ...]:
+    """The keys that code uses and the constructor does not list; none if its list is not known."""
+    if listed is None:
+        return ()
+    names = {word.text for word in listed}
+    return tuple(word for word in used if word.text not in names)
 
 
 def prints_itself(file: str, library: Library) -> bool:

@@ -29,7 +29,7 @@ def parts_of_arguments(own: OwnClass, execute: ast.FunctionDef) -> Iterator[Part
     calls = [each for each in every if isinstance(each, ast.Call)]
     if not calls or any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
         return
-    tried, written, known = _tried(every), _written(every, userdata), _fields_known(every)
+    tried, written, known = tried_code(every), written_keys(every, userdata), _fields_known(every)
     done = set[tuple[str, int, str]]()
     for call in calls:
         match call.func:
@@ -63,7 +63,7 @@ def _is_rebound(function: ast.FunctionDef, name: str) -> bool:
     return len(binds) > 1
 
 
-def _tried(every: Sequence[ast.AST]) -> set[ast.AST]:
+def tried_code(every: Sequence[ast.AST]) -> set[ast.AST]:
     """The code in the body of a `try`."""
     return {inner for each in every if isinstance(each, ast.Try)
             for line in each.body for inner in ast.walk(line)}  # fmt: skip
@@ -75,14 +75,16 @@ def _parts(
     """The parts that a function reads of the userdata of a name, and of its parameters in `given`,
     which are values of keys."""
     every = [*ast.walk(function)]
-    tried = _tried(every)
+    tried = tried_code(every)
     if any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
         return ()
-    written = _written(every, userdata)
+    written = written_keys(every, userdata)
     known = _fields_known(every)
     names = _names(every, userdata, given)
     found: list[Part] = []
     for each in every:
+        found += [one for one in _unpacked(text, each, names, userdata)
+                  if each not in tried and one.key not in written]  # fmt: skip
         way = _way(each, names, userdata)
         if way is None or each in tried or not isinstance(each, ast.expr):
             continue
@@ -98,7 +100,22 @@ def _parts(
     return tuple(found)
 
 
-def _written(every: Sequence[ast.AST], userdata: str) -> frozenset[str]:
+def _unpacked(
+    text: PythonText, node: ast.AST, names: Mapping[str, Way], userdata: str
+) -> Iterator[Part]:
+    """The parts of userdata that a statement unpacks to several names: `x, y = userdata.offset`."""
+    for target, value, more in _bindings(node):
+        way = _way(value, names, userdata)
+        if way is None or not isinstance(target, ast.Tuple | ast.List):
+            continue
+        span = text.span(target)
+        if any(isinstance(each, ast.Starred) for each in target.elts) or text.is_filled(span):
+            continue
+        steps: tuple[Step, ...] = (*way[1], *more, ("names", len(target.elts)))
+        yield Part(way[0], steps, text.span(value).text, span)
+
+
+def written_keys(every: Sequence[ast.AST], userdata: str) -> frozenset[str]:
     """The keys of userdata that the code writes or deletes."""
     found: set[str] = set()
     for each in every:

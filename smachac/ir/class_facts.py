@@ -36,6 +36,8 @@ FaultKind = Literal[
     "not passed",
     "not accepted",
     "argument order",
+    "no keyword",
+    "no argument here",
     "no quotes",
     "other guard",
     "no outcome",
@@ -68,7 +70,13 @@ FaultKind = Literal[
     "no comma",
     "no tuple",
     "no result",
+    "no return",
     "no argument",
+    "no base argument",
+    "argument twice",
+    "too many arguments",
+    "missing base argument",
+    "shifted arguments",
     "no state class",
     "not called",
     "function not called",
@@ -137,9 +145,10 @@ class Ending:
     defined: Span | None = None
 
 
-Step = tuple[Literal["attribute", "item", "each"], str | int]
+Step = tuple[Literal["attribute", "item", "each", "names"], str | int]
 """A step to a part of a value: the name of an attribute, an index or field in brackets, or, with an
-empty name, any item in a loop."""
+empty name, any item in a loop. `names` is the last step: the number of names to which a value is
+unpacked."""
 
 
 class Part(NamedTuple):
@@ -174,8 +183,11 @@ class ClassFacts:
     parameter of the constructor that it is. `unused` are the local variables, and the attributes of
     `self`, that it assigns and does not use, each with the userdata key of that name. `parts` are
     the parts of userdata keys that it reads itself: `userdata.pose.x`. `state_call`: the built-in
-    `State.tpl.py` makes the state. `hooks` are the methods of FlexBE's states, such as `on_enter`,
-    that nothing in the class calls.
+    `State.tpl.py` makes the state. `unlisted_reads` and `unlisted_writes` are the accesses of a
+    class without an interface to keys that the constants in its constructor do not list. `hooks`
+    are the methods of FlexBE's states, such as `on_enter`, that nothing in the class calls.
+    `operations` are the comparisons and calculations of `execute` over userdata keys, whose name
+    is `userdata`; `numbers` are the places of written values that are one number.
     """
 
     name: Word | None = None
@@ -201,7 +213,12 @@ class ClassFacts:
     parts: tuple[Part, ...] = ()
     loops: tuple[tuple[str, Word], ...] = ()
     state_call: StateCall | None = None
+    unlisted_reads: tuple[Word, ...] = ()
+    unlisted_writes: tuple[Word, ...] = ()
     hooks: tuple[str, ...] = ()
+    operations: tuple[Word, ...] = ()
+    userdata: str = ""
+    numbers: tuple[Span, ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

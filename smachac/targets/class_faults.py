@@ -127,9 +127,34 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`{word}` changes a collection and returns None: the variable becomes None",
         "write `{near}`",
     ),
+    "no return": (
+        "`{word}` never returns a value, but `{name}` uses the result of `{more}`",
+        "end `{word}` with `return ...`",
+    ),
     "no argument": (
         "`smach.State.__init__` has no argument `{word}`",
         "its arguments are `outcomes`, `input_keys`, `output_keys` and `io_keys`",
+    ),
+    "no base argument": (
+        "`__init__` of `{owner}` has no parameter `{word}`",
+        "its parameters are {more}",
+    ),
+    "argument twice": (
+        "`__init__` of `{owner}` gets `{word}` twice: by its place, and by its name",
+        "remove one of the two arguments",
+    ),
+    "too many arguments": (
+        "`__init__` of `{owner}` has no parameter for `{word}`",
+        "its parameters are {more}",
+    ),
+    "missing base argument": (
+        "`__init__` of `{owner}` requires {more}, which this call does not pass",
+        "write `{near}`",
+    ),
+    "shifted arguments": (
+        "the outcomes `{word}` are passed as `{more}` of `__init__` of `{owner}`, and `{file}` as"
+        " `outcomes`",
+        "write `{near}`",
     ),
     "no state class": (
         "`{word}` is not a class of SMACH",
@@ -283,6 +308,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " parameters",
         "write `{near}`",
     ),
+    "no keyword": (
+        "the template passes `{word}`, but `__init__` of `{name}` has no parameter `{word}`",
+        "its parameters are {more}",
+    ),
+    "no argument here": (
+        "the template does not pass `{word}`, which `__init__` of `{name}` requires",
+        "add `{word}={{{{ {word} }}}}` to the call, or give `{word}` a default value in `__init__`",
+    ),
     "no quotes": (
         "the template prints the text of `{word}` without quotes: here the name `{more}`, which"
         " nothing defines",
@@ -314,6 +347,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "lost outcome",
         "lost text",
         "no value",
+        "no return",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -324,6 +358,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "undefined method": "the code raises AttributeError when it runs: the machine stops",
     "no attribute": "the code raises AttributeError when it runs: the machine stops",
     "no result": "",
+    "no return": "the result is None: code that uses it as a value fails, or goes on without it",
     "no tuple": "each letter of the text counts as a name",
     "unset attribute": "the code raises AttributeError when it runs: the machine stops",
     "no import": "the code raises NameError when it runs: the machine stops",
@@ -359,6 +394,8 @@ EFFECTS: Mapping[FaultKind, str] = {
 _PASSED = "the program passes each variable by its name: the call raises a TypeError"
 _CALLED = "the program makes the state without this argument: the call raises a TypeError"
 
+_RAISED = "the call raises a TypeError when the program makes the state"
+
 PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no state": "SMACH uses attributes of `smach.State` that the object does not have",
     "no execute": "`execute` of `smach.State` raises a NotImplementedError when the state runs",
@@ -369,7 +406,15 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no base constructor call": "what the base class sets is missing, also the outcomes and keys:"
     " the program stops",
     "no comma": "SMACH knows the joined name only: the machine stops with an error",
-    "no argument": "the call raises a TypeError when the program makes the state",
+    "no argument": _RAISED,
+    "no keyword": _RAISED,
+    "no argument here": _RAISED,
+    "no base argument": _RAISED,
+    "argument twice": _RAISED,
+    "too many arguments": _RAISED,
+    "missing base argument": _RAISED,
+    "shifted arguments": "the state does not have the outcomes that it returns: the machine stops"
+    " with an error",
     "no state class": "the definition of the class raises an error when the program starts",
     "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
     "no parameter": _PASSED,
@@ -382,7 +427,7 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "other guard": "the program stops with a NameError when it makes the state",
     "argument order": "each parameter gets the value of another one",
     "no quotes": "the program stops with a NameError when it makes the state",
-    "not accepted": "the call raises a TypeError when the program makes the state",
+    "not accepted": _RAISED,
 }
 """What happens in a program in Python, where it is certain."""
 
@@ -410,6 +455,8 @@ WRITTEN = frozenset[FaultKind](
         "no tuple",
         "no result",
         "no state class",
+        "missing base argument",
+        "shifted arguments",
         "not called",
         "function not called",
         "no effect",
@@ -450,7 +497,7 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
     if fault.kind == "no parameter":
         what = f"rename the parameter `{near}` to `{fault.name.text}`"
         return message, f"{what}, or correct the name in the interface"
-    written = fault.kind == "no list" or near.startswith('"') or "." in near
+    written = fault.kind in ("no list", "no return") or near.startswith('"') or "." in near
     if fault.kind == "no attribute":
         written = near.endswith(")")
     return message, f"write `{near}`" if written else f"did you mean `{near}`?"

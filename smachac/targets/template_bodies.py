@@ -17,6 +17,7 @@ from smachac.frontend.errors.references import template_error
 from smachac.frontend.jinja_tags import tags
 from smachac.frontend.loader import Library
 from smachac.frontend.python_modules import template_module
+from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Leaf, Machine, StateType
@@ -103,7 +104,11 @@ def _call_fault(
     made = _maker(template)
     if made is None:
         return None
-    name, parameters = made
+    name, maker, text = made
+    parameters = [each.arg for each in maker.args.args[1:]]
+    unfit = _argument_fault(text, body, name, maker, leaf)
+    if unfit is not None:
+        return unfit, name
     calls = [*re.compile(rf"\b{re.escape(name)}\(").finditer(template.text, *body.span(1))]
     if len(calls) != 1:
         return None
@@ -133,18 +138,80 @@ def _call_fault(
     return None
 
 
-def _maker(template: Source) -> tuple[str, list[str]] | None:
-    """The only class in a template, with the parameters of its constructor."""
+def _maker(template: Source) -> tuple[str, ast.FunctionDef, PythonText] | None:
+    """The only class in a template, with its constructor and the Python of the template."""
     try:
         module = template_module(template)
     except (RecursionError, MemoryError, ValueError):
         return None
     classes = [each for each in module.text.tree.body if isinstance(each, ast.ClassDef)
                ] if module is not None else []  # fmt: skip
-    if len(classes) != 1:
+    if module is None or len(classes) != 1:
         return None
     makers = [each for each in classes[0].body
               if isinstance(each, ast.FunctionDef) and each.name == "__init__"]  # fmt: skip
     if len(makers) != 1:
         return None
-    return classes[0].name, [each.arg for each in makers[0].args.args[1:]]
+    return classes[0].name, makers[0], module.text
+
+
+def _argument_fault(
+    text: PythonText, body: re.Match[str], name: str, maker: ast.FunctionDef, leaf: Leaf
+) -> ClassFault | None:
+    """An argument of the call of the constructor that this does not have, or lacks."""
+    call = _only_call(text, body, name)
+    taken = maker.args
+    known = [each.arg for each in (*taken.args[1:], *taken.kwonlyargs)]
+    if call is None or maker.decorator_list or text.is_filled(text.span(maker)):
+        return None
+    positional = [each.arg for each in (*taken.posonlyargs, *taken.args)][1:]
+    given = {each.arg for each in call.keywords}
+    passed = {*positional[: len(call.args)], *given}
+    for argument in call.keywords:
+        word = argument.arg
+        if word is None or word in known or taken.kwarg is not None:
+            continue
+        start = text.offset(argument.lineno, argument.col_offset)
+        span = Span(text.source, start, start + len(word))
+        left = [each for each in known if each not in passed]
+        near = left[0] if len(left) == 1 else guesser(left)(word)
+        more = ", ".join(f"`{each}`" for each in known) or "only `self`"
+        if not text.is_filled(span):
+            return ClassFault(kind="no keyword", name=Word(word, span), near=near, more=more)
+    if None in given or not _is_counted(text, call, {*known, *positional}):
+        return None
+    if len(call.args) > len(positional) and taken.vararg is None:
+        span = text.span(call.args[len(positional)])
+        more = ", ".join(f"`{each}`" for each in positional) or "only `self`"
+        return ClassFault(kind="too many arguments", name=Word(span.text, span), owner=name,
+                          more=more)  # fmt: skip
+    due = positional[: len(positional) - len(taken.defaults)]
+    due += [each.arg for each, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+            if default is None]  # fmt: skip
+    unused = {each.name for each in (*leaf.written, *leaf.variables)}  # SM003
+    missing = [each for each in due if each not in passed and each not in unused]
+    end = text.span(call.func).end
+    span = Span(text.source, end - len(name), end)
+    return ClassFault(kind="no argument here", name=Word(missing[0], span)) if missing else None
+
+
+def _only_call(text: PythonText, body: re.Match[str], name: str) -> ast.Call | None:
+    """The only call of a name in the block `body`, also behind an expression of Jinja that prints
+    nothing: `{{ '' }}Measure(...)`."""
+    found = [each for each in ast.walk(text.tree)
+             if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
+             and each.func.id.lstrip("_") == name
+             and body.start(1) <= text.span(each).start < body.end(1)]  # fmt: skip
+    return found[0] if len(found) == 1 else None
+
+
+def _is_counted(text: PythonText, call: ast.Call, known: set[str]) -> bool:
+    """Whether each argument of a call is one argument in the program, whatever Jinja prints."""
+    if any(isinstance(each, ast.Starred) for each in call.args):
+        return False
+    whole = text.span(call)
+    for each in text.fillings(Span(whole.source, text.span(call.func).end, whole.end)):
+        word = each.removeprefix("{{").removesuffix("}}").strip()
+        if not each.startswith("{{") or word not in known:
+            return False
+    return True

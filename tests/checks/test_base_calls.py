@@ -1,0 +1,120 @@
+"""Calls of the constructor of a base class of the project that do not fit its parameters."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.trust.project_text import analysed
+
+MAIN = """\
+name: sm
+template: Base
+outcomes: [done, failed]
+userdata: {offset: 1}
+states:
+  - MOVE: {template: Move, input_keys: [offset], transitions: {moved: done, lost: failed}}
+"""
+TYPE = """\
+input_keys: {offset: int}
+outcomes: {moved: {}, lost: {}}
+code: {python: "cell.states:Move"}
+"""
+BASE = """\
+import smach
+
+
+class Drive(smach.State):
+    def __init__(self, node, outcomes, input_keys=(), *, rate=10):
+        super().__init__(outcomes=outcomes, input_keys=list(input_keys))
+        self.node, self.rate = node, rate
+"""
+CLASS = """\
+from cell.base import Drive
+
+
+class Move(Drive):
+    def __init__(self, node=None):
+        CALL
+
+    def execute(self, userdata):
+        if userdata.offset > 0:
+            return "moved"
+        return "lost"
+"""
+
+
+def reported(call: str, base: str = BASE) -> list[tuple[str, str, str]]:
+    files = {
+        "main.yml": MAIN,
+        "templates/Move.yml": TYPE,
+        "cell/__init__.py": "",
+        "cell/base.py": base,
+        "cell/states.py": CLASS.replace("CALL", call),
+    }
+    return [(each.code, each.span.text, each.help or "") for each in analysed(files).report]
+
+
+LISTS = '["moved", "lost"], ["offset"]'
+GOOD = f"super().__init__(node, {LISTS})"
+
+
+@pytest.mark.parametrize(
+    ("call", "place", "help"),
+    [
+        (f"super().__init__({LISTS})", '["moved", "lost"]', f"write `{GOOD}`"),
+        (f"super(Move, self).__init__({LISTS})", '["moved", "lost"]',
+         f"write `super(Move, self).__init__(node, {LISTS})`"),
+        (f"Drive.__init__(self, {LISTS})", '["moved", "lost"]',
+         f"write `Drive.__init__(self, node, {LISTS})`"),
+        ('super().__init__(["moved", "lost"])', "super().__init__",
+         'write `super().__init__(node, ["moved", "lost"])`'),
+        ("super().__init__(node)", "super().__init__",
+         "write `super().__init__(node, outcomes=...)`"),
+        ('super().__init__(node, outcomes=["moved", "lost"], inputs=["offset"])', "inputs",
+         "did you mean `input_keys`?"),
+        ('super().__init__(node, ["moved", "lost"], ["offset"], 5)', "5",
+         "its parameters are `node`, `outcomes`, `input_keys`"),
+        ('super().__init__(node, ["moved", "lost"], outcomes=["lost"])', "outcomes",
+         "remove one of the two arguments"),
+    ],
+)  # fmt: skip
+def test_a_call_that_does_not_fit(call: str, place: str, help: str) -> None:
+    assert reported(call) == [("SM609", place, help)]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        GOOD,
+        f"Drive.__init__(self, node, {LISTS})",
+        f"super().__init__(None, {LISTS}, rate=5)",
+        'super().__init__(node=node, outcomes=["moved", "lost"], input_keys=["offset"])',
+        "super().__init__(*LISTS)",
+        "super().__init__(node, **LISTS)",
+        f"make = super().__init__\n        make(node, {LISTS})",
+        f"Other.__init__({LISTS})",
+    ],
+)
+def test_no_finding(call: str) -> None:
+    assert [each for each in reported(call) if each[0] == "SM609"] == []
+
+
+@pytest.mark.parametrize(
+    "base",
+    [
+        BASE.replace("input_keys=(), *, rate=10", "*more, rate=10, **others"),
+        BASE.replace("    def __init__", "    @logged\n    def __init__"),
+        BASE.replace("class Drive(smach.State)", "class Drive(Other)")
+        .replace("    def __init__", "    def start"),
+    ],
+)  # fmt: skip
+def test_a_base_class_that_accepts_more(base: str) -> None:
+    found = reported('super().__init__(node, ["moved", "lost"], ["offset"], 5, speed=1)', base)
+    assert [each for each in found if each[0] == "SM609"] == []
+
+
+def test_a_list_that_is_no_list_of_outcomes() -> None:
+    base = BASE.replace("self, node,", "self, joints,").replace("= node", "= joints")
+    assert (
+        reported('super().__init__(["left", "right"], ["moved", "lost"], ["offset"])', base) == []
+    )

@@ -1,0 +1,225 @@
+"""Operations on keys in the Python class of a state type, against the types in its interface, and
+results of functions that return nothing."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.trust.project_text import analysed
+
+MAIN = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata:
+  count: 0
+  order: {type: "list[str]", value: [bolt]}
+  offset: {type: "float<m>[2]", value: [0.1, 0.2]}
+  points: {type: "list[float[2]]", value: [[0.1, 0.2]]}
+output_keys: [out]
+states:
+  - WORK:
+      template: Work
+      input_keys: [count, order, offset, points]
+      output_keys: [out]
+      transitions: {worked: done}
+"""
+INTERFACE = """\
+input_keys: {count: int, order: "list[str]", offset: "float<m>[2]", points: "list[float[2]]"}
+output_keys: {out: OUT}
+outcomes: {worked: {}}
+code: {python: "cell.states:Work"}
+"""
+CLASS = """\
+import math
+
+import smach
+
+from cell import tools
+
+
+class Work(smach.State):
+    def __init__(self):
+        super().__init__(
+            outcomes=["worked"],
+            input_keys=["count", "order", "offset", "points"],
+            output_keys=["out"],
+        )
+        self.scale = 2.0
+
+    def execute(self, userdata):
+        userdata.out = OUT
+CODE
+        return "worked"
+"""
+TOOLS = """\
+MASSES = {"bolt": 0.1}
+
+
+def mass_of(name):
+    MASSES.get(name)
+
+
+def log(name):
+    print(name)
+
+
+def later(name):
+    raise NotImplementedError
+
+
+def good(name):
+    return MASSES.get(name)
+"""
+
+
+def reported(code: str, out: str = "None", type_: str = "any") -> list[tuple[str, str, str]]:
+    body = "\n".join(f"        {line}" for line in code.split("\n"))
+    files = {
+        "main.yml": MAIN,
+        "templates/Work.yml": INTERFACE.replace("OUT", type_),
+        "cell/__init__.py": "",
+        "cell/states.py": CLASS.replace("CODE", body).replace("OUT", out),
+        "cell/tools.py": TOOLS,
+    }
+    return [
+        (each.code, each.span.text, each.help or "")
+        for each in analysed(files).report
+        if each.code not in ("SM305", "SM306")
+    ]
+
+
+# --- operations
+
+
+@pytest.mark.parametrize(
+    ("code", "expression", "help"),
+    [
+        ("if userdata.count >= userdata.order:\n    pass", "userdata.count >= userdata.order",
+         "write `userdata.count >= len(userdata.order)`"),
+        ("if userdata.order < 3 and self.scale:\n    pass", "userdata.order < 3",
+         "write `len(userdata.order) < 3`"),
+        ("if userdata.offset > 0.1:\n    pass", "userdata.offset > 0.1",
+         "write `len(userdata.offset) > 0.1`"),
+    ],
+)  # fmt: skip
+def test_a_comparison_of_a_number_and_a_list(code: str, expression: str, help: str) -> None:
+    assert reported(code) == [("SM311", expression, help)]
+
+
+def test_a_sum_of_a_number_and_a_text() -> None:
+    found = reported('print(userdata.count + "bolts")')
+    assert [each[:2] for each in found] == [("SM311", 'userdata.count + "bolts"')]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "if userdata.count >= len(userdata.order):\n    pass",
+        "if userdata.order[0] > 'bolt':\n    pass",
+        "if isinstance(userdata.order, int) and userdata.count > userdata.order:\n    pass",
+        "try:\n    print(userdata.count > userdata.order)\nexcept TypeError:\n    pass",
+        "order = tools.good(userdata.order)\nif userdata.count > order:\n    pass",
+        "print(userdata.offset * 2.0)",  # perhaps an array of numpy
+        "if tools.good(userdata.offset > 0.1):\n    pass",
+    ],
+)
+def test_an_operation_that_fits_or_is_not_known(code: str) -> None:
+    assert reported(code) == []
+
+
+# --- unpacking
+
+
+@pytest.mark.parametrize(
+    ("code", "names"),
+    [
+        ("x, y, z = userdata.offset", "x, y, z"),
+        ("[x] = userdata.offset", "[x]"),
+        ("for x, y, z in userdata.points:\n    print(x, y, z)", "x, y, z"),
+        ("x, y, z = userdata.points[0]", "x, y, z"),
+        ("print([x for at, (x, y, z) in enumerate(userdata.points)])", "(x, y, z)"),
+    ],
+)
+def test_another_number_of_names(code: str, names: str) -> None:
+    help = "write 2 names, or correct the type in the interface"
+    assert reported(code) == [("SM311", names, help)]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "x, y = userdata.offset",
+        "x, *more = userdata.offset",
+        "a, b, c = userdata.order",
+        "for x, y in userdata.points:\n    print(x, y)",
+        "try:\n    x, y, z = userdata.offset\nexcept ValueError:\n    pass",
+        "x, y, z = (*userdata.offset, 0.0)",
+    ],
+)
+def test_names_that_fit_or_are_not_known(code: str) -> None:
+    assert reported(code) == []
+
+
+# --- one number in place of a list
+
+
+@pytest.mark.parametrize(
+    ("code", "out", "found"),
+    [
+        ("", "-1.0 * math.hypot(*userdata.offset)", True),
+        ("sign = -1.0 if self.scale else 1.0\nuserdata.out = sign * math.pi", "[1.0, 2.0]", True),
+        ("", "abs(-3 + len(userdata.order))", True),
+        ("", "self.scale * math.pi", False),  # perhaps an array
+        ("", "[math.pi, math.tau]", False),
+        ("sign = 1.0\nsign = tools.good(sign)\nuserdata.out = sign", "[1.0, 2.0]", False),
+    ],
+)
+def test_one_number_for_a_list(code: str, out: str, found: bool) -> None:
+    codes = [each[0] for each in reported(code, out, '"float<m>[2]"')]
+    assert codes == (["SM304"] if found else [])
+
+
+@pytest.mark.parametrize("type_", ["float", "int", '"float?"', "any"])
+def test_one_number_for_a_number(type_: str) -> None:
+    assert reported("", "2 * math.hypot(*userdata.offset)", type_) == []
+
+
+# --- results of functions that return nothing
+
+RETURN = "write `return MASSES.get(name)`"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'userdata.out = [{"mass": tools.mass_of("bolt")}]',
+        'parts = []\nparts.append(tools.mass_of("bolt"))\nuserdata.out = parts',
+        'mass = tools.mass_of("bolt")\nuserdata.out = {"mass": mass}',
+        'if tools.mass_of("bolt") > 0.1:\n    pass',
+        'userdata.out = tools.mass_of("bolt")',
+    ],
+)
+def test_a_result_that_is_none(code: str) -> None:
+    assert reported(code) == [("SM609", "MASSES.get(name)", RETURN)]
+
+
+def test_a_function_whose_last_line_is_no_value() -> None:
+    found = reported('userdata.out = [tools.log("bolt")]')
+    assert found == [("SM609", "log", "end `log` with `return ...`")]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'userdata.out = [tools.good("bolt")]',
+        'userdata.out = [tools.later("bolt")]',  # not written yet
+        'tools.mass_of("bolt")',
+        "[tools.log(name) for name in userdata.order]",
+        '[tools.log("bolt"), tools.log("nut")]',
+        'done = tools.log("bolt")',
+        'tools = self.scale\nuserdata.out = [tools.log("bolt")]',
+    ],
+)
+def test_a_result_that_nothing_uses_or_that_is_a_value(code: str) -> None:
+    assert [each for each in reported(code) if each[0] == "SM609"] == []
