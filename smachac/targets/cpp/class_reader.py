@@ -107,8 +107,9 @@ def declared(type_: StateType, library: Library) -> Declared | None:
 
 def _has_unknown_type(type_: StateType) -> bool:
     """Whether the interface has a type that does not exist."""
-    named = (*type_.variables.values(), *type_.input_keys, *type_.output_keys)
-    return any(unknown_words(each.type) for each in named)
+    types = [each.type for each in type_.variables.values()]
+    types += [each.type for each in (*type_.input_keys, *type_.output_keys)]
+    return any(unknown_words(each) for each in types)
 
 
 def _absent(code: ClassCode, fault: ClassFault | None) -> Declared | None:
