@@ -316,6 +316,10 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )
+            renamed = [each.key for each in leaf.remaps if each.to == word.text]
+            if renamed and renamed[0] in inputs:
+                help = f"write `{_owner(word)}.{renamed[0]}`: `{word.text}` is the name of this key"
+                help += f" around `{leaf.name}`"
             if word.text in outputs:
                 message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
                 message += " key of its interface"
