@@ -17,6 +17,7 @@ from smachac.ir.nodes import Key, Outcome, StateKind, Value
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _BODY_TEXT = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)
+_ONLY_SUPER = re.compile(r"\s*\{\{[-+]?\s*super\s*\(\s*\)\s*[-+]?\}\}\s*")
 _AROUND = re.compile(r"\{\{[-+]?\s*(?:body\b|super\s*\()")
 _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)[\"']")
 _OUTCOMES = re.compile(r"\boutcomes\s*=\s*\[([^\[\]{}]*)\]")
@@ -49,6 +50,12 @@ class Meta:
 def has_body(template: Source) -> bool:
     """Whether a template has a block `body`: it prints the code that adds the state."""
     return _BODY.search(template.text) is not None
+
+
+def makes_state(template: Source) -> bool:
+    """Whether a template has a block `body` with more than that of the template it extends."""
+    bodies = _BODY_TEXT.findall(template.text)
+    return has_body(template) and not (bodies and all(map(_ONLY_SUPER.fullmatch, bodies)))
 
 
 def extended(template: Source) -> str:

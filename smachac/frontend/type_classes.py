@@ -95,7 +95,7 @@ def _file_with_body(file: str, library: Library) -> str:
         source = library.template(file) or library.template(f"{file}.py")
         if source is None:
             return ""
-        if smacha_meta.has_body(source):
+        if smacha_meta.makes_state(source):
             return file
         file = smacha_meta.extended(source)
     return ""

@@ -86,6 +86,8 @@ def test_a_template_that_makes_the_state_itself() -> None:
     turn = template("Turn").replace("outcomes=['done']):", "amount, outcomes=['done']):")
     body = "{% block body %}{{ add('Turn', 2) }}{% endblock %}\n"
     assert found(template("Grip"), turn + body) == []
+    only = "{% block body %}\n{{ super() }}\n{% endblock body %}\n"
+    assert [each.code for each in found(template("Grip"), turn + only)] == ["SM609"]
 
 
 SAY = """\
