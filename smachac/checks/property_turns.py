@@ -89,7 +89,8 @@ def _first_miss(answer: Atoms, steps: list[_Taken], nodes: Mapping[str, Node]) -
         if around not in required:
             required[around] = _required(nodes[around], answer)
         if required[around].states and step.target not in required[around].leading:
-            return Turn(nodes[path], step, required[around].states)
+            others = [each for each in required[around].states if each is not nodes[path]]
+            return Turn(nodes[path], step, tuple(others) or required[around].states)
     return None
 
 

@@ -112,7 +112,11 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
 def _lists_for_items(context: Context) -> Iterator[Finding]:
     """The states in a loop that read its list where they need its item."""
     seen: set[tuple[str, str]] = set()
+    containers = dict(context.containers) if context.item_reads else {}
     for each in context.item_reads:
+        around = containers.get(each.path.rpartition("/")[0])
+        if isinstance(around, nodes.Iterator) and not around.sugar:
+            continue  # SM004: the state of an Iterator has no remapping
         if (each.path, each.key) in seen:
             continue
         seen.add((each.path, each.key))
