@@ -7,11 +7,12 @@ from __future__ import annotations
 import ast
 import io
 import tokenize
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.class_names import SMACH_CLASSES, STATE_METHODS, compared
+from smachac.frontend.library_names import methods_of_objects
 from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import ClassFault, FaultKind
@@ -31,10 +32,11 @@ METHODS = frozenset(
 def slips(own: OwnClass) -> Iterator[ClassFault]:
     """The slips in the code of a class and of its base classes."""
     methods = _methods(own)
+    objects = methods_of_objects(own)
     for module, node in own.classes:
         others = of_other_objects(node)
         every = [each for each in ast.walk(node) if each not in others]
-        found = [*_uncalled(module.text, every, methods), *_compared(module.text, every)]
+        found = [*_uncalled(module.text, every, methods, objects), *_compared(module.text, every)]
         if "super" not in module.names:
             found += _uncalled_super(module.text, every)
         yield from (each for each in found if not module.text.is_filled(each.name.span))
@@ -57,24 +59,35 @@ def _is_undecorated(own: OwnClass, name: str) -> bool:
 
 
 def _uncalled(
-    text: PythonText, every: Iterable[ast.AST], methods: set[str]
+    text: PythonText,
+    every: Iterable[ast.AST],
+    methods: set[str],
+    objects: Mapping[str, frozenset[str]],
 ) -> Iterator[ClassFault]:
-    """Methods of `self` in a condition, and attributes alone in a line, without `()`."""
+    """Methods of `self` and of its objects in a condition, and attributes alone in a line, without
+    `()`."""
+
+    def is_method(node: ast.expr) -> bool:
+        match node:
+            case ast.Attribute(value=ast.Name(id="self"), attr=name):
+                return name in methods
+            case ast.Attribute(value=ast.Attribute(value=ast.Name(id="self"), attr=owner)):
+                return node.attr in objects.get(owner, ())
+        return False
+
     tried = {inner for each in every if isinstance(each, ast.Try)
              for line in each.body for inner in ast.walk(line)}  # fmt: skip
     for each in every:
         if isinstance(each, ast.If | ast.While | ast.IfExp | ast.Assert):
             for part in operands(each.test):
-                if isinstance(part, ast.Attribute) and _is_method(part, methods):
+                if isinstance(part, ast.Attribute) and is_method(part):
                     yield _without_call("not called", text, part)
         elif isinstance(each, ast.Assign):
             if isinstance(each.value, ast.Attribute) and _is_method_of_key(each.value):
                 yield _without_call("not called", text, each.value)
         elif isinstance(each, ast.Expr) and each not in tried:
             value = each.value
-            if isinstance(value, ast.Attribute) and (
-                _is_method(value, methods) or _is_method_of_key(value)
-            ):
+            if isinstance(value, ast.Attribute) and (is_method(value) or _is_method_of_key(value)):
                 answer = value.attr == "service_preempt"
                 yield _without_call("no answer" if answer else "no effect", text, value)
 
@@ -107,11 +120,6 @@ def operands(test: ast.expr) -> Iterator[ast.expr]:
             yield left
         case _:
             yield test
-
-
-def _is_method(node: ast.Attribute, methods: set[str]) -> bool:
-    owner = node.value
-    return isinstance(owner, ast.Name) and owner.id == "self" and node.attr in methods
 
 
 def _is_method_of_key(node: ast.Attribute) -> bool:

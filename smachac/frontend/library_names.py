@@ -11,16 +11,17 @@ import ast
 import re
 import sys
 import sysconfig
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
 from importlib.util import find_spec
+from inspect import isfunction, ismethoddescriptor
 from pathlib import Path
 from types import ModuleType
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
-from smachac.frontend.python_modules import Module
+from smachac.frontend.python_modules import Module, OwnClass
 from smachac.ir.class_facts import ClassFault
 
 MODULES = frozenset([
@@ -176,3 +177,30 @@ def only_imported(name: str, texts: Iterable[str]) -> bool:
     head = re.escape(name.partition(".")[0])
     other = re.compile(rf"(?<![\w.])(?<!^import ){head}\b(?!\.\w)|as {head}\b", re.M)
     return not any(other.search(text) for text in texts)
+
+
+def methods_of_objects(own: OwnClass) -> Mapping[str, frozenset[str]]:
+    """The methods of the attributes of an object to which only an object of one class of Python's
+    library is assigned, as `self.done = threading.Event()`."""
+    found: dict[str, frozenset[str]] = {}
+    for name, values in own.assigned().items():
+        classes = {_class_of_library(module, value) for module, value, _ in values}
+        kind = classes.pop() if len(classes) == 1 else None
+        if kind is not None:
+            found[name] = frozenset(
+                each for each, member in vars(kind).items()
+                if isfunction(member) or ismethoddescriptor(member)
+            )  # fmt: skip
+    return found
+
+
+def _class_of_library(module: Module, value: ast.expr | None) -> type | None:
+    """The class of Python's library that a call makes an object of."""
+    match value:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=attribute)):
+            bound = module.names.get(name, ())
+            imported = bool(bound) and all(isinstance(each, ast.Import) for each in bound)
+            library = module_of_library(name) if imported else None
+            kind = getattr(library, attribute, None)
+            return kind if isinstance(kind, type) else None
+    return None

@@ -672,3 +672,21 @@ def test_a_loop_over_a_generator(generator: str, found: list[str]) -> None:
     script = SCRIPT.replace(" lost: lost,", "")
     report = findings(text + generator, interface, script)
     assert [each for each in lines(report) if each.startswith("SM309")] == found
+
+
+@pytest.mark.parametrize(
+    ("use", "found"),
+    [
+        ("while not self.done.is_set:", ["SM609 cell/find.py:14 self.done.is_set"]),
+        ("while not self.done.is_set():", []),
+        ("if self.done.flag:", []),
+        ("if self.speed.is_set:", []),
+    ],
+)
+def test_a_method_of_an_object_of_the_library(use: str, found: list[str]) -> None:
+    text = changed(
+        (FIRST, f"        {use}\n"), ("import smach\n", "import smach\nimport threading\n")
+    )
+    kept = "self.speed = speed\n        self.done = threading.Event()"
+    text = text.replace("self.speed = speed", kept)
+    assert [each for each in lines(findings(text)) if each.startswith("SM609")] == found
