@@ -10,7 +10,15 @@ from typing import NamedTuple
 from smachac.analysis.message_code import nested_messages
 from smachac.diagnostics.spelling import in_quotes, is_plain
 from smachac.diagnostics.wording import both
-from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
+from smachac.ir.message_types import (
+    FLOATS,
+    INTEGERS,
+    TEXTS,
+    Definitions,
+    FieldType,
+    Message,
+    MessageConstant,
+)
 from smachac.ir.nodes import Data, Expression, Struct, is_number
 
 BYTES = frozenset(["uint8", "byte", "char"])
@@ -30,6 +38,9 @@ UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "sec": 1.0, "min": 60.0, 
 
 MOST_ORDERED = 5
 """Limit on the values of a list whose other orders are tried."""
+
+MOST_CONSTANTS = 8
+"""Limit on the constants of a message that a help names."""
 
 _TIME = re.compile(r"(\d{1,9}(?:\.\d{1,9})?)\s*([a-z]+)")
 _SECONDS = ("/Time", "/Duration")
@@ -142,6 +153,25 @@ def an_example(wanted: FieldType) -> str:
     if wanted.array or wanted.name not in EXAMPLES:
         return ""
     return f", such as `{EXAMPLES[wanted.name]}`"
+
+
+def constants_for(name: str, type: FieldType, messages: Iterable[Message]) -> list[MessageConstant]:
+    """The constants of the type of a field in its messages: those whose names begin with the name
+    of the field, if there are some."""
+    known = [
+        each
+        for message in messages
+        for each in message.constants
+        if each.type.name == type.name and not type.array
+    ]
+    own = [each for each in known if each.name.lower().startswith(name.lower())]
+    return own or known
+
+
+def named_constants(constants: Sequence[MessageConstant]) -> str:
+    """The names of constants with their values, as in the definition."""
+    first = ", ".join(f"`{each.name}={each.value}`" for each in constants[:MOST_CONSTANTS])
+    return f"{first}, ..." if len(constants) > MOST_CONSTANTS else first
 
 
 def written(value: Data) -> str:
