@@ -108,6 +108,10 @@ def not_a_function(context: Context) -> Iterator[Finding]:
             )
             continue
         read = userdata_outside(tree)
+        facts = _called(context, slot, tree) if read is None else None
+        if facts is not None and isinstance(tree, ast.Call):
+            yield from _called_too_early(path, node, slot, tree, facts)
+            continue
         if read is None and not (slot.must_be_called and is_value(tree)):
             continue
         name = read.id if read is not None else USERDATA[0]
@@ -123,6 +127,42 @@ def not_a_function(context: Context) -> Iterator[Finding]:
             related=calls(node, slot.code.span),
             node=path,
             edits=_as_function(slot, name) if read is not None else (),
+        )
+
+
+def _called(context: Context, slot: CodeSlot, tree: ast.expr) -> FunctionFacts | None:
+    """The function of the user that code in place of a function calls; None for other code."""
+    if not slot.must_be_called or not isinstance(tree, ast.Call) or not context.machine.functions:
+        return None
+    return context.machine.functions.get(ast.unparse(tree.func))
+
+
+def _called_too_early(
+    path: str, node: Node, slot: CodeSlot, call: ast.Call, facts: FunctionFacts
+) -> Iterator[Finding]:
+    """SM316 for a call of a function of the user that fails or gives no function, where the state
+    can call that function itself."""
+    if call.keywords or any(isinstance(each, ast.Starred) for each in call.args):
+        return
+    values = [each.kind in ("constant", "truth") for each in facts.results]
+    fails = not facts.accepts(len(call.args))
+    certain = fails or facts.silent or (values and all(values))
+    if certain and slot.arguments is not None and facts.accepts(len(slot.arguments)):
+        name, span = ast.unparse(call.func), slot.code.span
+        yield Finding(
+            span=span,
+            message=f"{slot_owner(slot, node)} is a call of `{name}`, not the function",
+            arguments=(slot.name, slot.code.text),
+            help=f"write the function: `{name}`",
+            effect="the program calls it once, when it makes the state: the call raises TypeError"
+            if fails
+            else "the program calls it once, when it makes the state: the result is no function",
+            related=(
+                *other_place(facts.word.span, "it is defined here"),
+                *calls(node, span),
+            ),
+            node=path,
+            edits=(Edit(span=span, text=name),) if span.text == slot.code.text else (),
         )
 
 

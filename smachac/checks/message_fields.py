@@ -25,6 +25,7 @@ from smachac.checks.message_values import (
     an_example,
     constants_for,
     in_field_order,
+    is_time,
     named_constants,
     value_faults,
     value_help,
@@ -575,8 +576,14 @@ def _faults(
 
 
 def _can_fit(given: Type, wanted: Type) -> bool:
-    """Whether a field can accept a value: a list of numbers can be read as a message, and a whole
-    number as a truth value."""
+    """Whether a field can accept a value: a list of numbers can be read as a message, a number of
+    seconds as a time or a duration, and a whole number as a truth value."""
+    if wanted.name in ("array", "list") and given.name in ("array", "list"):
+        item, wanted_item = (each.args[:1] for each in (given, wanted))
+        if wanted_item and isinstance(wanted_item[0], Type) and is_time(wanted_item[0].name):
+            return not item or not isinstance(item[0], Type) or _can_fit(item[0], wanted_item[0])
+    if is_time(wanted.name) and given.name in ("int", "float"):
+        return True
     if "/" in wanted.name and given.name not in SCALARS:
         return True
     truths = ("bool", "int")

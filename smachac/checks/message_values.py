@@ -125,6 +125,11 @@ def _fits_item(data: Data, name: str) -> bool:
     return isinstance(data, Struct | tuple)
 
 
+def is_time(name: str) -> bool:
+    """Whether values of a type are times or durations, which can be numbers of seconds."""
+    return name in ("time", "duration") or name.endswith(_SECONDS)
+
+
 def _bounds(name: str) -> tuple[int, int]:
     """The smallest and the largest number of a type. Versions of ROS differ in `byte`, `char`."""
     if name in ("byte", "char"):
@@ -135,7 +140,7 @@ def _bounds(name: str) -> tuple[int, int]:
 
 def value_help(value: Data, wanted: FieldType) -> str:
     """The help for a value that does not fit a field."""
-    if wanted.name in ("time", "duration") or wanted.name.endswith(_SECONDS):
+    if is_time(wanted.name):
         found = _TIME.fullmatch(value) if isinstance(value, str) and not wanted.array else None
         if found is not None and found[2] in UNITS:
             seconds = f"{float(found[1]) * UNITS[found[2]]:g}"

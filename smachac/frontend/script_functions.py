@@ -60,6 +60,7 @@ def _names_in(data: Data) -> Iterator[str]:
         case str() | Expression():
             text = data if isinstance(data, str) else data.text
             text = text.strip("` ")
+            text = text.partition("(")[0] if text.endswith(")") else text  # a call
             if _NAME.fullmatch(text):
                 yield text
 

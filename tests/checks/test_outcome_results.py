@@ -147,3 +147,22 @@ def test_constants_in_the_help_for_a_lambda() -> None:
     main = MAIN.replace("check_arrival", code)
     help = "compare it with a constant of the message: `OK=0`, `BLOCKED=1`"
     assert findings(ANSWERS, main) == [("SM512", 'main.yml:19 r.code == "x"', help)]
+
+
+def test_a_call_in_place_of_a_callback() -> None:
+    main = MAIN.replace("response_cb: lift_answer", "response_cb: lift_answer()")
+    help = "write the function: `lift_answer`"
+    assert findings(ANSWERS, main) == [("SM316", "main.yml:11 lift_answer()", help)]
+
+
+@pytest.mark.parametrize(
+    "body",
+    ["def lift_answer(limit=1):\n    return lambda ud, response: None\n",
+     "def lift_answer(limit=1):\n    return ANSWERS[limit]\n",
+     "def lift_answer(limit=1):\n    def answer(ud, response): ...\n    return answer\n"],
+)  # fmt: skip
+def test_a_call_that_gives_a_callback(body: str) -> None:
+    main = MAIN.replace("response_cb: lift_answer", "response_cb: lift_answer()")
+    answers = ANSWERS[: ANSWERS.index("def lift_answer")] + body
+    answers += ANSWERS[ANSWERS.index("\n\ndef set_speed") :]
+    assert findings(answers, main) == []
