@@ -6,7 +6,7 @@ The interface of the state type describes them (docs/state_types.md, Facts).
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -198,17 +198,17 @@ def userdata_parameter(slot: CodeSlot) -> str | None:
         return None
     if not isinstance(tree, ast.Lambda) or not accepts(tree, len(slot.arguments)):
         return None
-    if swapped(tree, slot.arguments):  # SM317
+    if swapped([each.arg for each in parameters(tree)], slot.arguments):  # SM317
         return None
     at, names = slot.arguments.index("userdata"), parameters(tree)
     return names[at].arg if at < len(names) else None
 
 
-def swapped(tree: ast.Lambda, due: tuple[str, ...]) -> list[str]:
-    """The names of the arguments of a lambda, if they are those of its state in another order."""
-    own = [each.arg for each in parameters(tree)]
+def swapped(own: Sequence[str], due: tuple[str, ...]) -> tuple[str, ...]:
+    """The names of the parameters of a function, if they are those of its state in another
+    order."""
     meant = [next((name for name in due if means(arg, name)), "") for arg in own]
-    return own if tuple(meant) != due and sorted(meant) == sorted(due) else []
+    return tuple(own) if tuple(meant) != due and sorted(meant) == sorted(due) else ()
 
 
 def means(own: str, argument: str) -> bool:

@@ -4,9 +4,21 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
-from smachac.analysis.code_slots import CodeSlot, accepts, free_names, parameters, swapped
+from smachac.analysis.code_slots import (
+    CodeSlot,
+    accepts,
+    free_names,
+    parameters,
+    results,
+    swapped,
+)
+from smachac.diagnostics.source import Span, Word
+from smachac.ir.argument_parts import argument_uses, result_of
+from smachac.ir.code_places import node_place
+from smachac.ir.function_facts import ArgumentUses, FunctionFacts, Part, Result
 from smachac.ir.leaf import type_text, variable_of
 from smachac.ir.message_types import (
     PARTS,
@@ -26,12 +38,24 @@ Content: TypeAlias = "tuple[Message | FieldType, ...]"
 
 
 class FieldRead(NamedTuple):
-    """A field that code uses: the messages that can be there, and the place and the name of the
-    field."""
+    """A field that code uses: the messages that can be there, and the name at its place."""
 
     messages: tuple[Message, ...]
-    place: ast.expr
-    name: str
+    name: Word
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessageCode:
+    """What the function in a slot does with the messages that it receives.
+
+    `contents` are the messages by the names of its parameters. `function` are the facts about a
+    function in a module; None for a lambda.
+    """
+
+    contents: Mapping[str, Content]
+    uses: ArgumentUses
+    results: tuple[Result, ...]
+    function: FunctionFacts | None
 
 
 def leaf_definitions(
@@ -58,72 +82,95 @@ def nested_messages(content: Sequence[Message | FieldType], found: Definitions) 
     return messages
 
 
-def field_reads(slot: CodeSlot, leaf: Leaf, found: Definitions) -> Iterator[FieldRead]:
-    """The fields that the function in a slot uses; none if it tests with `hasattr` for fields."""
-    arguments = _arguments(slot, leaf, found)
-    if not arguments or not isinstance(slot.tree, ast.Lambda):
-        return
-    parts = list(ast.walk(slot.tree.body))
-    if any(isinstance(each, ast.Name) and each.id == "hasattr" for each in parts):
-        return
-    for node in parts:
-        match node:
-            case ast.Attribute(value=owner, attr=name):
-                place: ast.expr = node
-            case ast.Call(
-                func=ast.Name(id="setattr"), args=[owner, ast.Constant(value=str(name)) as place, _]
-            ):
-                pass
-            case _:
-                continue
-        messages = nested_messages(_content(owner, arguments, found), found)
+def field_reads(code: MessageCode, found: Definitions) -> Iterator[FieldRead]:
+    """The fields of messages that a function uses."""
+    for part in code.uses.parts:
+        messages = owners(part, code, found)
         if messages:
-            yield FieldRead(tuple(messages), place, name)
+            yield FieldRead(tuple(messages), part.name)
 
 
-def content_of(slot: CodeSlot, leaf: Leaf, result: ast.expr, found: Definitions) -> Content:
-    """What a part of the function in a slot holds."""
-    return _content(result, _arguments(slot, leaf, found), found)
+def owners(part: Part, code: MessageCode, found: Definitions) -> list[Message]:
+    """The messages that have the last field of a part of an argument."""
+    return nested_messages(_content(code.contents.get(part.parameter, ()), part.steps[:-1], found),
+                           found)  # fmt: skip
 
 
-def _arguments(slot: CodeSlot, leaf: Leaf, found: Definitions) -> Mapping[ast.Name, Content]:
-    """The places where the function in a slot reads an argument that is a message."""
-    tree, due = slot.tree, slot.arguments
-    if not isinstance(tree, ast.Lambda) or due is None or not accepts(tree, len(due)):
-        return {}
-    if slot.quoted or len(slot.code.text) > MOST_CODE or swapped(tree, due):
-        return {}
+def content_of(part: Part, code: MessageCode, found: Definitions) -> Content:
+    """What a part of an argument holds."""
+    return _content(code.contents.get(part.parameter, ()), part.steps, found)
+
+
+def message_code(
+    slot: CodeSlot, leaf: Leaf, found: Definitions, functions: Mapping[str, FunctionFacts]
+) -> MessageCode | None:
+    """What the function in a slot does with messages; None if it receives none whose definition
+    is known, or cannot be read."""
+    due = slot.arguments
+    if due is None or slot.quoted or len(slot.code.text) > MOST_CODE:
+        return None
     known: dict[str, Content] = {}
     for kind, definitions in leaf_definitions(leaf, found):
         for part in PARTS[kind]:
             known[part] = tuple(each.part(part) for each in definitions)
-    own = dict(zip([each.arg for each in parameters(tree)], due, strict=False))
-    stored = {
-        each.target.id for each in ast.walk(tree.body) if isinstance(each, ast.NamedExpr)
-    }  # fmt: skip
-    return {
-        each: known[own[each.id]]
-        for each in free_names(tree.body)
-        if own.get(each.id) in known and each.id not in stored
-    }
+    if known.keys().isdisjoint(due):
+        return None
+    function = functions.get(slot.code.text)
+    if function is not None:
+        names = function.parameters
+        if not function.accepts(len(due)) or swapped(names, due):
+            return None
+        uses, returned = function.uses, function.results
+    else:
+        tree = slot.tree
+        if not isinstance(tree, ast.Lambda) or not accepts(tree, len(due)):
+            return None
+        names = tuple(each.arg for each in parameters(tree))
+        if swapped(names, due):
+            return None
+        uses, returned = _lambda_uses(slot, tree)
+    contents = {own: known[name] for own, name in zip(names, due, strict=False) if name in known}
+    return MessageCode(contents=contents, uses=uses, results=returned, function=function)
 
 
-def _content(node: ast.expr, arguments: Mapping[ast.Name, Content], found: Definitions) -> Content:
-    """What code holds: an argument, a field of a message or an item of a list."""
-    steps: list[ast.Attribute | ast.Subscript] = []
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        steps.append(node)
-        node = node.value
-    content = arguments.get(node, ()) if isinstance(node, ast.Name) else ()
-    for step in reversed(steps):
-        if isinstance(step, ast.Attribute):
-            fields = [each.field(step.attr) for each in nested_messages(content, found)]
+def slot_results(slot: CodeSlot, functions: Mapping[str, FunctionFacts]) -> tuple[Result, ...]:
+    """The values that the function in a slot can return; none if it cannot be read."""
+    function = functions.get(slot.code.text)
+    if function is not None:
+        return function.results
+    tree = slot.tree
+    return _lambda_uses(slot, tree)[1] if isinstance(tree, ast.Lambda) else ()
+
+
+def _lambda_uses(slot: CodeSlot, tree: ast.Lambda) -> tuple[ArgumentUses, tuple[Result, ...]]:
+    """The uses of arguments in a lambda, none if it tests with `hasattr` for fields, and its
+    results."""
+    nodes = list(ast.walk(tree.body))
+    stored = {each.target.id for each in nodes if isinstance(each, ast.NamedExpr)}
+    own = {each.arg for each in parameters(tree)} - stored
+    names = {each for each in free_names(tree.body) if each.id in own}
+    tested = any(isinstance(each, ast.Name) and each.id == "hasattr" for each in nodes)
+
+    def place(node: ast.expr) -> Span:
+        return node_place(slot.code, node)
+
+    uses = argument_uses(nodes, names, place)
+    if tested:
+        uses = uses._replace(parts=())
+    return uses, tuple(result_of(each, names, place) for each in results(tree))
+
+
+def _content(content: Content, steps: Sequence[str | None], found: Definitions) -> Content:
+    """What a field of a message, or an item of a list, holds at the end of some steps."""
+    for step in steps:
+        if step is not None:
+            fields = [each.field(step) for each in nested_messages(content, found)]
             content = tuple(each.type for each in fields if each is not None)
             if len(content) != len(fields):
                 return ()
         else:
             lists = [each for each in content if isinstance(each, FieldType) and each.array]
-            if isinstance(step.slice, ast.Slice) or len(lists) != len(content):
+            if len(lists) != len(content):
                 return ()
             content = tuple(FieldType(name=each.name, longest=each.longest) for each in lists)
     return content

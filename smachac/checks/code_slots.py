@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.analysis.accesses import USERDATA
@@ -22,7 +22,6 @@ from smachac.analysis.code_slots import (
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
-from smachac.analysis.message_code import content_of
 from smachac.analysis.type_inference import TypeFlow
 from smachac.checks.class_values import none_writes
 from smachac.checks.function_results import (
@@ -35,8 +34,9 @@ from smachac.checks.function_results import (
     silent_functions,
     slot_owner,
 )
-from smachac.checks.messages import calls, did_you_mean, ends_of, other_place
+from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import number_meant
+from smachac.checks.outcome_results import wrong_outcomes
 from smachac.checks.rule import rule
 from smachac.checks.types import written
 from smachac.diagnostics.diagnostic import Edit, Finding, Severity
@@ -45,9 +45,8 @@ from smachac.diagnostics.spelling import guesser, in_quotes
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
-from smachac.ir.message_types import TEXTS, FieldType
-from smachac.ir.nodes import Expression, Leaf, Node, VariableRole
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.nodes import Expression, Node, VariableRole
+from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -109,6 +108,10 @@ def not_a_function(context: Context) -> Iterator[Finding]:
             )
             continue
         read = userdata_outside(tree)
+        facts = _called(context, slot, tree) if read is None else None
+        if facts is not None and isinstance(tree, ast.Call):
+            yield from _called_too_early(path, node, slot, tree, facts)
+            continue
         if read is None and not (slot.must_be_called and is_value(tree)):
             continue
         name = read.id if read is not None else USERDATA[0]
@@ -124,6 +127,42 @@ def not_a_function(context: Context) -> Iterator[Finding]:
             related=calls(node, slot.code.span),
             node=path,
             edits=_as_function(slot, name) if read is not None else (),
+        )
+
+
+def _called(context: Context, slot: CodeSlot, tree: ast.expr) -> FunctionFacts | None:
+    """The function of the user that code in place of a function calls; None for other code."""
+    if not slot.must_be_called or not isinstance(tree, ast.Call) or not context.machine.functions:
+        return None
+    return context.machine.functions.get(ast.unparse(tree.func))
+
+
+def _called_too_early(
+    path: str, node: Node, slot: CodeSlot, call: ast.Call, facts: FunctionFacts
+) -> Iterator[Finding]:
+    """SM316 for a call of a function of the user that fails or gives no function, where the state
+    can call that function itself."""
+    if call.keywords or any(isinstance(each, ast.Starred) for each in call.args):
+        return
+    values = [each.kind in ("constant", "truth") for each in facts.results]
+    fails = not facts.accepts(len(call.args))
+    certain = fails or facts.silent or (values and all(values))
+    if certain and slot.arguments is not None and facts.accepts(len(slot.arguments)):
+        name, span = ast.unparse(call.func), slot.code.span
+        yield Finding(
+            span=span,
+            message=f"{slot_owner(slot, node)} is a call of `{name}`, not the function",
+            arguments=(slot.name, slot.code.text),
+            help=f"write the function: `{name}`",
+            effect="the program calls it once, when it makes the state: the call raises TypeError"
+            if fails
+            else "the program calls it once, when it makes the state: the result is no function",
+            related=(
+                *other_place(facts.word.span, "it is defined here"),
+                *calls(node, span),
+            ),
+            node=path,
+            edits=(Edit(span=span, text=name),) if span.text == slot.code.text else (),
         )
 
 
@@ -235,11 +274,9 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
             continue
         due = slot.arguments
         if accepts(tree, len(due)):
-            found = swapped(tree, due)
+            found = swapped([each.arg for each in parameters(tree)], due)
             what = f"has the arguments {_names(found)}, but the state passes {_names(due)}"
-            effect: str | None = (
-                "the arguments are passed in that order: each name has a wrong value"
-            )
+            effect: str | None = ORDER_EFFECT
             if not found:
                 continue
         else:
@@ -258,19 +295,38 @@ def wrong_arguments(context: Context) -> Iterator[Finding]:
         )
 
     for path, node, slot, facts in named_functions(context):
-        if slot.arguments is not None and not facts.accepts(len(slot.arguments)):
-            due, own = slot.arguments, len(facts.parameters)
-            yield Finding(
-                span=facts.word.span,
-                message=f"`{facts.word.text}`, the function of {slot_owner(slot, node)}, has"
-                f" {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
-                f" argument{'s' * (len(due) != 1)}: {_names(due)}",
-                arguments=(slot.name, slot.code.text),
-                help=_definition_help(slot, facts, [*map(_short, due)]),
-                related=(*other_place(slot.code.span, "it is called here"),
-                         *calls(node, slot.code.span)),
-                node=path,
-            )  # fmt: skip
+        yield from _wrong_parameters(path, node, slot, facts)
+
+
+def _wrong_parameters(
+    path: str, node: Node, slot: CodeSlot, facts: FunctionFacts
+) -> Iterator[Finding]:
+    """SM317 for a function in a module: the number of its parameters, or their order."""
+    due, own = slot.arguments or (), len(facts.parameters)
+    found = swapped(facts.parameters, due)
+    if not facts.accepts(len(due)):
+        span, effect = facts.word.span, None
+        what = f"has {own or 'no'} parameter{'s' * (own != 1)}, but the state passes {len(due)}"
+        what += f" argument{'s' * (len(due) != 1)}: {_names(due)}"
+    elif found:
+        span, effect = facts.head, ORDER_EFFECT
+        what = f"has the parameters {_names(found)}, but the state passes {_names(due)}"
+    else:
+        return
+    yield Finding(
+        span=span,
+        message=f"`{facts.word.text}`, the function of {slot_owner(slot, node)}, {what}",
+        arguments=(slot.name, slot.code.text),
+        help=_definition_help(slot, facts, own_parameters(facts.parameters, due)),
+        effect=effect,
+        related=(*other_place(slot.code.span, "it is called here"), *calls(node, slot.code.span)),
+        node=path,
+    )
+
+
+def own_parameters(own: Sequence[str], due: Iterable[str]) -> list[str]:
+    """The names of parameters that a function needs, as the user has written them."""
+    return [next((each for each in own if means(each, name)), _short(name)) for name in due]
 
 
 def _definition_help(slot: CodeSlot, facts: FunctionFacts, due: list[str]) -> str:
@@ -288,7 +344,7 @@ def _head_help(node: Node, tree: ast.Lambda, due: tuple[str, ...]) -> str:
     """The help for a lambda with wrong arguments: its correct beginning, and the way to read a key
     that was written as an argument."""
     given = [each.arg for each in parameters(tree)]
-    names = [next((own for own in given if means(own, name)), _short(name)) for name in due]
+    names = own_parameters(given, due)
     help = f"begin it with `lambda {', '.join(names)}:`"
     read = {each.id for each in ast.walk(tree.body) if isinstance(each, ast.Name)}
     own = [each.arg for each in parameters(tree) if not any(means(each.arg, arg) for arg in due)]
@@ -328,6 +384,8 @@ def _head(slot: CodeSlot, tree: ast.Lambda) -> Span:
     )
     return node_place(slot.code, whole)
 
+
+ORDER_EFFECT = "the arguments are passed in that order: each name has a wrong value"
 
 NOTHING_RETURNED = {
     "list": frozenset(["append", "extend", "insert", "remove", "sort", "reverse", "clear"]),
@@ -388,13 +446,11 @@ def wrong_result(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: succeeded}
     """
     for path, node, slot, tree in readable_slots(context):
-        if not isinstance(tree, ast.Lambda) or slot.quoted or not slot.returns:
+        if not isinstance(tree, ast.Lambda) or slot.quoted or slot.returns != "value":
             continue
         found = results(tree)
         for result in found:
-            fault = _outcome_fault(context, node, slot, result)
-            if slot.returns == "value":
-                fault = _value_fault(context, path, node, slot, result)
+            fault = _value_fault(context, path, node, slot, result)
             if fault is None:
                 continue
             what, help, sure, effect = fault
@@ -415,6 +471,7 @@ def wrong_result(context: Context) -> Iterator[Finding]:
                 node=path,
                 severity=None if sure and len(found) == 1 else Severity.WARNING,
             )
+    yield from wrong_outcomes(context)
     yield from none_writes(context)
 
     yield from silent_functions(context)
@@ -423,8 +480,6 @@ def wrong_result(context: Context) -> Iterator[Finding]:
 
 
 SECONDS = Type("float", ("s",))
-
-OUTCOME_EFFECT = "no other outcome is accepted: the state ends with `aborted`, or the machine stops"
 
 RESULT_HELP: Mapping[VariableRole, str] = {
     "conditions": "return a comparison, as in `lambda ud: ud.n > 0`",
@@ -531,44 +586,6 @@ def _type(context: Context, path: str, node: Node, slot: CodeSlot, value: ast.ex
     return type_of_call(code, keys)
 
 
-def _outcome_fault(context: Context, node: Node, slot: CodeSlot, result: ast.expr) -> Fault | None:
-    """The fault of a result that must be an outcome."""
-    if not isinstance(node, Leaf) or slot.returns != "outcome":
-        return None
-    names = outcome_names(node)
-    if not names:
-        return None
-    help = f"return one of its outcomes: {listed(names)}"
-    if not isinstance(result, ast.Constant):
-        wanted = _field_type(context, node, slot, result)
-        if not wanted:
-            return None
-        what = f"`{ast.unparse(result)}`, a `{wanted}`, which is not an outcome of `{node.name}`"
-        if wanted == "bool" and len(names) > 1:
-            help = f"write `'{names[0]}' if {ast.unparse(result)} else '{names[1]}'`"
-        return Fault(what, help, True, OUTCOME_EFFECT)
-    if result.value is None or result.value in names:
-        return None
-    guess = guesser(names)(result.value) if isinstance(result.value, str) else None
-    what = f"`{result.value!r}`, which is not an outcome of `{node.name}`"
-    help = did_you_mean(guess) or ends_of(node) or help
-    return Fault(what, help, True, OUTCOME_EFFECT)
-
-
-def _field_type(context: Context, leaf: Leaf, slot: CodeSlot, result: ast.expr) -> str:
-    """The type of a result that is a message, or a field of one and no text; else empty."""
-    content = content_of(slot, leaf, result, context.machine.definitions)
-    texts = [each for each in content if isinstance(each, FieldType) and _is_text(each)]
-    if not content or texts:
-        return ""
-    first = content[0]
-    return str(first) if isinstance(first, FieldType) else first.name
-
-
-def _is_text(field: FieldType) -> bool:
-    return field.name in TEXTS and not field.array
-
-
 def function_reads(context: Context) -> Mapping[str, set[str]]:
     """The keys that functions of the user read in the states of each container, by its path: also
     those that are not input keys of the state (SM310)."""
@@ -587,7 +604,9 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
     calls_of: dict[str, list[tuple[str, Node, CodeSlot, FunctionFacts]]] = {}
     for call in named_functions(context):
         _, node, slot, facts = call
-        if slot.arguments is not None and slot.arguments[:1] == ("userdata",) and facts.reads:
+        if slot.arguments is None or slot.arguments[:1] != ("userdata",):
+            continue
+        if facts.reads and not swapped(facts.parameters, slot.arguments):  # SM317
             calls_of.setdefault(slot.code.text, []).append(call)
     for used in calls_of.values():
         known = {key.name for _, node, _, _ in used for key in (*node.inputs, *node.outputs)}

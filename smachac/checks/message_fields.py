@@ -13,14 +13,20 @@ from smachac.analysis.code_slots import CodeSlot, code_slots
 from smachac.analysis.context import Context
 from smachac.analysis.message_code import (
     MOST_CODE,
+    MessageCode,
     content_of,
     field_reads,
     leaf_definitions,
+    message_code,
+    owners,
 )
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.message_values import (
     an_example,
+    constants_for,
     in_field_order,
+    is_time,
+    named_constants,
     value_faults,
     value_help,
     with_levels,
@@ -29,11 +35,10 @@ from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.robot import at
 from smachac.checks.rule import rule
 from smachac.checks.value_places import place_of_part
-from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.code_places import attribute_place, node_place
 from smachac.ir.leaf import key_names, type_text, variable, variable_of
 from smachac.ir.message_types import (
     FLOATS,
@@ -163,8 +168,10 @@ def unknown_field(context: Context) -> Iterator[Finding]:
                     yield from _faults(context, path, node, held, messages)
                     yield from _wrong_values(path, node, held, messages, found)
         for slot in code_slots(node, context.machine.state_types):
-            yield from _wrong_reads(path, node, slot, found)
-            yield from _wrong_comparisons(path, node, slot, found)
+            code = message_code(slot, node, found, context.machine.functions)
+            if code is not None:
+                yield from _wrong_reads(path, node, slot, code, found)
+                yield from _wrong_comparisons(path, node, slot, code, found)
 
 
 @rule(
@@ -409,41 +416,47 @@ def _wrong_messages(
 
 
 def _wrong_comparisons(
-    path: str, leaf: Leaf, slot: CodeSlot, found: Definitions
+    path: str, leaf: Leaf, slot: CodeSlot, code: MessageCode, found: Definitions
 ) -> Iterator[Finding]:
     """Comparisons of a number in a message with a text, or the reverse."""
-    if not isinstance(slot.tree, ast.Lambda):
-        return
-    for node in ast.walk(slot.tree.body):
-        match node:
-            case ast.Compare(left=left, ops=[_], comparators=[ast.Constant(value=value)]):
-                pass
-            case ast.Compare(left=ast.Constant(value=value), ops=[_], comparators=[left]):
-                pass
-            case _:
-                continue
-        if not isinstance(value, str | int | float) or isinstance(node.ops[0], ast.In | ast.NotIn):
-            continue
-        content = content_of(slot, leaf, left, found)
+    for part, operator, value, span in code.uses.comparisons:
+        content = content_of(part, code, found)
         fields = [each for each in content if isinstance(each, FieldType) and not each.array]
         wrong = NUMBERS if isinstance(value, str) else TEXTS
         if not fields or len(fields) != len(content) or {each.name for each in fields} - {*wrong}:
             continue
-        what = ast.unparse(left)
+        constants = constants_for(part.name.text, fields[0], owners(part, code, found)[:1])
+        meant = [each for each in constants if each.name == value]
+        help = f"compare it with a value of the type `{fields[0]}`{an_example(fields[0])}"
+        if meant and operator in ("==", "!="):
+            help = f"write `{part.text} {operator} {meant[0].value}`: `{value}` is a constant of"
+            help += f" the message with the value {meant[0].value}"
+        elif constants:
+            help = f"compare it with a constant of the message: {named_constants(constants)}"
         yield Finding(
-            span=node_place(slot.code, node),
-            message=f"`{what}` is `{fields[0]}`: it never equals `{value!r}`",
-            arguments=(what, repr(value)),
-            help=f"compare it with a value of the type `{fields[0]}`{an_example(fields[0])}",
+            span=span,
+            message=f"`{part.text}` is `{fields[0]}`: it never equals `{value!r}`",
+            arguments=(part.text, repr(value)),
+            help=help,
             effect="the condition always has the same result, or the function fails",
-            related=calls(leaf, slot.code.span),
+            related=_code_places(leaf, slot, code),
             node=path,
         )
 
 
-def _wrong_reads(path: str, leaf: Leaf, slot: CodeSlot, found: Definitions) -> Iterator[Finding]:
+def _code_places(leaf: Leaf, slot: CodeSlot, code: MessageCode) -> tuple[Related, ...]:
+    """Where the script names a function with a fault, and where it calls its file."""
+    named = code.function is not None
+    first = other_place(slot.code.span, f"`{leaf.name}` calls it here") if named else ()
+    return (*first, *calls(leaf, slot.code.span))
+
+
+def _wrong_reads(
+    path: str, leaf: Leaf, slot: CodeSlot, code: MessageCode, found: Definitions
+) -> Iterator[Finding]:
     """Fields that a function uses and that its messages do not have."""
-    for messages, place, name in field_reads(slot, leaf, found):
+    for messages, word in field_reads(code, found):
+        name = word.text
         known = {each.name for message in messages for each in message.fields}
         constants = {each.name for message in messages for each in message.constants}
         if (
@@ -452,10 +465,11 @@ def _wrong_reads(path: str, leaf: Leaf, slot: CodeSlot, found: Definitions) -> I
             or {name, name.rstrip("_")} & (known | constants)
         ):
             continue
-        span = node_place(slot.code, place)
-        if isinstance(place, ast.Attribute):
-            span = attribute_place(slot.code, place)
-        yield _unknown_field(path, leaf, Word(name, span), messages)
+        finding = _unknown_field(path, leaf, word, messages)
+        if code.function is not None:
+            here = other_place(slot.code.span, f"`{leaf.name}` calls it here")
+            finding = replace(finding, related=(*here, *finding.related))
+        yield finding
 
 
 def _wrong_values(
@@ -564,8 +578,14 @@ def _faults(
 
 
 def _can_fit(given: Type, wanted: Type) -> bool:
-    """Whether a field can accept a value: a list of numbers can be read as a message, and a whole
-    number as a truth value."""
+    """Whether a field can accept a value: a list of numbers can be read as a message, a number of
+    seconds as a time or a duration, and a whole number as a truth value."""
+    if wanted.name in ("array", "list") and given.name in ("array", "list"):
+        item, wanted_item = (each.args[:1] for each in (given, wanted))
+        if wanted_item and isinstance(wanted_item[0], Type) and is_time(wanted_item[0].name):
+            return not item or not isinstance(item[0], Type) or _can_fit(item[0], wanted_item[0])
+    if is_time(wanted.name) and given.name in ("int", "float"):
+        return True
     if "/" in wanted.name and given.name not in SCALARS:
         return True
     truths = ("bool", "int")

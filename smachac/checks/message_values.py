@@ -10,7 +10,15 @@ from typing import NamedTuple
 from smachac.analysis.message_code import nested_messages
 from smachac.diagnostics.spelling import in_quotes, is_plain
 from smachac.diagnostics.wording import both
-from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
+from smachac.ir.message_types import (
+    FLOATS,
+    INTEGERS,
+    TEXTS,
+    Definitions,
+    FieldType,
+    Message,
+    MessageConstant,
+)
 from smachac.ir.nodes import Data, Expression, Struct, is_number
 
 BYTES = frozenset(["uint8", "byte", "char"])
@@ -30,6 +38,9 @@ UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "sec": 1.0, "min": 60.0, 
 
 MOST_ORDERED = 5
 """Limit on the values of a list whose other orders are tried."""
+
+MOST_CONSTANTS = 8
+"""Limit on the constants of a message that a help names."""
 
 _TIME = re.compile(r"(\d{1,9}(?:\.\d{1,9})?)\s*([a-z]+)")
 _SECONDS = ("/Time", "/Duration")
@@ -114,6 +125,11 @@ def _fits_item(data: Data, name: str) -> bool:
     return isinstance(data, Struct | tuple)
 
 
+def is_time(name: str) -> bool:
+    """Whether values of a type are times or durations, which can be numbers of seconds."""
+    return name in ("time", "duration") or name.endswith(_SECONDS)
+
+
 def _bounds(name: str) -> tuple[int, int]:
     """The smallest and the largest number of a type. Versions of ROS differ in `byte`, `char`."""
     if name in ("byte", "char"):
@@ -124,7 +140,7 @@ def _bounds(name: str) -> tuple[int, int]:
 
 def value_help(value: Data, wanted: FieldType) -> str:
     """The help for a value that does not fit a field."""
-    if wanted.name in ("time", "duration") or wanted.name.endswith(_SECONDS):
+    if is_time(wanted.name):
         found = _TIME.fullmatch(value) if isinstance(value, str) and not wanted.array else None
         if found is not None and found[2] in UNITS:
             seconds = f"{float(found[1]) * UNITS[found[2]]:g}"
@@ -142,6 +158,25 @@ def an_example(wanted: FieldType) -> str:
     if wanted.array or wanted.name not in EXAMPLES:
         return ""
     return f", such as `{EXAMPLES[wanted.name]}`"
+
+
+def constants_for(name: str, type: FieldType, messages: Iterable[Message]) -> list[MessageConstant]:
+    """The constants of the type of a field in its messages: those whose names begin with the name
+    of the field, if there are some."""
+    known = [
+        each
+        for message in messages
+        for each in message.constants
+        if each.type.name == type.name and not type.array
+    ]
+    own = [each for each in known if each.name.lower().startswith(name.lower())]
+    return own or known
+
+
+def named_constants(constants: Sequence[MessageConstant]) -> str:
+    """The names of constants with their values, as in the definition."""
+    first = ", ".join(f"`{each.name}={each.value}`" for each in constants[:MOST_CONSTANTS])
+    return f"{first}, ..." if len(constants) > MOST_CONSTANTS else first
 
 
 def written(value: Data) -> str:

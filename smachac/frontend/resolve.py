@@ -30,6 +30,7 @@ from smachac.frontend.errors.script import (
 from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
+from smachac.frontend.meant_types import meant_type
 from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
 from smachac.frontend.misplaced_fields import with_outer_fields, with_outer_variables
 from smachac.frontend.params import (
@@ -587,6 +588,16 @@ class _Resolver:
         self.types[name] = self.found_types[name]
         return self.types[name]
 
+    def meant_type(self, entries: Entries, type_: StateType) -> StateType | None:
+        """The built-in type that a state means, in place of that of its template (SM003)."""
+
+        def find(name: str) -> StateType | None:
+            found = self.found_types.get(name)
+            return found or find_state_type(name, self.library, [])
+
+        found = meant_type(entries, type_, lambda: self.known_templates()[1], find, self.report)
+        return self.state_type(found.name) if found is not None else None
+
     def meant_template(self, entries: Entries) -> Entry | None:
         """The field with another name that is meant for `template`, if it names a type that does
         not have the field: then the name is reported as unknown."""
@@ -642,6 +653,8 @@ class _Resolver:
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
+        if not (role or is_container) and nested == "state":
+            found = self.meant_type(entries, found) or found
         return found, role or ("StateMachine" if is_container else nested)
 
 

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
 from smachac.frontend.loader import Library
 from smachac.frontend.python_flow import Flows
-from smachac.frontend.python_functions import is_plain, returns_of
+from smachac.frontend.python_functions import alternatives, is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, find_function, template_module
 from smachac.frontend.python_source import name_span
 from smachac.frontend.script import State
 from smachac.frontend.smacha_meta import extended
 from smachac.frontend.state_types import TEMPLATE_FILES
+from smachac.ir.argument_parts import argument_uses, own_names, result_of
 from smachac.ir.code_places import python_tree
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Data, Expression, StateType, Struct
@@ -59,6 +60,7 @@ def _names_in(data: Data) -> Iterator[str]:
         case str() | Expression():
             text = data if isinstance(data, str) else data.text
             text = text.strip("` ")
+            text = text.partition("(")[0] if text.endswith(")") else text  # a call
             if _NAME.fullmatch(text):
                 yield text
 
@@ -103,21 +105,27 @@ def _function(module: Module, function: ast.FunctionDef, library: Library) -> Fu
     if None in given.kw_defaults:  # a keyword that no state passes
         return None
     positional = [*given.posonlyargs, *given.args]
-    own = OwnClass(classes=(), names=(), root="unknown")
+    unknown = OwnClass(classes=(), names=(), root="unknown")
     first = positional[0].arg if positional else ""
-    flow = Flows(own, library).of(module, function, first) if first else None
-    values = [each for each in returns_of(function.body) if each.value is not None]
+    flow = Flows(unknown, library).of(module, function, first) if first else None
+    values = [each.value for each in returns_of(function.body) if each.value is not None]
     ends = not isinstance(function.body[-1], ast.Raise)
+    parameters = tuple(each.arg for each in positional)
+    own = set(own_names(function.body, parameters))
+    places = _places(module, function)
+    word = Word(function.name, name_span(text, function))
     return FunctionFacts(
-        word=Word(function.name, name_span(text, function)),
-        parameters=tuple(each.arg for each in positional),
+        word=word,
+        head=_head(module, positional) or word.span,
+        parameters=parameters,
         least=len(positional) - len(given.defaults),
         most=None if given.vararg is not None else len(positional),
         silent=not values and ends and not _is_sketch(function),
-        texts=_texts(module, values),
+        results=tuple(result_of(one, own, places) for each in values for one in alternatives(each)),
         reads=flow.reads if flow is not None else (),
         writes=flow.writes if flow is not None else (),
         used=_used(function),
+        uses=argument_uses(_nodes(function), own, places),
     )
 
 
@@ -129,18 +137,38 @@ def _used(function: ast.FunctionDef) -> tuple[str, ...]:
     return tuple(each.arg for each in given if each.arg in read)
 
 
-def _texts(module: Module, values: Iterable[ast.Return]) -> tuple[Word, ...]:
-    """The constant texts in return statements; empty if one returns something else."""
-    found: list[Word] = []
-    for each in values:
-        match each.value:
-            case ast.Constant(value=str() as text) if text and not module.text.is_filled(
-                module.text.span(each.value)
-            ):
-                found.append(Word(text, module.text.span(each.value)))
-            case _:
-                return ()
-    return tuple(found)
+def _places(module: Module, function: ast.FunctionDef) -> Callable[[ast.expr], Span]:
+    """The spans of the expressions in a function: of one in a formatted text that of this text,
+    where Python gives no exact place."""
+    formatted = {
+        each: text
+        for text in _nodes(function)
+        if isinstance(text, ast.JoinedStr)
+        for each in ast.walk(text)
+    }
+
+    def place(node: ast.expr) -> Span:
+        span = module.text.span(node)
+        text = formatted.get(node)
+        exact = text is None or span.text == ast.unparse(node)
+        return span if exact or text is None else module.text.span(text)
+
+    return place
+
+
+def _nodes(function: ast.FunctionDef) -> list[ast.AST]:
+    """The parts of the body of a function, in the order of its lines."""
+    return [each for line in function.body for each in ast.walk(line)]
+
+
+def _head(module: Module, positional: Sequence[ast.arg]) -> Span | None:
+    """The place of the positional parameters of a function."""
+    if not positional:
+        return None
+    first, last = positional[0], positional[-1]
+    start = module.text.offset(first.lineno, first.col_offset)
+    end = module.text.offset(last.end_lineno or last.lineno, last.end_col_offset or 0)
+    return Span(module.text.source, start, end)
 
 
 def _is_sketch(function: ast.FunctionDef) -> bool:

@@ -252,7 +252,7 @@ def _known_fields(
             known = schema.names_for(owner)
             word = Word(str(entry.key.value), entry.key.span)
             whose = _owner_of(owner, type_, of_type=owner == "state")
-            own = [name for name in type_.variables if name not in known]
+            own = [*type_.variables]
             also = [name for name, each in entries.items() if each is entry and name != key]
             sure = also[0] if also else None
             target = name_of(entry.value) if key in _outcomes(entries, type_) else None
@@ -265,7 +265,7 @@ def _known_fields(
             )
             if as_key is not None:
                 read["misplaced_keys"] = (*read.get("misplaced_keys", ()), word.text)
-            meant.add(guesser_of((*known, *own))(word.text))
+            meant.add(guesser_of((*dict.fromkeys((*known, *own)),))(word.text))
             if len(own) == 1:
                 meant.add(own[0])  # the message names the only variable
     if strays:

@@ -361,3 +361,21 @@ def test_the_help_for_a_list_and_for_a_time(goal: str, help: str | None) -> None
     assert [each.help for each in found] == ([help] if help else [])
     name = goal.strip("{").partition(":")[0]
     assert all(each.related[0].span.text == name for each in found)
+
+
+@pytest.mark.parametrize(
+    ("value", "type", "number"),
+    [
+        ("12.5", "builtin_interfaces/Duration", 0),
+        ("12", "builtin_interfaces/Time", 0),
+        ("12", "duration", 0),
+        ("[1.0, 2.0]", "builtin_interfaces/Duration[]", 0),
+        ("soon", "builtin_interfaces/Duration", 1),
+        ("12.5", "builtin_interfaces/Other", 1),
+    ],
+)
+def test_a_number_of_seconds_in_a_slot(value: str, type: str, number: int) -> None:
+    files = {"cell_msgs/srv/Wait.srv": f"{type} limit\n---\n"}
+    slots = "request_slots: [limit]\n      input_keys: [limit]"
+    script = service(slots, data=f"limit: {value}", type="cell_msgs/Wait")
+    assert len(faults(script, files)) == number

@@ -166,6 +166,7 @@ def unknown_variable(
     meant: str | None = None,
     outcome: bool = False,
     key: str | None = None,
+    type_name: str | None = None,
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -188,7 +189,7 @@ def unknown_variable(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     own = sorted(own)
-    names = sorted([*known, *own])
+    names = sorted({*known, *own})
     owned = f"use one of its {owner.part}s: {listed(names)}"
     variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
     sure = meant or Guesser(names).sure(word.text)
@@ -206,6 +207,13 @@ def unknown_variable(
             message=f"`{word.text}` is not a {owner.part} of {owner.text}",
             arguments=(word.text, owner.name),
             help=f"`{word.text}` is an outcome: write its transition inside `transitions:`",
+        )
+    if type_name is not None:
+        return Finding(
+            span=word.span,
+            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
+            arguments=(word.text, owner.name),
+            help=f"`{word.text}` is a variable of `{type_name}`: write `template: {type_name}`",
         )
     if key is not None:
         return Finding(
