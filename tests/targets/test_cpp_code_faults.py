@@ -102,6 +102,12 @@ def test_a_header_without_a_folder(header: str, known: bool) -> None:
     assert [f"{item.code} {item.help}" for item in report] == expected
 
 
+def test_the_compiler_can_search_a_folder_of_the_project() -> None:
+    interface = INTERFACE.replace("arm/grasp.hpp", "grasp.hpp")
+    files = {"main.yml": SCRIPT, "templates/Grasp.yml": interface, "lib/grasp.hpp": CLASS}
+    assert analyse(Source("main.yml", SCRIPT), memory_library(files, BUILT_IN), []).report == []
+
+
 @pytest.mark.parametrize(
     ("files", "help"),
     [

@@ -137,6 +137,8 @@ def _header_elsewhere(header: Word, code: ClassCode, library: Library) -> ClassF
     """The fault that a header is in no searched folder, where the project has a file of its name in
     one other folder, and that defines the class in its namespace."""
     folder, _, file = header.text.rpartition("/")
+    if not folder:
+        return None  # each folder of the project can be one in which the compiler searches
     found = []
     for other in ("", *library.code_names("")):
         path = f"{other}/{file}" if other else file
