@@ -162,12 +162,14 @@ def other_types_of(base: State, found: Definitions, library: Library) -> OtherTy
         todo += state.states
         for named in state.variables:
             kind = DEFINITION_KINDS.get(named.role)
-            text = type_text(named) if kind is not None else ""
-            definitions = found.get((kind, text), ()) if kind is not None else ()
-            for part in PARTS[kind] if kind is not None and definitions else ():
+            if kind is None:
+                continue
+            text = type_text(named)
+            definitions = found.get((kind, text))
+            for part in PARTS[kind] if definitions else ():
                 fields = given_fields(state.variables, part)
-                known = [each.part(part).field(one) for each in definitions for one in fields]
-                if all(known) or (text, fields) in others:
+                known = [each.part(part).field(one) for each in definitions or () for one in fields]
+                if all(known) or not definitions or (text, fields) in others:
                     continue
                 other = with_fields(definitions[0], part, fields, library)
                 if other is not None:
