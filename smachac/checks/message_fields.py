@@ -38,8 +38,8 @@ from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.diagnostics.wording import listed
-from smachac.ir.leaf import key_names, type_text, variable, variable_of
+from smachac.diagnostics.wording import both, listed
+from smachac.ir.leaf import given_fields, key_names, type_text, variable, variable_of
 from smachac.ir.message_types import (
     FLOATS,
     INTEGERS,
@@ -165,8 +165,9 @@ def unknown_field(context: Context) -> Iterator[Finding]:
             for held in node.variables:
                 if held.role in PARTS[kind]:
                     messages = [each.part(held.role) for each in definitions]
-                    yield from _faults(context, path, node, held, messages)
-                    yield from _wrong_values(path, node, held, messages, found)
+                    other = _other_type(context, node, kind, held.role)
+                    yield from _faults(context, path, node, held, messages, other)
+                    yield from _wrong_values(path, node, held, messages, found, other)
         for slot in code_slots(node, context.machine.state_types):
             code = message_code(slot, node, found, context.machine.functions)
             if code is not None:
@@ -473,7 +474,12 @@ def _wrong_reads(
 
 
 def _wrong_values(
-    path: str, leaf: Leaf, held: Variable, messages: Sequence[Message], found: Definitions
+    path: str,
+    leaf: Leaf,
+    held: Variable,
+    messages: Sequence[Message],
+    found: Definitions,
+    other: str,
 ) -> Iterator[Finding]:
     """Values that do not fit the fields of a message, or are for fields that it does not have."""
     data, span = held.value.data, held.value.span
@@ -498,7 +504,8 @@ def _wrong_values(
     for (names, message, wanted, value), level in levels:
         if wanted is None:
             word = _field_word(names, span)
-            finding = _unknown_field(path, leaf, word, (message,), effect=effect)
+            also = other if len(names) == 1 else ""
+            finding = _unknown_field(path, leaf, word, (message,), effect=effect, other=also)
             yield replace(finding, help=level or finding.help)
             continue
         text = f"the value of `{names[-1]}` does not fit: the field of {_described(message)} is"
@@ -517,18 +524,31 @@ def _unknown_field(
     messages: Sequence[Message],
     also: str = "",
     effect: str | None = None,
+    other: str = "",
 ) -> Finding:
-    """`also`: the other place of the script that has the name."""
+    """`also`: the other place of the script that has the name; `other`: another type."""
     names = sorted({each.name for message in messages for each in message.fields})
     known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
     if len(names) == 1:
         known = f"write `{names[0]}`, its only field, in place of `{word.text}`"
     guess = guesser(names)(word.text)
-    help = did_you_mean(guess) or known
+    help = did_you_mean(guess) or f"{known}{other}"
     if guess and also:
         help += f" Write it here{also}, and remap it: `remapping: {{{guess}: {word.text}}}`"
     message = f"{_described(messages[0])} has no field `{word.text}`"
     return _finding(path, leaf, word, message, help, messages, effect)
+
+
+def _other_type(context: Context, leaf: Leaf, kind: DefinitionKind, role: str) -> str:
+    """The end of the help that names the type that has all fields which a state gives; empty if it
+    is not known."""
+    others = context.machine.other_types
+    named = next((each for each in leaf.variables if DEFINITION_KINDS.get(each.role) == kind), None)
+    if not others or named is None:
+        return ""
+    fields = given_fields(leaf.variables, role)
+    other = others.get((type_text(named), fields))
+    return f", or correct the type: `{other}` has {both(fields)}" if other is not None else ""
 
 
 def _field_word(names: Sequence[str], span: Span) -> Word:
@@ -555,7 +575,12 @@ def _value_span(name: Span, value: Span) -> Span:
 
 
 def _faults(
-    context: Context, path: str, leaf: Leaf, held: Variable, messages: Sequence[Message]
+    context: Context,
+    path: str,
+    leaf: Leaf,
+    held: Variable,
+    messages: Sequence[Message],
+    other: str,
 ) -> Iterator[Finding]:
     names = {each.name for message in messages for each in message.fields}
     inputs = {key.name for key in leaf.inputs}
@@ -565,7 +590,7 @@ def _faults(
             lists = (("input_keys", leaf.inputs), ("output_keys", leaf.outputs))
             named = [part for part, keys in lists if name in [key.name for key in keys]]
             also = f", in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
-            yield _unknown_field(path, leaf, use.word, messages, also)
+            yield _unknown_field(path, leaf, use.word, messages, also, other=other)
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
             fields = [message.field(name) for message in messages]

@@ -74,6 +74,7 @@ def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
         robot=script.robot,
         definitions=script.definitions,
         missing_definitions=script.missing_definitions,
+        other_types=script.other_types,
         functions=script.functions,
         unused=script.unused,
         properties=script.properties,

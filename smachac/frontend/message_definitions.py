@@ -8,7 +8,7 @@ not valid gives no definition, because its package does not build either.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
 from smachac.frontend.standard_messages import STANDARD
-from smachac.ir.leaf import type_text
+from smachac.ir.leaf import given_fields, type_text
 from smachac.ir.message_types import (
     PARTS,
     PRIMITIVES,
@@ -30,11 +30,15 @@ from smachac.ir.message_types import (
     MessageField,
     Missing,
     MissingDefinitions,
+    OtherTypes,
 )
 from smachac.ir.nodes import DEFINITION_KINDS
 
 LONGEST = 1_000_000
 """The longest file that is read, in characters."""
+
+MOST_OTHERS = 100
+"""Limit on the types of a package that are searched for fields."""
 
 _NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
 _TYPE = re.compile(
@@ -123,6 +127,55 @@ def definitions_of(base: State, library: Library) -> Definitions:
             for each in found[kind, text]:
                 todo.extend(("msg", name) for name in _nested(each))
     return {key: each for key, each in found.items() if each}
+
+
+def with_fields(
+    definition: Definition, part: str, fields: Collection[str], library: Library
+) -> Definition | None:
+    """The only other type of the same package and kind whose message `part` has some fields; None
+    if there are none or several, or a definition of the package cannot be read."""
+    kind, folder = definition.kind, f"{definition.package}/{definition.kind}"
+    files = [*library.definition_names(folder), *(
+        path.removeprefix(f"{folder}/") for path in STANDARD if path.startswith(f"{folder}/")
+    )]  # fmt: skip
+    ends = f".{kind}"
+    names = {each.removesuffix(ends) for each in files if each.endswith(ends)} - {definition.name}
+    if not fields or len(names) > MOST_OTHERS:
+        return None
+    fitting: list[Definition] = []
+    for name in sorted(names):
+        found = find_definitions(f"{definition.package}/{name}", kind, library)
+        if not found:
+            return None
+        if all(each.part(part).field(field) for each in found for field in fields):
+            fitting.append(found[0])
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def other_types_of(base: State, found: Definitions, library: Library) -> OtherTypes:
+    """The types that the states of a script can mean in place of those whose messages do not have
+    the fields that they give."""
+    others: dict[tuple[str, tuple[str, ...]], str] = {}
+    todo = [base]
+    while todo:
+        state = todo.pop()
+        todo += state.states
+        for named in state.variables:
+            kind = DEFINITION_KINDS.get(named.role)
+            if kind is None:
+                continue
+            text = type_text(named)
+            definitions = found.get((kind, text))
+            for part in PARTS[kind] if definitions else ():
+                fields = given_fields(state.variables, part)
+                known = [each.part(part).field(one) for each in definitions or () for one in fields]
+                if all(known) or not definitions or (text, fields) in others:
+                    continue
+                other = with_fields(definitions[0], part, fields, library)
+                if other is not None:
+                    head = text.removesuffix(definitions[0].name)
+                    others[text, fields] = f"{head}{other.name}" if head != text else other.name
+    return others
 
 
 def _named_types(base: State) -> dict[tuple[DefinitionKind, str], None]:

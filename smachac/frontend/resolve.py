@@ -31,7 +31,11 @@ from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
 from smachac.frontend.meant_types import meant_type
-from smachac.frontend.message_definitions import definitions_of, missing_definitions_of
+from smachac.frontend.message_definitions import (
+    definitions_of,
+    missing_definitions_of,
+    other_types_of,
+)
 from smachac.frontend.misplaced_fields import with_outer_fields, with_outer_variables
 from smachac.frontend.params import (
     MAX_FILLED,
@@ -210,6 +214,7 @@ class _Resolver:
             robot=robot,
             definitions=definitions,
             missing_definitions=missing_definitions_of(base, definitions, self.library),
+            other_types=other_types_of(base, definitions, self.library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=params_of(entries.get("params")),

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
 from smachac.ir.function_facts import FunctionFacts
-from smachac.ir.message_types import Definitions, MissingDefinitions
+from smachac.ir.message_types import Definitions, MissingDefinitions, OtherTypes
 from smachac.ir.nodes import FixedParam, Outcome, Param, Preset, StateType, Unused, Value, Variable
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
@@ -145,6 +145,7 @@ class Script:
     robot: Robot | None = None
     definitions: Definitions = field(default_factory=dict)
     missing_definitions: MissingDefinitions = field(default_factory=dict)
+    other_types: OtherTypes = field(default_factory=dict)
     unused: tuple[Unused, ...] = ()
     properties: tuple[Property, ...] = ()
     params: tuple[Param, ...] = ()

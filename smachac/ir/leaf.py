@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from smachac.ir.nodes import Data, Expression, Key, Leaf, Struct, Variable, VariableRole
 from smachac.ir.outcome_names import GOOD_OUTCOMES
@@ -53,3 +53,16 @@ def functions(leaf: Leaf, role: VariableRole) -> Mapping[str, Expression] | None
 def key_names(keys: tuple[Key, ...], *roles: str) -> frozenset[str]:
     """The names of the keys with one of these roles."""
     return frozenset([key.name for key in keys if key.role in roles])
+
+
+def given_fields(variables: Iterable[Variable], role: str) -> tuple[str, ...]:
+    """The names of the fields that the variables of a role give to a message: keys of a mapping,
+    and names in a list."""
+    names: set[str] = set()
+    for held in variables:
+        data = held.value.data
+        if held.role == role and isinstance(data, Struct):
+            names.update(name for name, _ in data.entries)
+        elif held.role == role and isinstance(data, tuple):
+            names.update(each for each in data if isinstance(each, str))
+    return tuple(sorted(names))

@@ -118,6 +118,11 @@ MissingDefinitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], Missing]"
 """The types of a script that their packages do not have, by kind and name as in the script."""
 
 
+OtherTypes: TypeAlias = "Mapping[tuple[str, tuple[str, ...]], str]"
+"""By the name of a type in a script, and fields that its message does not have, the only type of
+the same package that has them all."""
+
+
 def userdata_type(wanted: FieldType) -> Type:
     """The type of userdata whose values fit a field; `any` where Python has several such types."""
     if wanted.name in ("uint8", "byte", "char") and wanted.array:

@@ -15,7 +15,7 @@ from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias, TypeGuard
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.function_facts import FunctionFacts
-from smachac.ir.message_types import DefinitionKind, Definitions, MissingDefinitions
+from smachac.ir.message_types import DefinitionKind, Definitions, MissingDefinitions, OtherTypes
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
@@ -505,10 +505,10 @@ class Machine:
     `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
-    `properties`, `definitions`, those of messages of ROS, and `missing_definitions` are for rules;
-    of the targets only `dot` uses properties. `params` are those of the main script, `fixed_params`
-    the look-ups of params in time limits and retries. `functions` are those of the user that the
-    script names, by the text in the script. `state_types` are the interfaces of its
+    `properties`, `definitions`, those of messages of ROS, `missing_definitions` and `other_types`
+    are for rules; of the targets only `dot` uses properties. `params` are those of the main script,
+    `fixed_params` the look-ups of params in time limits and retries. `functions` are those of the
+    user that the script names, by the text in the script. `state_types` are the interfaces of its
     states and of its base, by name. `aliases` are the types that the script names, for messages.
     """
 
@@ -522,6 +522,7 @@ class Machine:
     properties: tuple[Property, ...] = field(default=(), compare=False, repr=False)
     definitions: Definitions = field(default_factory=dict, compare=False, repr=False)
     missing_definitions: MissingDefinitions = field(default_factory=dict, compare=False, repr=False)
+    other_types: OtherTypes = field(default_factory=dict, compare=False, repr=False)
     params: tuple[Param, ...] = field(default=(), compare=False, repr=False)
     fixed_params: tuple[FixedParam, ...] = field(default=(), compare=False, repr=False)
     functions: Mapping[str, FunctionFacts] = field(default_factory=dict, compare=False, repr=False)

@@ -379,3 +379,24 @@ def test_a_number_of_seconds_in_a_slot(value: str, type: str, number: int) -> No
     slots = "request_slots: [limit]\n      input_keys: [limit]"
     script = service(slots, data=f"limit: {value}", type="cell_msgs/Wait")
     assert len(faults(script, files)) == number
+
+
+def other_type(request: str, type: str, files: dict[str, str]) -> list[str | None]:
+    return [help for _, _, help in faults(service(f"request: {request}", type=type), files)]
+
+
+def test_another_type_of_the_package_with_the_fields() -> None:
+    assert other_type("{data: false}", "std_srvs/srv/Trigger", {}) == [
+        "remove it: it has no fields, or correct the type: `std_srvs/srv/SetBool` has `data`"
+    ]
+    files = {
+        "cell_msgs/srv/Grasp.srv": "float64 width\n---\n",
+        "cell_msgs/srv/Place.srv": "float64 height\nfloat64 force\n---\n",
+        "cell_msgs/srv/Lift.srv": "float64 force\n---\n",
+    }
+    both = "or correct the type: `cell_msgs/Place` has `force` and `height`"
+    field = "use one of its fields: `width`, "
+    given = "{force: 1.0, height: 2.0}"
+    assert other_type(given, "cell_msgs/Grasp", files) == [f"{field}{both}"] * 2
+    helps = other_type("{force: 1.0}", "cell_msgs/Grasp", files)
+    assert helps == ["use one of its fields: `width`"]

@@ -194,33 +194,21 @@ def unknown_variable(
     variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
     sure = meant or Guesser(names).sure(word.text)
     number = _number_before(word)
+    certain: str | None = None
     if number:
+        certain = f"a decimal comma? write `{number}.{word.text}`"
+    elif outcome:
+        certain = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
+    elif type_name is not None:
+        certain = f"`{word.text}` is a variable of `{type_name}`: write `template: {type_name}`"
+    elif key is not None:
+        certain = f"`{word.text}` is an input key: {key}"
+    if certain is not None:
         return Finding(
             span=word.span,
             message=f"`{word.text}` is not a {owner.part} of {owner.text}",
             arguments=(word.text, owner.name),
-            help=f"a decimal comma? write `{number}.{word.text}`",
-        )
-    if outcome:
-        return Finding(
-            span=word.span,
-            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
-            arguments=(word.text, owner.name),
-            help=f"`{word.text}` is an outcome: write its transition inside `transitions:`",
-        )
-    if type_name is not None:
-        return Finding(
-            span=word.span,
-            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
-            arguments=(word.text, owner.name),
-            help=f"`{word.text}` is a variable of `{type_name}`: write `template: {type_name}`",
-        )
-    if key is not None:
-        return Finding(
-            span=word.span,
-            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
-            arguments=(word.text, owner.name),
-            help=f"`{word.text}` is an input key: {key}",
+            help=certain,
         )
     if anything:
         return Finding(
