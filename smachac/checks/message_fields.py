@@ -529,7 +529,7 @@ def _unknown_field(
     """`also`: the other place of the script that has the name; `other`: another type."""
     names = sorted({each.name for message in messages for each in message.fields})
     known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
-    if len(names) == 1:
+    if len(names) == 1 and not other:
         known = f"write `{names[0]}`, its only field, in place of `{word.text}`"
     guess = guesser(names)(word.text)
     help = did_you_mean(guess) or f"{known}{other}"

@@ -399,4 +399,4 @@ def test_another_type_of_the_package_with_the_fields() -> None:
     given = "{force: 1.0, height: 2.0}"
     assert other_type(given, "cell_msgs/Grasp", files) == [f"{field}{both}"] * 2
     helps = other_type("{force: 1.0}", "cell_msgs/Grasp", files)
-    assert helps == ["use one of its fields: `width`"]
+    assert helps == ["write `width`, its only field, in place of `force`"]
