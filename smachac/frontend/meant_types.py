@@ -14,6 +14,17 @@ from smachac.frontend.yaml_tree import Entry, Map
 from smachac.ir.nodes import StateType
 
 
+def has_unknown_variable(entries: Mapping[str, Entry], type_: StateType) -> bool:
+    """Whether a state of a built-in type has a variable that the type does not have."""
+    if not type_.built_in or type_.open or type_.any_variable:
+        return False
+    for key in entries:
+        row = schema.VARIABLES.get(key)
+        if (row is None or "state" not in row.owners) and key not in type_.variables:
+            return True
+    return False
+
+
 def meant_type(
     entries: Mapping[str, Entry],
     type_: StateType,
@@ -21,16 +32,11 @@ def meant_type(
     find: Callable[[str], StateType | None],
     report: Report,
 ) -> StateType | None:
-    """The only built-in type that has the variables and the outcomes of a state, if its own type,
-    which is built in, does not have them (SM003); None for any other state. `names` are those of
-    all state types; they are read only if a variable is unknown."""
-    if not type_.built_in or type_.open or type_.any_variable:
-        return None
+    """The only built-in type that has the variables and the outcomes of a state with an unknown
+    variable of a built-in type (SM003), or None. `names` are those of all state types."""
     fields = schema.names_for("state")
     own = [key for key in entries if key not in fields]
     unknown = [key for key in own if key not in type_.variables]
-    if not unknown:
-        return None
     sure = guesser_of((*fields, *type_.variables)).sure
     if any(sure(key) is not None for key in unknown):
         return None

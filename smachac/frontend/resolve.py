@@ -30,7 +30,7 @@ from smachac.frontend.errors.script import (
 from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
-from smachac.frontend.meant_types import meant_type
+from smachac.frontend.meant_types import has_unknown_variable, meant_type
 from smachac.frontend.message_definitions import (
     definitions_of,
     missing_definitions_of,
@@ -595,6 +595,9 @@ class _Resolver:
 
     def meant_type(self, entries: Entries, type_: StateType) -> StateType | None:
         """The built-in type that a state means, in place of that of its template (SM003)."""
+
+        if not has_unknown_variable(entries, type_):
+            return None
 
         def find(name: str) -> StateType | None:
             found = self.found_types.get(name)
