@@ -9,6 +9,7 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import Event
 from smachac.ir.leaf import variable_of
@@ -100,7 +101,10 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
         visits += found.visits
         if visits > MOST_VISITS:
             return
-        if found.closed:
+        held = variable_of(leaves[path], "grip")
+        if found.closed and found.checked and held is not None:
+            yield _held_finding(leaves, path, found, held.value.span)
+        elif found.closed:
             leaf = leaves[path]
             names = [context.routes.nodes[each].name for each in (*found.closed, *found.moved)]
             places = [context.routes.nodes[each].span for each in (found.closed[0], found.moved[0])]
@@ -124,11 +128,31 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
 
 class _Closed(NamedTuple):
     """The states that have closed a gripper on all paths to a state, and the motions between; none
-    where a path decides nothing."""
+    where a path decides nothing. `checked` is a state between that checks the grasp."""
 
     closed: tuple[str, ...]
     moved: tuple[str, ...]
     visits: int
+    checked: str = ""
+
+
+def _held_finding(leaves: Mapping[str, Leaf], path: str, found: _Closed, span: Span) -> Finding:
+    """The finding on a state that closes a gripper which holds a body: a check of the grasp has
+    succeeded before."""
+    leaf, first, check = leaves[path], leaves[found.closed[0]], leaves[found.checked]
+    return Finding(
+        span=span,
+        message=f"`{leaf.name}` closes the gripper, which holds a body since `{first.name}`",
+        arguments=(leaf.name, first.name),
+        help="write `command: open` here, or open the gripper before the next grasp",
+        effect="the gripper never releases the body here",
+        related=(
+            *other_place(first.span, "the gripper is closed here"),
+            *other_place(check.span, f"`{check.name}` has checked the grasp"),
+            *calls(leaf, span),
+        ),
+        node=path,
+    )
 
 
 def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _Closed:
@@ -140,6 +164,7 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
     todo: list[tuple[Event, bool]] = [start]
     closed: dict[str, None] = {}
     moved: dict[str, None] = {}
+    checked = ""
     for event, has_moved in todo:
         where, outcome = event
         leaf = leaves.get(where)
@@ -152,6 +177,9 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
                 continue
             if known is not None or not keeps_gripper(leaf):
                 return _Closed((), (), len(seen))
+            type_ = context.machine.state_types.get(leaf.type)
+            if type_ is not None and type_.checks_grasp and outcome in successes(leaf):
+                checked = where
             if _comes_to_body(leaf) and outcome in successes(leaf):
                 moved[where] = None
                 comes = True
@@ -162,7 +190,7 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
             if (each, comes) not in seen:
                 seen.add((each, comes))
                 todo.append((each, comes))
-    return _Closed(tuple(closed), tuple(moved) if closed else (), len(seen))
+    return _Closed(tuple(closed), tuple(moved) if closed else (), len(seen), checked)
 
 
 Effect = Literal["open", "close", "unknown"]

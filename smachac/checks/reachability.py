@@ -93,6 +93,10 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
             if f"{path}/{child.name}" in (missed or ()):
                 continue  # SM701 reports the transition that must lead to it, SM101 its place
             twice = _led_twice(container, seen) if not before.get(child.name) else None
+            past = _led_past(container, child, seen) if not before.get(child.name) else None
+            if past is not None:
+                yield _passed(path, container, child, past)
+                continue
             yield Finding(
                 span=child.span,
                 message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial"
@@ -104,6 +108,48 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
                 related=(*_led_places(twice), *calls(child, child.span)),
                 node=f"{path}/{child.name}",
             )
+
+
+class _LedPast(NamedTuple):
+    """The state before another one in the script, and its transition that leads past it."""
+
+    child: Node
+    step: Transition
+
+
+def _led_past(container: Linear, child: Node, seen: Collection[str]) -> _LedPast | None:
+    """The transition of the state before a child in the script that leads to a state to which the
+    child leads as well, if it is the only one and not one of failure."""
+    names = children_names(container)
+    number = next(at for at, each in enumerate(container.children) if each is child)
+    before = container.children[number - 1] if number else None
+    if before is None or before.name not in seen or isinstance(container, Sequence):
+        return None
+    after = {step.target for step in child.transitions} & names
+    steps = [
+        step
+        for step in before.transitions
+        if step.target in after and step.origin == "written" and not fails(before, step.outcome)
+    ]
+    return _LedPast(before, steps[0]) if len(steps) == 1 else None
+
+
+def _passed(path: str, container: Linear, child: Node, past: _LedPast) -> Finding:
+    """SM201 for a state past which the state before it leads."""
+    before, step = past
+    return Finding(
+        span=child.span,
+        message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial state of"
+        f" `{container.name}`",
+        arguments=(child.name,),
+        help=f"write `{step.outcome}: {child.name}` in `{before.name}`, or remove `{child.name}`"
+        " if its work is not needed",
+        related=(
+            *other_place(step.target_span, f"`{before.name}`, the state before, leads past it"),
+            *calls(child, child.span),
+        ),
+        node=f"{path}/{child.name}",
+    )
 
 
 class _LedTwice(NamedTuple):

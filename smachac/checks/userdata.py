@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -11,6 +11,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.def_use import Use, place_of, uses_by_key
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import unknown_remaps
+from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import (
     Missing,
     Searches,
@@ -20,6 +21,7 @@ from smachac.analysis.unset_reads import (
 )
 from smachac.checks.declarations import MeantKey, meant_keys, swapped_loop
 from smachac.checks.edits import with_input, with_output
+from smachac.checks.meant_keys import fitting_key, unread_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import placeholder
@@ -32,7 +34,8 @@ from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
-from smachac.ir.types import ANY, Type
+from smachac.ir.traversal import remapping
+from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -107,7 +110,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
         meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
             users = used(missing.scope.path).get(missing.key, [])
-            finding = _unset(missing, witness, users, guesses, context.types.inputs)
+            finding = _unset(missing, witness, users, guesses, context.types)
             if meant is not None and meant.missing is missing:
                 finding = _with_meant_key(finding, witness, meant)
             yield finding
@@ -213,13 +216,12 @@ def _unset(
     witness: Witness,
     users: list[Use],
     guesses: _Guesses,
-    types: Mapping[tuple[str, str], Type],
+    types: Types,
 ) -> Finding:
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
-    value = (
-        f"`userdata: {{{missing.key}: {placeholder(types.get((reader.path, reader.key), ANY))}}}`"
-    )
+    wanted = types.inputs.get((reader.path, reader.key), ANY)
+    value = f"`userdata: {{{missing.key}: {placeholder(wanted)}}}`"
     where = "on every path" if witness.always else "on this path too,"
     help = (
         f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
@@ -237,12 +239,24 @@ def _unset(
         if isinstance(node, nodes.Iterator) and guess == node.item_key:
             # The item of an iterator is no list of items, although `item` resembles `items`.
             guess = guesser(sorted(_keys_of(scope) - {node.item_key}))(missing.key)
+        names = remapping(node)
+        own = {names.get(key.name, key.name) for key in node.inputs}
+        if node is not scope.container and guess in own:
+            guess = guesses.of(scope).sure(missing.key)  # the state reads that key too
         help = did_you_mean(guess) or _item_help(scope.container, node, missing.key) or help
+        unread = unread_output(scope, missing.key) if guess is None else None
+        fitting = fitting_key(types, scope, reader) if guess is None else None
+        if fitting is not None:
+            help = f"write `remapping: {{{reader.key}: {fitting}}}` in `{node.name}`, if it must"
+            help += f" read `{fitting}`, which has this type"
+        if unread is not None:
+            help = unread.help
+            related = other_place(unread.place, f"nothing reads `{unread.key}`")
         if isinstance(node, nodes.Iterator) and node.sugar == "for_each":
             help = _item_name_help(node, missing.key) or help
         if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
             help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
-        related = _item_place(scope.container, node)
+        related = (*related, *_item_place(scope.container, node))
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",
@@ -369,12 +383,14 @@ def _remapped(missing: Missing, guesses: _Guesses) -> Iterator[Finding]:
             if remap.to != key or child.name not in missing.vertices:
                 continue
             guess = guesses.of(scope)(key)
+            unread = unread_output(scope, key) if guess is None else None
             yield Finding(
                 span=remap.to_span,
                 message=f"`{remap.key}` of `{child.name}` is remapped to `{key}`, which nothing in"
                 f" {container_name(scope, remap.span)} sets",
                 arguments=(remap.key, key),
                 help=did_you_mean(guess)
+                or (unread.help if unread is not None else None)
                 or f"set `{key}` before this state, or give it an initial value in `{around}`:"
                 f" `userdata: {{{key}: ...}}`",
                 effect=UNSET,

@@ -18,6 +18,9 @@ long."""
 SHORTEST_SLIP = 4
 """Shorter names are one slip away from too many others: for them only the case may differ."""
 
+SHORTEST_PART = 3
+"""A shorter word is a part of too many names."""
+
 LONGEST_SLIP = 100
 """In characters. For longer names only the case may differ: a comparison takes quadratic time and
 memory."""
@@ -49,7 +52,7 @@ class Guesser:
         nearest = next((index[slip] for slip in slips(word) if slip in index), None)
         if nearest is None and len(self.names) <= MOST_COMPARED and len(word) <= LONGEST_SLIP:
             parts = [name for name in self.names if word.casefold() in name.casefold().split("_")]
-            if len(parts) != 1 or len(word) < SHORTEST_SLIP:
+            if len(parts) != 1 or len(word) < SHORTEST_PART:
                 parts = difflib.get_close_matches(word, self.names, n=1)
             nearest = next(iter(parts), None)
         return None if nearest is None or are_unlike(word, nearest) else nearest

@@ -1,0 +1,69 @@
+"""Keys that are meant by one that nothing sets: outputs that nothing reads, and keys of the type
+that is read (SM301)."""
+
+from __future__ import annotations
+
+import re
+from itertools import chain
+from typing import NamedTuple
+
+from smachac.analysis.definite_assignment import UserdataScope
+from smachac.analysis.type_inference import Types
+from smachac.analysis.type_lattice import fits, is_open, widened
+from smachac.analysis.unset_reads import Reader
+from smachac.diagnostics.source import Span
+from smachac.ir.nodes import Leaf
+from smachac.ir.traversal import remapping
+from smachac.ir.types import ANY
+
+_WORDS = re.compile(r"[A-Za-z]+|\d+")
+
+
+class UnreadOutput(NamedTuple):
+    """An output that nothing reads, with its name in the container, the place of its state or
+    remapping, and the help that names it."""
+
+    key: str
+    place: Span
+    help: str
+
+
+def unread_output(scope: UserdataScope, missing: str) -> UnreadOutput | None:
+    """The only output in a container that nothing reads and that has a word of the missing key:
+    `pose` for `found_pose`."""
+    read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
+    found: list[UnreadOutput] = []
+    for child in scope.container.children:
+        names = remapping(child)
+        for key in child.outputs:
+            outer = names.get(key.name, key.name)
+            if outer in read or not _words(outer) & _words(missing):
+                continue
+            help = f"nothing reads `{outer}`, which `{child.name}` sets: did you mean it?"
+            if key.name not in names:
+                help = f"write `remapping: {{{key.name}: {missing}}}` at `{child.name}`, whose"
+                help += f" `{key.name}` nothing reads"
+            place = next((each.to_span for each in child.remaps if each.to == outer), child.span)
+            found.append(UnreadOutput(outer, place, help))
+    return found[0] if len(found) == 1 else None
+
+
+def fitting_key(types: Types, scope: UserdataScope, reader: Reader) -> str | None:
+    """The only key in the container of a state that has the type of one of its inputs and that the
+    state does not read; None where the type of the input is not known."""
+    wanted = types.inputs.get((reader.path, reader.key), ANY)
+    names = remapping(reader.node)
+    if is_open(wanted) or reader.key in names or not isinstance(reader.node, Leaf):
+        return None
+    own = {names.get(each.name, each.name) for each in reader.node.inputs}
+    keys = {key: type_ for (path, key), type_ in types.keys.items() if path == scope.path}
+    found = [
+        key
+        for key, type_ in keys.items()
+        if key not in own and not is_open(type_) and widened(type_) != ANY and fits(type_, wanted)
+    ]
+    return found[0] if len(found) == 1 else None
+
+
+def _words(name: str) -> set[str]:
+    return {word.lower() for word in _WORDS.findall(name)}
