@@ -21,6 +21,7 @@ from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.misplaced_states import keys_of_misplaced
+from smachac.checks.outcomes import meant_default
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code, lone_input
@@ -544,7 +545,7 @@ def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Fin
         if any(key.name not in used for key in arguments):
             used |= {name.id for code in called for name in free_in(code.text)}  # SM019
         yield from _unused_keys(path, leaf, arguments, used, "input")
-    if chooses and not [*unknown_endings(path, leaf)]:
+    if chooses and not [*unknown_endings(path, leaf)] and meant_default(leaf) is None:
         yield from _unused_outcomes(path, leaf, conditions)
 
 

@@ -18,9 +18,11 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
+from smachac.ir.leaf import functions, variable
 from smachac.ir.nodes import (
     Concurrence,
     Container,
+    Leaf,
     Node,
     Outcome,
     OutcomeRule,
@@ -325,7 +327,32 @@ def _field_that_adds(node: Node, outcome: str) -> str:
     return _field_that_adds(inner, outcome) if outcome in outcome_names(inner) else node.sugar
 
 
+def meant_default(leaf: Leaf) -> str | None:
+    """The declared outcome that is meant by a `default_outcome` without a transition: the only one
+    to which no condition leads, if it has a transition."""
+    default, conditions = variable(leaf, "default_outcome"), functions(leaf, "conditions")
+    handled = {step.outcome for step in leaf.transitions}
+    if not isinstance(default, str) or not conditions or default in handled:
+        return None
+    others = {*conditions, default, leaf.catches}
+    left = [name for name in outcome_names(leaf) if name not in others]
+    return left[0] if len(left) == 1 and left[0] in handled else None
+
+
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> Finding:
+    held = child.variables if isinstance(child, Leaf) else ()
+    default = next((each for each in held if each.name == "default_outcome"), None)
+    meant = meant_default(child) if isinstance(child, Leaf) else None
+    if default is not None and meant is not None and default.value.data == outcome.name:
+        return Finding(
+            span=default.value.span,
+            message=f"`{outcome.name}` of `{child.name}` has no transition, and no condition leads"
+            f" to `{meant}`, which has one",
+            arguments=(child.name, outcome.name),
+            help=f"write `default_outcome: {meant}`",
+            related=calls(child, default.value.span),
+            node=f"{path}/{child.name}",
+        )
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
     field = _field_that_adds(child, outcome.name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -113,7 +113,29 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             finding = _unset(missing, witness, users, guesses, context.types)
             if meant is not None and meant.missing is missing:
                 finding = _with_meant_key(finding, witness, meant)
+            elif missing.cause != "nowhere":
+                finding = _with_outer_key(finding, missing, flow.scopes)
             yield finding
+
+
+def _with_outer_key(
+    finding: Finding, missing: Missing, scopes: Mapping[str, UserdataScope]
+) -> Finding:
+    """The finding on an output of a container that is read before it is set, where the container
+    around it has a value for it: the key is probably meant as an input too."""
+    scope, key = missing.scope, missing.key
+    if key in scope.inputs or key not in scope.outputs:
+        return finding
+    outer = scope.outputs[key]
+    around = scopes.get(scope.path.rpartition("/")[0])
+    while around is not None and around.container.sugar and outer in around.outputs:
+        outer = around.outputs[outer]
+        around = scopes.get(around.path.rpartition("/")[0])
+    if around is None or outer not in around.held:
+        return finding
+    name = scope.container.name
+    help = f"add `{key}` to the `input_keys` of `{name}`: `{around.container.name}` has a value"
+    return replace(finding, help=f"{help} for it")
 
 
 def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Finding:
@@ -173,9 +195,9 @@ def _item_help(container: Container, reader: Node, key: str) -> str | None:
     read = f"read `{container.item_key}` in place of `{key}`"
     match container.sugar:
         case "":
-            return f"{read}: the loop calls its item `{container.item_key}` (`it_label`)"
+            return f"write `it_label: {key}`, or {read}: the loop calls its item so"
         case "for_each":
-            return f"{read}: `for_each` calls its item `{container.item_key}`"
+            return f"write `item: {key}` in `for_each`, or {read}: the loop calls its item so"
     return None
 
 

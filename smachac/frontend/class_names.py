@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 
 BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "__class__", "_"])
 """Names that a module has without a definition; `_` is that of gettext."""
@@ -216,7 +216,8 @@ class _Near:
                     return ClassFault(kind="wrong import", name=Word(alias.name, span), near=name)
         uses = (text.span(each) for each in self.owners
                 if isinstance(each, ast.Name) and each.id == name)  # fmt: skip
-        return ClassFault(kind="no import", name=Word(name, min(uses, key=lambda each: each.start)))
+        kind: FaultKind = "no rospy import" if name == "rospy" else "no import"
+        return ClassFault(kind=kind, name=Word(name, min(uses, key=lambda each: each.start)))
 
 
 def _arguments(function: ast.FunctionDef) -> set[str]:

@@ -62,6 +62,7 @@ FaultKind = Literal[
     "super not called",
     "no self parameter",
     "no import",
+    "no rospy import",
     "wrong import",
     "undefined method",
     "no attribute",

@@ -261,7 +261,7 @@ def near(data: Any, place: Place) -> float:
     """A length (m) that is not far too large for a robot's cell."""
     length = number(data, place)
     if abs(length) > FARTHEST:
-        message = f"{length:g} m is farther away than {FARTHEST:g} m"
+        message = f"{abs(length):g} m is more than {FARTHEST:g} m, the largest length here"
         raise DataError(message, place, in_metres(length))
     return length
 

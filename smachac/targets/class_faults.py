@@ -95,6 +95,11 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`{word}` is used in this file, but not imported",
         "write `import {word}` at the top of the file",
     ),
+    "no rospy import": (
+        "`{word}` is used in this file, but not imported",
+        "in ROS 1 write `import rospy` at the top of the file; ROS 2 has no `rospy`: there write"
+        " `time.sleep(...)` for `rospy.sleep(...)`",
+    ),
     "wrong import": (
         "the file imports `{word}`, but uses `{near}`",
         "write `import {near}`",
@@ -361,6 +366,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no return": "the result is None: code that uses it as a value fails, or goes on without it",
     "no tuple": "each letter of the text counts as a name",
     "unset attribute": "the code raises AttributeError when it runs: the machine stops",
+    "no rospy import": "the code raises NameError when it runs: the machine stops",
     "no import": "the code raises NameError when it runs: the machine stops",
     "other scope": "the code raises NameError when it runs: the machine stops",
     "other userdata": "the code raises NameError when it runs: the machine stops",

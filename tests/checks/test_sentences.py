@@ -87,7 +87,7 @@ GRIPPER = """
 @pytest.mark.parametrize(
     ("states", "code", "token", "words"),
     [
-        (LOOP.format(it="parts", key="item"), "SM301", "item", "item `part` (`it_label`)"),
+        (LOOP.format(it="parts", key="item"), "SM301", "item", "write `it_label: item`, or read"),
         (LOOP.format(it="partz", key="part"), "SM301", "partz", "did you mean `parts`?"),
         ("  - A: {template: PrintUserdataState, input_keys: [part],"
          " for_each: {item: part, in: partz}, transitions: {succeeded: succeeded}}\n",

@@ -294,3 +294,106 @@ def test_a_copied_remapping() -> None:
     assert reported({"main.yml": SIDES}) == [("SM305", "left_home", help)]
     other = SIDES.replace("right_home: 2.5", "grip_force: 2.5")
     assert [each[1] for each in reported({"main.yml": other})] == ["grip_force"]
+
+
+ORDER = """\
+name: sm
+outcomes: [done]
+states:
+  - DOWN: {template: ScriptedState, outcomes: [ok], transitions: {ok: LIFT}}
+  - CLOSE: {template: ScriptedState, outcomes: [ok], transitions: {ok: LIFT}}
+  - LIFT: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+"""
+
+
+def test_a_state_past_which_the_state_before_leads() -> None:
+    help = "write `ok: CLOSE` in `DOWN`, or remove `CLOSE` if its work is not needed"
+    assert reported({"main.yml": ORDER}) == [("SM201", "CLOSE", help)]
+    close = "CLOSE: {template: ScriptedState, outcomes: [ok], transitions: {ok: "
+    other = ORDER.replace(f"{close}LIFT", f"{close}done")
+    help = "add a transition to `CLOSE`, or remove `CLOSE`"
+    assert reported({"main.yml": other}) == [("SM201", "CLOSE", help)]
+
+
+JUDGE = """\
+name: sm
+outcomes: [done, failed]
+userdata: {n: 0}
+states:
+  - JUDGE:
+      template: ConditionalOutcomeState
+      outcomes: [some, none_left]
+      input_keys: [n]
+      callbacks: {some: 'lambda ud: ud.n > 0'}
+      default_outcome: none
+      transitions: {some: done, none_left: failed}
+"""
+
+
+def test_a_misspelt_default_outcome_is_one_finding() -> None:
+    found = reported({"main.yml": JUDGE})
+    assert found == [("SM104", "none", "write `default_outcome: none_left`")]
+    assert reported({"main.yml": JUDGE.replace("outcome: none", "outcome: none_left")}) == []
+
+
+LOOK = """\
+name: sm
+outcomes: [done]
+userdata: {rounds: 0}
+states:
+  - LOOK:
+      template: ScriptedState
+      outcomes: [ok]
+      output_keys: {pose: Pose}
+      steps: [{outcome: ok, set: {pose: [[0, 0, 0], [0, 0, 0, 1]]}}]
+      transitions: {ok: GRASP}
+  - GRASP:
+      template: ScriptedState
+      input_keys: [KEY, rounds]
+      outcomes: [ok]
+      transitions: {ok: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("key", "help"),
+    [
+        (
+            "found_pose",
+            "write `remapping: {pose: found_pose}` at `LOOK`, whose `pose` nothing reads",
+        ),
+        ("target", None),
+    ],
+)
+def test_an_output_that_nothing_reads(key: str, help: str | None) -> None:
+    found = [each for each in reported({"main.yml": LOOK.replace("KEY", key)})
+             if each[0] == "SM301"]  # fmt: skip
+    assert len(found) == 1
+    assert (found[0][2] == help) is (help is not None)
+
+
+def test_a_key_that_a_loop_must_have_as_input() -> None:
+    main = """\
+name: sm
+outcomes: [done]
+userdata: {items: [1, 2], total: 0}
+output_keys: [total]
+states:
+  - EACH:
+      template: StateMachine
+      outcomes: [ok]
+      input_keys: [one]
+      output_keys: [total]
+      for_each: {item: one, in: items}
+      transitions: {ok: done, preempted: done}
+      states:
+        - ADD:
+            template: CallbacksState
+            input_keys: [one, total]
+            output_keys: [total]
+            callbacks: {total: 'lambda ud: ud.total + ud.one'}
+            transitions: {succeeded: ok}
+"""
+    found = [each for each in reported({"main.yml": main}) if each[0] in ("SM301", "SM303")]
+    assert len(found) == 1
+    assert "`input_keys` of `EACH`" in (found[0][2] or "")

@@ -82,7 +82,13 @@ def test_the_checks_use_the_description(tmp_path: Path) -> None:
         ("arm.yml", "hand", "hnad", "robot: the URDF file has no link `hnad`", (5, 32)),
         ("arm.yml", "arm.urdf", "no.urdf", "robot: the file `no.urdf` was not found", (3, 7)),
         ("arm.yml", "home", "hom", "robot: the key `hom` is unknown", (5, 38)),
-        ("table.yml", "0.1]", "100]", "scene: 100 m is farther away than 20 m", (1, 34)),
+        (
+            "table.yml",
+            "0.1]",
+            "100]",
+            "scene: 100 m is more than 20 m, the largest length here",
+            (1, 34),
+        ),
     ],
 )
 def test_a_mistake_is_a_diagnostic_with_its_place(

@@ -83,16 +83,26 @@ MISTAKES: list[tuple[tuple[str | int, ...], Any, tuple[str | int, ...], str]] = 
         (*LEFT, "gripper", "width", "open"),
         "a gripper that opens 80 m wide is larger than an arm",
     ),
-    (("base",), [[0, 0, 400], [0, 0, 0, 1]], ("base", 0, 2), "400 m is farther away than 20 m"),
+    (
+        ("base",),
+        [[0, 0, 400], [0, 0, 0, 1]],
+        ("base", 0, 2),
+        "400 m is more than 20 m, the largest length here",
+    ),
     (("base",), [[0, 0], [0, 0, 0, 1]], ("base", 0), "three numbers are expected, not 2"),
     (("stand",), {"size": [1]}, ("stand", "size"), "two numbers are expected, not 1"),
     (("stand",), {"size": [1, 0]}, ("stand", "size", 1), "a number above 0 is expected, not 0"),
-    (("stand",), {"size": [250, 1]}, ("stand", "size", 0), "250 m is farther away than 20 m"),
+    (
+        ("stand",),
+        {"size": [250, 1]},
+        ("stand", "size", 0),
+        "250 m is more than 20 m, the largest length here",
+    ),
     (
         ("stand",),
         {"size": [1, 1], "centre": [0, 40]},
         ("stand", "centre", 1),
-        "40 m is farther away than 20 m",
+        "40 m is more than 20 m, the largest length here",
     ),
     ((*LEFT, "joints", 1), "a", (*LEFT, "joints", 1), "the joint `a` is there twice"),
     (
@@ -195,7 +205,12 @@ def test_a_scene() -> None:
         (("bodies", "block", "model"), "blok", ("bodies", "block", "model"), "no model `blok`"),
         (("bodies", "cap", "frame"), "lid", ("bodies", "cap", "frame"), "no frame `lid`"),
         (("bodies", "cap", "apart"), {"lid": 1}, ("bodies", "cap", "apart", "lid"), "no body"),
-        (("bodies", "cap", "size"), [100, 1, 1], ("bodies", "cap", "size", 0), "100 m is farther"),
+        (
+            ("bodies", "cap", "size"),
+            [100, 1, 1],
+            ("bodies", "cap", "size", 0),
+            "100 m is more than",
+        ),
         (
             ("bodies", "block", "spread"),
             [0.1, -0.1, 1],
