@@ -18,6 +18,7 @@ from smachac.analysis.filled_lists import filled_loops
 from smachac.analysis.item_reads import ItemRead, item_reads
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
+from smachac.analysis.misplaced_states import Misplaced, misplaced_states, stray_transitions
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
 from smachac.analysis.reaching_values import reaching_clashes
 from smachac.analysis.resource_claims import Held, claims
@@ -268,6 +269,12 @@ class Context:
     def accesses(self) -> dict[str, Accesses]:
         """What each state reads and writes of the userdata around it."""
         return accesses(self.states)
+
+    @cached_property
+    def misplaced(self) -> tuple[Misplaced, ...]:
+        """The states that are indented wrongly."""
+        strays = self.at_containers(stray_transitions)
+        return tuple(misplaced_states(self.containers, strays)) if strays else ()
 
     @cached_property
     def claims(self) -> Held:

@@ -13,6 +13,7 @@ from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
 from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name, reader_at
 from smachac.checks.code_slots import function_reads
@@ -20,7 +21,6 @@ from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
-from smachac.checks.misplaced_states import keys_of_misplaced
 from smachac.checks.outcomes import meant_default
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
 from smachac.checks.rule import rule
@@ -93,7 +93,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
         unset.setdefault(each.scope.path, set()).add(each.key)
     reported |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}
     reported |= _swapped_lists(context)
-    reported |= keys_of_misplaced(context)
+    reported |= keys_of_misplaced(context.misplaced)
     in_functions = function_reads(context)
     for scope in flow.scopes.values():
         container = scope.container

@@ -16,14 +16,11 @@ from smachac.analysis.control_flow import (
     strays,
     unknown_outcomes,
 )
+from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.declarations import meant_keys
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
-from smachac.checks.misplaced_states import (
-    misplaced_finding,
-    misplaced_states,
-    stray_transitions,
-)
+from smachac.checks.misplaced_states import misplaced_finding
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
@@ -86,7 +83,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               transitions: {done: stacked}
     """
     lost = context.at_containers(_lost)
-    misplaced = misplaced_states(context) if lost else []
+    misplaced = context.misplaced if lost else ()
     for each in misplaced:
         yield misplaced_finding(each)
     causes = {(each.meant_path, each.child.name) for each in misplaced}
@@ -100,7 +97,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
         yield _nowhere(fault, paths.get(fault.step.target))
     for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
-            yield from _idle_transitions(context, path, container)
+            yield from _idle_transitions(context, path, container, moved)
 
 
 def _lost(path: str, container: Container) -> Iterator[_Lost]:
@@ -207,9 +204,11 @@ def _same_case(word: str, name: str) -> bool:
     return same and word.casefold() != name.casefold()
 
 
-def _idle_transitions(context: Context, path: str, container: Container) -> Iterator[Finding]:
+def _idle_transitions(
+    context: Context, path: str, container: Container, moved: Collection[str]
+) -> Iterator[Finding]:
     """The transitions of the children of a concurrence or an iterator, except those of a sub-script
-    that a state machine calls as well."""
+    that a state machine calls as well, and those of misplaced states."""
     why = "an iterator repeats its child or ends"
     help = "remove it: `loop_outcomes` lists the outcomes that continue the loop"
     if isinstance(container, Concurrence):
@@ -219,6 +218,8 @@ def _idle_transitions(context: Context, path: str, container: Container) -> Iter
             " order put the states into a Sequence in one branch"
         )
     for child in container.children:
+        if f"{path}/{child.name}" in moved:
+            continue
         steps = [step for step in child.transitions if step.origin == "written"]
         if steps and not (child.via and _is_taken_elsewhere(context, steps[0].span)):
             first, several = steps[0], len(steps) > 1

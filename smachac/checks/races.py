@@ -79,13 +79,17 @@ def data_race(context: Context) -> Iterator[Finding]:
     """
     for path, container in context.containers:
         if isinstance(container, Concurrence) and len(container.children) > 1:
-            yield from _races(path, container, context.accesses)
+            moved = {id(each.child) for each in context.misplaced}
+            branches = [child for child in container.children if id(child) not in moved]
+            yield from _races(path, container, branches, context.accesses)
 
 
-def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> Iterator[Finding]:
+def _races(
+    path: str, container: Concurrence, branches: list[Node], known: Mapping[str, Accesses]
+) -> Iterator[Finding]:
     writers: dict[str, list[tuple[Node, Node]]] = {}
     readers: dict[str, list[tuple[Node, Node]]] = {}
-    for child in container.children:
+    for child in branches:
         own = known[f"{path}/{child.name}"]
         for key, origin in own.writes.items():
             if child is origin and _is_never_set(child, key):

@@ -12,8 +12,8 @@ from smachac.analysis.control_flow import (
     is_open,
     strays,
 )
+from smachac.analysis.misplaced_states import ends_of_misplaced
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
-from smachac.checks.misplaced_states import ends_of_misplaced, misplaced_states
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
@@ -87,7 +87,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
             continue
         if hidden and missed is None:
             missed = missed_states(context)
-            missed |= {each.path for each in misplaced_states(context)}
+            missed |= {each.path for each in context.misplaced}
         before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
         for child in hidden:
             if f"{path}/{child.name}" in (missed or ()):
@@ -295,7 +295,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
             known.add(misnamed.meant.name)  # SM104
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in possible | known:
-                moved = ends_of_misplaced(context) if moved is None else moved
+                moved = ends_of_misplaced(context.misplaced) if moved is None else moved
                 if (path, outcome.name) not in moved:  # SM101
                     yield _impossible(path, container, outcome)
 

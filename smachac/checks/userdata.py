@@ -97,6 +97,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
     presets = meant_keys(context)
+    moved = {each.path for each in context.misplaced}
     unwritten = set(read_unwritten(context, unwritten_keys(context)).values())
     for missing in context.missing_keys("unset", "nowhere"):
         if missing.cause == "nowhere" and _is_dropped(missing):
@@ -109,6 +110,8 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             continue
         meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
+            if witness.reader.path in moved:
+                continue  # SM101: the state is in a wrong container
             users = used(missing.scope.path).get(missing.key, [])
             finding = _unset(missing, witness, users, guesses, context.types)
             if meant is not None and meant.missing is missing:
@@ -609,7 +612,11 @@ def lost_output(context: Context) -> Iterator[Finding]:
             arguments=(lost.own,),
             help=fix
             or f"add `{lost.own}` to the `output_keys` of"
-            + (f" the state in `{written.source.name}`" if called else f" `{keeper.name}`"),
+            + (
+                f" the outermost state in `{written.source.name}`"
+                if called
+                else f" `{keeper.name}`"
+            ),
             related=(
                 *(other_place(written, f"`{lost.writer.name}` sets it here") if not called else ()),
                 *other_place(lost.reader.span, lost.reader.words),

@@ -94,6 +94,7 @@ class Difference(NamedTuple):
 
     word: Word
     help: str
+    effect: str | None = None
 
 
 @problem(
@@ -162,7 +163,9 @@ def interfaces_differ(
         arguments=(target, state_type, name),
         related=(*_places(differences[1:]), used),
         help=differences[0].help,
-        effect="the program does not compile" if target in ("cpp", "C++") else None,
+        effect="the program does not compile"
+        if target in ("cpp", "C++")
+        else differences[0].effect,
     )
 
 

@@ -306,6 +306,15 @@ def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:
     yield from found.others
 
 
+_LACKED = {
+    "outcome": "SMACH accepts only the outcomes of the class: the machine stops with an error",
+    "input key": "SMACH lets the state read only the input keys of the class: the machine stops"
+    " with an error",
+    "output key": "SMACH discards the value of a key that is not an output key of the class",
+}
+"""What happens where a class lacks a part of its interface, in Python."""
+
+
 def _unlike(
     file: str, what: str, words: Words, wanted: Sequence[str], span: Span
 ) -> Iterator[Difference]:
@@ -320,7 +329,7 @@ def _unlike(
     for name in missing:
         help = f"add `{name}` to the {what}s of the class, or remove it from {file}"
         place = words[0].span if words else span
-        yield Difference(Word(f"the {what} `{name}` is missing", place), help)
+        yield Difference(Word(f"the {what} `{name}` is missing", place), help, _LACKED[what])
     for word in more:
         help = f"add `{word.text}` to the {what}s in {file}, or remove it from the class"
         text = f"the {what} `{word.text}` is not in the interface"

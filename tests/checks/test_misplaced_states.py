@@ -50,3 +50,27 @@ def test_a_state_of_its_container(last: str, more: str) -> None:
     text = SCRIPT.replace(COUNT, moved) + more
     assert "indent" not in str(found(text))
     assert "SM101" in str(found(text))
+
+
+CONCURRENT = """
+name: sm
+outcomes: [done]
+userdata: {n: 0}
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [ok]
+      default_outcome: ok
+      output_keys: [n]
+      outcome_map: {ok: {A: ok, B: succeeded}}
+      transitions: {ok: COUNT}
+      states:
+        - A: {template: ScriptedState, outcomes: [ok], output_keys: [n]}
+        - B: {template: SleepState, time: 1}
+        - COUNT: {template: ScriptedState, input_keys: [n], outcomes: [ok], transitions: {ok: done}}
+"""
+
+
+def test_a_state_that_is_indented_into_a_concurrence() -> None:
+    help = "write `COUNT` with the indentation of the states of `sm`"
+    assert found(CONCURRENT) == [("SM101", 16, help)]
