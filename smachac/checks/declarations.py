@@ -86,14 +86,10 @@ def dead_key(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: held}
     """
     flow = context.corrected_flow
-    reported = {(each.keeper.path, each.own) for each in context.lost_outputs}
-    reported |= {(each.other, each.key) for each in context.missing_keys("outside")}
+    reported = _reported_elsewhere(context)
     unset: dict[str, set[str]] = {}
     for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
-    reported |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}
-    reported |= _swapped_lists(context)
-    reported |= keys_of_misplaced(context.misplaced)
     in_functions = function_reads(context)
     for scope in flow.scopes.values():
         container = scope.container
@@ -153,6 +149,15 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 related=calls(child, remap.span),
                 node=f"{scope.path}/{child.name}",
             )
+
+
+def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
+    """The keys about which another finding is, each with the path of its container."""
+    found = {(each.keeper.path, each.own) for each in context.lost_outputs}  # SM307
+    found |= {(each.other, each.key) for each in context.missing_keys("outside")}
+    found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
+    found |= _swapped_lists(context)
+    return found | keys_of_misplaced(context.misplaced)  # SM101
 
 
 def swapped_loop(missing: Missing) -> nodes.Iterator | None:
