@@ -3,15 +3,13 @@ SM306), although a state of its name reads the key of another state."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
 from smachac.checks.messages import calls, other_place
 from smachac.diagnostics.diagnostic import Finding
+from smachac.diagnostics.spelling import words_of
 from smachac.ir.nodes import Container, Leaf, Node, Remap
-
-_WORDS = re.compile(r"[A-Za-z]+|\d+")
 
 
 class CopiedRemap(NamedTuple):
@@ -35,13 +33,13 @@ def copied_remap(container: Container, key: str) -> CopiedRemap | None:
                 groups.setdefault((remap.key, remap.to), []).append((child, remap))
     found = []
     for (_, to), alike in groups.items():
-        wanted = _words([key]) - _words([to])
-        named = [(child, remap) for child, remap in alike if wanted & _words(_names(child))]
+        wanted = words_of(key) - words_of(to)
+        named = [(child, remap) for child, remap in alike if wanted & words_of(*_names(child))]
         if len(alike) < 2 or len(named) != 1:
             continue
         child, remap = named[0]
         other = next(each for each, _ in alike if each is not child)
-        if _words([key]) & _words([to]) or _words([to]) & _words(_names(other)):
+        if words_of(key) & words_of(to) or words_of(to) & words_of(*_names(other)):
             found.append(CopiedRemap(child, remap, other))
     return found[0] if len(found) == 1 else None
 
@@ -52,10 +50,6 @@ def _names(node: Node) -> Iterable[str]:
     for held in node.variables if isinstance(node, Leaf) else ():
         if isinstance(held.value.data, str):
             yield held.value.data
-
-
-def _words(names: Iterable[str]) -> set[str]:
-    return {word.lower() for name in names for word in _WORDS.findall(name)}
 
 
 def copied_finding(path: str, found: CopiedRemap, key: str) -> Finding:

@@ -222,8 +222,7 @@ def _longer_list(
         node = nodes.get(visit.path)
         if not isinstance(node, Leaf) or not node.variables or _work(node) not in alike:
             continue
-        inside = any(f"{trigger}/" in f"/{visit.path}/" for trigger in triggers)
-        if inside:
+        if any(f"{trigger}/" in f"/{visit.path}/" for trigger in triggers):
             continue  # the property would always hold
         more = (*ends, replace(ends[0], name=node.name, outcome=None))
         if _holds(context, given, _with_ends(given.form, more)):

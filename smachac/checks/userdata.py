@@ -19,9 +19,9 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
+from smachac.checks.candidate_keys import fitting_key, unread_output
 from smachac.checks.declarations import MeantKey, meant_keys, swapped_loop
 from smachac.checks.edits import with_input, with_output
-from smachac.checks.meant_keys import fitting_key, unread_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import placeholder

@@ -31,6 +31,7 @@ SHORTEST_WRONG_LETTER = 6
 _PLAIN = re.compile(r"[A-Za-z_][\w./-]*", re.ASCII)
 _NOT_PLAIN = frozenset(["true", "false", "null", "yes", "no", "on", "off", "y", "n"])
 _NO_DIGITS = re.compile(r"\D+")
+_WORDS = re.compile(r"[A-Za-z]+|\d+")
 
 
 class Guesser:
@@ -141,3 +142,8 @@ def in_quotes(text: str) -> str:
 def guesser(candidates: Iterable[str]) -> Guesser:
     """The guesser for some names."""
     return Guesser(candidates)
+
+
+def words_of(*names: str) -> set[str]:
+    """The words and numbers in names, in lower case: `found` and `pose` of `found_pose`."""
+    return {word.lower() for name in names for word in _WORDS.findall(name)}

@@ -3,7 +3,6 @@ that is read (SM301)."""
 
 from __future__ import annotations
 
-import re
 from itertools import chain
 from typing import NamedTuple
 
@@ -12,11 +11,10 @@ from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, widened
 from smachac.analysis.unset_reads import Reader
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.spelling import words_of
 from smachac.ir.nodes import Leaf
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY
-
-_WORDS = re.compile(r"[A-Za-z]+|\d+")
 
 
 class UnreadOutput(NamedTuple):
@@ -37,7 +35,7 @@ def unread_output(scope: UserdataScope, missing: str) -> UnreadOutput | None:
         names = remapping(child)
         for key in child.outputs:
             outer = names.get(key.name, key.name)
-            if outer in read or not _words(outer) & _words(missing):
+            if outer in read or not words_of(outer) & words_of(missing):
                 continue
             help = f"nothing reads `{outer}`, which `{child.name}` sets: did you mean it?"
             if key.name not in names:
@@ -63,7 +61,3 @@ def fitting_key(types: Types, scope: UserdataScope, reader: Reader) -> str | Non
         if key not in own and not is_open(type_) and widened(type_) != ANY and fits(type_, wanted)
     ]
     return found[0] if len(found) == 1 else None
-
-
-def _words(name: str) -> set[str]:
-    return {word.lower() for word in _WORDS.findall(name)}
