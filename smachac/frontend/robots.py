@@ -20,9 +20,9 @@ from smachac.frontend.yaml_tree import Tree
 from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
 from smachac.robots import description
-from smachac.robots.description import Description, Part, Station, limb_names
+from smachac.robots.description import NO_PARTS, Description, Part, Station, limb_names
 from smachac.robots.faults import read_file as read_faults
-from smachac.robots.fields import DataError, guess
+from smachac.robots.fields import DataError, guess, listed
 from smachac.robots.files import BUILT_IN
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
 from smachac.robots.scene import Body
@@ -51,7 +51,8 @@ def robot_of(base: State, source: Source, library: Library, report: Report) -> R
     if base.scene is not None and scene is not None:
         bodies = frozenset(body.name for body in scene[0])
         for name in sorted(bodies & found.scene)[:1]:
-            error = DataError(f"`{name}` is the name of a robot", ("bodies", name))
+            help = f"give the body another name, such as `{name}_body`"
+            error = DataError(f"`{name}` is the name of a robot", ("bodies", name), help)
             reader.mistake(base.scene, scene[1], error, "scene")
     span = base.robot.span if base.robot is not None else NOWHERE
     added = frozenset(word.text for word in base.frames)
@@ -187,7 +188,8 @@ class _Reader:
         if tree is None:
             if len(self.report) == before:
                 message = f"the {what} file `{word.text}` has a mistake: the file is empty"
-                self.wrong(word, message, None, (what, word.text, ""), Span(source, 0, 0))
+                help = f"write the {what} in it; docs/robots.md shows the keys"
+                self.wrong(word, message, help, (what, word.text, ""), Span(source, 0, 0))
             return None
         try:
             return read(plain(tree)), tree
@@ -224,7 +226,7 @@ class _Reader:
         data, tree = found
         if isinstance(data, Station):
             if part:
-                error = DataError("a part has no parts of its own", ("parts",))
+                error = DataError("a part has no parts of its own", ("parts",), NO_PARTS)
                 self.mistake(word, tree, error, "robot")
                 return None
             return self.station(word, source, data, tree)
@@ -256,9 +258,10 @@ class _Reader:
         try:
             return description.read(data)
         except DataError as error:
-            if error.place[:1] != ("arms",) or error.place[2:] != ("home",) or error.help:
+            if error.place[:1] != ("arms",) or error.place[2:] != ("home",):
                 raise
-            help = self.missing_joint(data, data["arms"][error.place[1]], source)
+            limb = data["arms"][error.place[1]]
+            help = self.missing_joint(data, limb, source) or error.help
             raise DataError(error.message, error.place, help, key=error.key) from None
 
     def missing_joint(self, data: Any, limb: Any, source: Source) -> str | None:
@@ -308,7 +311,9 @@ class _Reader:
                 for k, name in enumerate(limb.joints):
                     if name not in turning:
                         raise DataError(
-                            f"the joint `{name}` does not turn", ("arms", limb.name, "joints", k)
+                            f"the joint `{name}` does not turn",
+                            ("arms", limb.name, "joints", k),
+                            f"write a joint that turns: {listed(turning)}",
                         )
         except UrdfError as error:
             message = f"the robot file `{data.urdf}` has a mistake: {error.message}"
@@ -345,7 +350,8 @@ class _Reader:
         for part, each in found:
             for arm in _arms(part, each, data):
                 if arm.name in arms:
-                    error = DataError(f"there are two arms `{arm.name}`", part.place)
+                    help = "give one of the two parts another name"
+                    error = DataError(f"there are two arms `{arm.name}`", part.place, help)
                     self.mistake(word, tree, error, "robot")
                     return None
                 arms[arm.name] = arm

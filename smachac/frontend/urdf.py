@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from xml.parsers import expat
 
+from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source, Span
 from smachac.ir.robot import Joint, Robot
 from smachac.robots.description import UrdfJoint
@@ -28,6 +29,7 @@ JointChain = tuple[Joint, ...]
 """Consecutive joints, each a child of the previous one."""
 
 XACRO = "expand the macro file with `xacro`, and name the resulting file"
+TOO_LARGE = "name a smaller URDF file: one robot, without its meshes in the text"
 
 
 _LOWER = re.compile(r"""\blower\s*=\s*(?:"[^"]*"|'[^']*')""")
@@ -36,7 +38,7 @@ _LOWER = re.compile(r"""\blower\s*=\s*(?:"[^"]*"|'[^']*')""")
 class UrdfError(Exception):
     """A text that is not a robot description: the message, its span, and a line of help."""
 
-    def __init__(self, message: str, span: Span, help: str | None = None) -> None:
+    def __init__(self, message: str, span: Span, help: str) -> None:
         super().__init__(message)
         self.message, self.span, self.help = message, span, help
 
@@ -99,7 +101,8 @@ def _read(source: Source) -> tuple[str, dict[str, _Link], frozenset[str]]:
         for link in (each.parent, each.child):
             if link not in links:
                 message = f"joint `{each.joint.name}` names the link `{link}`, which does not exist"
-                raise UrdfError(message, each.joint.span)
+                near = did_you_mean(link, links) or f'add `<link name="{link}"/>` to the file'
+                raise UrdfError(message, each.joint.span, near)
     joints = {name: replace(each, joint=_limited(each)) for name, each in reader.joints.items()}
     return reader.name, joints, links
 
@@ -121,7 +124,8 @@ class _Reader:
     def read(self) -> None:
         text = self.source.text
         if len(text) > MAX_CHARACTERS:
-            raise self.error(f"the file has {len(text):,} characters, more than {MAX_CHARACTERS:,}")
+            message = f"the file has {len(text):,} characters, more than {MAX_CHARACTERS:,}"
+            raise self.error(message, help=TOO_LARGE)
         parser = self._parser
         parser.StartElementHandler = self.start
         parser.EndElementHandler = self.end
@@ -177,7 +181,7 @@ class _Reader:
         found = text.find(f'"{name}"', span.start, end if end > 0 else len(text)) if name else -1
         return span if found < 0 else Span(self.source, found + 1, found + 1 + len(name))
 
-    def error(self, message: str, name: str = "", help: str | None = None) -> UrdfError:
+    def error(self, message: str, name: str = "", *, help: str) -> UrdfError:
         return UrdfError(message, self.here(name), help)
 
     def refuse(self, *_: object) -> None:
@@ -189,7 +193,7 @@ class _Reader:
         depth = len(self._open)
         if self._count > MAX_ELEMENTS or depth > MAX_DEPTH:
             message = f"it has more than {MAX_ELEMENTS:,} elements, or more than {MAX_DEPTH} levels"
-            raise self.error(message)
+            raise self.error(message, help=TOO_LARGE)
         if tag.startswith("xacro:"):
             raise self.error(f"`<{tag}>` is not an element of URDF", help=XACRO)
         above = self._open[-1] if self._open else ""
@@ -198,7 +202,9 @@ class _Reader:
         self._starts.append((parser.CurrentLineNumber, parser.CurrentColumnNumber))
         if depth == 0:
             if tag != "robot":
-                raise self.error(f"the outermost element is `<{tag}>`, not `<robot>`")
+                message = f"the outermost element is `<{tag}>`, not `<robot>`"
+                help = "name a URDF file: its first tag is `<robot name=...>`"
+                raise self.error(message, help=help)
             self.name = given.get("name", "")
         elif depth == 1 and tag in ("link", "joint"):
             self.part(tag, given)
@@ -209,9 +215,10 @@ class _Reader:
         name = given.get("name", "")
         known: Mapping[str, object] = self.links if tag == "link" else self.joints
         if not name:
-            raise self.error(f"this {tag} has no name")
+            raise self.error(f"this {tag} has no name", help=f'write `<{tag} name="...">`')
         if name in known:
-            raise self.error(f"there are two {tag}s `{name}`", name)
+            help = "give one of the two another name, or remove one of them"
+            raise self.error(f"there are two {tag}s `{name}`", name, help=help)
         if tag == "link":
             self.links[name] = None
             return
@@ -222,7 +229,8 @@ class _Reader:
                 if kind
                 else f"joint `{name}` has no type"
             )
-            raise self.error(message, name, f"the types are {', '.join(sorted(KINDS))}")
+            help = did_you_mean(kind, KINDS) or f"the types are {', '.join(sorted(KINDS))}"
+            raise self.error(message, name, help=help)
         self._joint = self.joints[name] = _Link(Joint(name=name, span=self.here(name)), kind)
 
     def detail(self, tag: str, given: dict[str, str], joint: _Link) -> None:
@@ -262,7 +270,8 @@ def _limited(link: _Link) -> Joint:
             number = math.nan
         if not math.isfinite(number):
             message = f"the {name} limit of joint `{joint.name}` is `{word}`, which is not a number"
-            raise UrdfError(message, joint.span, XACRO if "${" in word else None)
+            help = XACRO if "${" in word else f'write a number: `{name}="0.5"`'
+            raise UrdfError(message, joint.span, help)
         numbers.append(number)
     low, high = numbers
     if low > high:

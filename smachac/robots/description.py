@@ -125,6 +125,10 @@ class Station:
     base: Pose = IDENTITY
 
 
+NO_PARTS = "name the robots of that file here, each as a part of its own"
+"""The help for a station as a part of a station."""
+
+
 @dataclass(frozen=True, slots=True)
 class UrdfJoint:
     """A joint of a URDF file: its limits (rad or m), and whether it turns."""
@@ -148,7 +152,8 @@ def _footprint(data: Any, place: Place) -> tuple[float, float]:
 def _pair(data: Any, place: Place) -> tuple[float, float]:
     found = fields.numbers(data, place)
     if len(found) != 2:
-        raise DataError(f"two numbers are expected, not {len(found)}", place)
+        help = fields.counted(found, "[lowest, highest]", 2)
+        raise DataError(f"two numbers are expected, not {len(found)}", place, help)
     return found[0], found[1]
 
 
@@ -179,7 +184,8 @@ _FINGER: Table = {
 def _finger(given: Fields) -> Finger:
     opened, closed = given["open"], given["closed"]
     if opened == closed:
-        raise DataError("the positions `open` and `closed` are the same", given.place)
+        help = f"write another position for `open` than `{closed:g}`, that of `closed`"
+        raise DataError("the positions `open` and `closed` are the same", given.place, help)
     return Finger(joint=given.name, opened=opened, closed=closed)
 
 
@@ -213,12 +219,15 @@ def _width(given: Fields) -> tuple[float, float]:
 def _wrong_width(opened: float, closed: float, place: Place) -> DataError:
     """The mistake in widths of a gripper that is not wider when it is open."""
     if closed < 0.0:
-        return DataError(f"`closed` is {closed:g} m: a width is not negative", (*place, "closed"))
+        message = f"`closed` is {closed:g} m: a width is not negative"
+        return DataError(message, (*place, "closed"), "write `closed: 0.0` if the fingers touch")
     if opened == closed:
-        return DataError(f"`open` and `closed` are the same width, {opened:g} m", place)
+        help = f"write a larger width for `open` than `{closed:g}`"
+        return DataError(f"`open` and `closed` are the same width, {opened:g} m", place, help)
     message = f"`open` is {opened} m, less than `closed`, {closed} m"
     swapped = opened >= 0.0 and closed <= WIDEST
-    help = f"write `{{open: {closed}, closed: {opened}}}`" if swapped else None
+    pair = f"{{open: {closed}, closed: {opened}}}"
+    help = f"write `{pair}`" if swapped else "write for `open` the larger width (m)"
     return DataError(message, place, help)
 
 
@@ -274,7 +283,8 @@ def _joints(data: Any, place: Place) -> tuple[str, ...]:
     joints = fields.texts(data, place)
     for k, joint in enumerate(joints):
         if joint in joints[:k]:
-            raise DataError(f"the joint `{joint}` is there twice", (*place, k))
+            help = "remove it, or write the name of the joint that is missing"
+            raise DataError(f"the joint `{joint}` is there twice", (*place, k), help)
     return joints
 
 
@@ -283,8 +293,15 @@ def _limit(data: Any, place: Place) -> tuple[float, float]:
     low, high = _pair(data, place)
     if low > high:
         message = f"the lowest position {low:g} is above the highest {high:g}"
-        raise DataError(message, place)
+        raise DataError(message, place, f"write `[{high:g}, {low:g}]`")
     return low, high
+
+
+def _for_each_joint(joints: Sequence[str], count: int) -> str:
+    """The help for a list of `count` items that needs one for each joint of an arm."""
+    if count < len(joints):
+        return f"add the items of {fields.listed(joints[count:])}: one for each of the `joints`"
+    return f"write {len(joints)}, one for each of the `joints`: {fields.listed(joints)}"
 
 
 _ARM: Table = {
@@ -339,14 +356,15 @@ def _limb(given: Fields) -> Limb:
     ):
         if size != count and (size or key == "home"):
             message = f"`{key}` has {size} items, but the arm has {count} joints"
-            raise DataError(message, (*given.place, key))
+            raise DataError(message, (*given.place, key), _for_each_joint(limb.joints, size))
     for k, (low, high) in enumerate(limb.limits):
         joint = UrdfJoint(low, high, turns=True)
         _inside(limb.joints[k], limb.home[k], joint, (*given.place, "home", k))
     for finger in limb.gripper.fingers if limb.gripper is not None else ():
         if finger.joint in limb.joints:
             spot = (*given.place, "gripper", "joints", finger.joint)
-            raise DataError(f"the joint `{finger.joint}` is one of the arm", spot)
+            help = f"remove it here, or remove `{finger.joint}` from the `joints` of the arm"
+            raise DataError(f"the joint `{finger.joint}` is one of the arm", spot, help)
     return limb
 
 
@@ -468,7 +486,7 @@ def _inside(name: str, position: float, joint: UrdfJoint, place: Place) -> None:
     message = (
         f"`{name}` is {position:g} {unit}, outside its limits {joint.lower:g} to {joint.upper:g}"
     )
-    help = f"the limits are in {unit}"
+    help = f"write a position from {joint.lower:g} to {joint.upper:g}"
     if joint.turns and abs(position) > 2 * math.pi:
         help = f"write `{math.radians(position):.4g}`: angles are in radians, not in degrees"
     if not joint.turns and joint.lower <= position / 1000 <= joint.upper:

@@ -43,7 +43,8 @@ class Kind(NamedTuple):
 def _amount(value: Any, place: Place) -> float:
     found = data.number(value, place)
     if found < 0.0:
-        raise DataError(f"a number from 0 on is expected, not {found:g}", place)
+        message = f"a number from 0 on is expected, not {found:g}"
+        raise DataError(message, place, f"write `{-found:g}`")
     return found
 
 
@@ -125,17 +126,21 @@ def fault(given: Fields) -> Fault:
     name: str = given["kind"]
     place, kind = given.place, KINDS[name]
     if ("at" in given) == ("state" in given):
-        raise DataError(f"fault `{name}` needs either `at` or `state`", place)
+        both = "at" in given
+        help = "remove one of the two" if both else "add `at: SECONDS` or `state: PATH`"
+        raise DataError(f"fault `{name}` needs either `at` or `state`", place, help)
     if kind.target in ("body", "joint") and "target" not in given:
-        raise DataError(f"fault `{name}` needs a `target`, the name of a {kind.target}", place)
+        message = f"fault `{name}` needs a `target`, the name of a {kind.target}"
+        raise DataError(message, place, f"add `target: {kind.target.upper()}`")
     if not kind.target and "target" in given:
-        raise DataError(f"fault `{name}` has no `target`", (*place, "target"))
+        raise DataError(f"fault `{name}` has no `target`", (*place, "target"), "remove `target`")
     if kind.value is None and "value" in given:
-        raise DataError(f"fault `{name}` has no `value`", (*place, "value"))
+        raise DataError(f"fault `{name}` has no `value`", (*place, "value"), "remove `value`")
     if kind.value is not None and "value" not in given:
-        raise DataError("the key `value` is missing", place)
+        raise DataError("the key `value` is missing", place, "add `value: ...`")
     if given["each_time"] and "state" not in given:
-        raise DataError("`each_time` needs `state`", (*place, "each_time"))
+        help = "write `state: PATH` in place of `at`, or remove `each_time`"
+        raise DataError("`each_time` needs `state`", (*place, "each_time"), help)
     value = None if kind.value is None else kind.value(given["value"], (*place, "value"))
     return Fault(
         kind=name,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any, Generic, NamedTuple, TypeAlias, TypeVar
@@ -33,9 +33,7 @@ class DataError(ValueError):
     """A mistake in a file of data: the message, its place, and a line of help. `key`: the last key
     of the place is wrong, not its value."""
 
-    def __init__(
-        self, message: str, place: Place = (), help: str | None = None, *, key: bool = False
-    ) -> None:
+    def __init__(self, message: str, place: Place, help: str, *, key: bool = False) -> None:
         super().__init__(message)
         self.message, self.place, self.help, self.key = message, place, help, key
 
@@ -85,7 +83,8 @@ class Fields:
 
     def __init__(self, data: Any, place: Place, table: Table) -> None:
         if not isinstance(data, Mapping):
-            raise DataError(f"a mapping is expected, not {shown(data)}", place)
+            help = "write `name: value`, with the keys " + listed(table)
+            raise DataError(f"a mapping is expected, not {shown(data)}", place, help)
         self.data, self.place, self.table = data, place, table
         for key in data:
             if key not in table:
@@ -101,7 +100,8 @@ class Fields:
         if key in self:
             return field.shape(self.data[key], (*self.place, key))
         if field.default is REQUIRED:
-            raise DataError(f"the key `{key}` is missing", self.place)
+            help = f"add `{key}: ...` ({about(field)})"
+            raise DataError(f"the key `{key}` is missing", self.place, help)
         return field.default
 
     @property
@@ -156,7 +156,18 @@ def guess(name: object, known: Iterable[str]) -> str:
     close = get_close_matches(str(name), names, n=1)
     if close:
         return f"did you mean `{close[0]}`?"
-    return f"the known names are {', '.join(f'`{each}`' for each in names)}"
+    return f"the known names are {listed(names)}"
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names for a sentence: "`a`, `b`"."""
+    return ", ".join(f"`{each}`" for each in names)
+
+
+def about(field: Field) -> str:
+    """The description of a field as a part of a sentence."""
+    text = field.doc.rstrip(".")
+    return text if text[1:2].isupper() else text[:1].lower() + text[1:]
 
 
 def shown(data: Any) -> str:
@@ -169,31 +180,55 @@ def shown(data: Any) -> str:
 def text(data: Any, place: Place) -> str:
     """A text that is not empty."""
     if not isinstance(data, str) or not data:
-        raise DataError(f"a text is expected, not {shown(data)}", place)
+        raise DataError(f"a text is expected, not {shown(data)}", place, _text_meant(data))
     return data
+
+
+def _text_meant(data: Any) -> str:
+    """The help for a value that is not a text."""
+    match data:
+        case str(text), *_:
+            return f"write one text, as in `{text}`"
+        case bool() | int() | float():
+            return f'write it in quotes: `"{data}"`'
+        case _:
+            return "write a name, or a text in quotes"
 
 
 @shape({"type": "number"})
 def number(data: Any, place: Place) -> float:
     """A finite number."""
-    if isinstance(data, bool) or not isinstance(data, int | float) or not math.isfinite(data):
+    if not is_number(data):
         raise DataError(f"a number is expected, not {shown(data)}", place, _number_meant(data))
     return float(data)
 
 
+def is_number(data: Any) -> bool:
+    """Whether a value is a finite number."""
+    return not isinstance(data, bool) and isinstance(data, int | float) and math.isfinite(data)
+
+
+_PLAIN = re.compile(r"-?\d{1,9}(\.\d{1,9})?")
 _WITH_UNIT = re.compile(r"\s*([-+]?\d*\.?\d+)\s*(mm|cm|m|kg|g|deg|rad|N|°)\s*")
 _TO_SI = {"mm": 1e-3, "cm": 1e-2, "g": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
 
 
-def _number_meant(data: Any) -> str | None:
-    """The help for a number that is written with its unit, or with a decimal comma."""
+def _number_meant(data: Any) -> str:
+    """The help for a value that is not a number: one in a list or in quotes, with its unit, or with
+    a decimal comma."""
+    if isinstance(data, list) and len(data) == 1 and is_number(data[0]):
+        return f"write the number without the brackets: `{data[0]:.10g}`"
+    if isinstance(data, list):
+        return "write one number here, not a list"
     found = _WITH_UNIT.fullmatch(data) if isinstance(data, str) and len(data) < 40 else None
     if found is not None:
         meant = float(found[1]) * _TO_SI.get(found[2], 1.0)
         return f"write the number without its unit: `{meant:.10g}`"
     if isinstance(data, str) and re.fullmatch(r"-?\d{1,9},\d{1,9}", data):
         return f"a decimal comma? write `{data.replace(',', '.')}`"
-    return None
+    if isinstance(data, str) and _PLAIN.fullmatch(data):
+        return f"write the number without quotes: `{data}`"
+    return "write a finite number, as in `0.5`"
 
 
 @shape({"type": "number", "exclusiveMinimum": 0})
@@ -201,7 +236,8 @@ def positive(data: Any, place: Place) -> float:
     """A number above 0."""
     found = number(data, place)
     if found <= 0.0:
-        raise DataError(f"a number above 0 is expected, not {found:g}", place)
+        help = f"write `{-found:g}`" if found else "write a number above 0, as in `0.5`"
+        raise DataError(f"a number above 0 is expected, not {found:g}", place, help)
     return found
 
 
@@ -210,7 +246,11 @@ def probability(data: Any, place: Place) -> float:
     """A number from 0 to 1."""
     found = number(data, place)
     if not 0.0 <= found <= 1.0:
-        raise DataError(f"a probability from 0 to 1 is expected, not {found:g}", place)
+        percent = 1.0 < found <= 100.0
+        help = (
+            f"write `{found / 100:g}` for {found:g} %" if percent else "write a number from 0 to 1"
+        )
+        raise DataError(f"a probability from 0 to 1 is expected, not {found:g}", place, help)
     return found
 
 
@@ -218,14 +258,17 @@ def probability(data: Any, place: Place) -> float:
 def truth(data: Any, place: Place) -> bool:
     """`true` or `false`."""
     if not isinstance(data, bool):
-        raise DataError(f"`true` or `false` is expected, not {shown(data)}", place)
+        help = "write `true` or `false`, without quotes"
+        raise DataError(f"`true` or `false` is expected, not {shown(data)}", place, help)
     return data
 
 
 def items(data: Any, place: Place) -> list[Any]:
     """A list."""
     if not isinstance(data, list | tuple):
-        raise DataError(f"a list is expected, not {shown(data)}", place)
+        plain = isinstance(data, str | int | float)
+        form = f"[{data}]" if plain else "[...]"
+        raise DataError(f"a list is expected, not {shown(data)}", place, f"write `{form}`")
     return list(data)
 
 
@@ -252,8 +295,17 @@ def vector(data: Any, place: Place) -> Vector:
     """Three numbers."""
     found = numbers(data, place)
     if len(found) != 3:
-        raise DataError(f"three numbers are expected, not {len(found)}", place)
+        raise DataError(
+            f"three numbers are expected, not {len(found)}", place, counted(found, "[x, y, z]", 3)
+        )
     return found[0], found[1], found[2]
+
+
+def counted(found: Collection[object], form: str, count: int) -> str:
+    """The help for a list of another length than that of a form."""
+    more = count - len(found)
+    numbers = "one number" if abs(more) == 1 else f"{abs(more)} numbers"
+    return f"{'add' if more > 0 else 'remove'} {numbers}: the form is `{form}`"
 
 
 @shape({"type": "number", "minimum": -FARTHEST, "maximum": FARTHEST})
@@ -292,7 +344,7 @@ _POSITION = row(3, near.schema)
 def pose(data: Any, place: Place) -> Pose:
     """`[[x, y, z], [qx, qy, qz, qw]]`, or the position alone; the quaternion is normalized."""
     parts = items(data, place)
-    if len(parts) == 3 and not isinstance(parts[0], list | tuple):
+    if parts and not any(isinstance(part, list | tuple) for part in parts):
         position, rotation = vector(parts, place), NO_ROTATION
         spot: Place = place
     elif len(parts) == 2:
@@ -300,7 +352,8 @@ def pose(data: Any, place: Place) -> Pose:
         position = vector(parts[0], spot)
         rotation = quaternion(parts[1], (*place, 1))
     else:
-        raise DataError("a pose `[[x, y, z], [qx, qy, qz, qw]]` is expected", place)
+        help = "write the position, as in `[0.5, 0.0, 0.2]`, or a list of position and quaternion"
+        raise DataError("a pose `[[x, y, z], [qx, qy, qz, qw]]` is expected", place, help)
     for k, coordinate in enumerate(position):
         near(coordinate, (*spot, k))
     return position, rotation
@@ -310,7 +363,8 @@ def quaternion(data: Any, place: Place) -> Quaternion:
     """Four numbers, normalized; four zeros are no rotation."""
     found = numbers(data, place)
     if len(found) != 4:
-        raise DataError(f"a quaternion has four numbers, not {len(found)}", place)
+        help = counted(found, "[qx, qy, qz, qw]", 4)
+        raise DataError(f"a quaternion has four numbers, not {len(found)}", place, help)
     length = math.hypot(*found)
     if length == 0.0:
         return NO_ROTATION
@@ -345,14 +399,15 @@ def named(
     return read
 
 
-def _by_name(data: Any) -> str | None:
-    """The help for a list of named values in place of a mapping."""
+def _by_name(data: Any) -> str:
+    """The help for a value in place of a mapping of names, above all for a list of named values."""
+    form = "write a name for each, with its keys below it: `name: {...}`"
     if not isinstance(data, list | tuple) or not data or not isinstance(data[0], Mapping):
-        return None
+        return form
     first = data[0]
     name = first.get("name") if "name" in first else next(iter(first), None)
     if not isinstance(name, str):
-        return None
+        return form
     without = ", without `name:` inside" if "name" in first else ""
     return f"write `{name}:` with its keys below it, without the `-`{without}"
 

@@ -25,7 +25,8 @@ def plain(text: str) -> Any:
     try:
         return YAML(typ="safe").load(text)
     except YAMLError as error:
-        raise DataError(f"not YAML: {str(error).splitlines()[0]}") from None
+        help = "correct the file; `smachac check FILE` shows the place"
+        raise DataError(f"not YAML: {str(error).splitlines()[0]}", (), help) from None
 
 
 def read_file(path: Path) -> Any:
@@ -33,7 +34,7 @@ def read_file(path: Path) -> Any:
     try:
         return plain(path.read_bytes().decode("utf-8"))
     except UnicodeDecodeError as error:
-        raise DataError(f"not UTF-8: {error.reason}") from None
+        raise DataError(f"not UTF-8: {error.reason}", (), "save the file as UTF-8") from None
 
 
 def find_file(name: str | Path, folders: Iterable[Path] = ()) -> Path:

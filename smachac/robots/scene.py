@@ -70,7 +70,7 @@ def _model(data: Any, place: Place) -> str:
 def _mass(data: Any, place: Place) -> float:
     mass = fields.number(data, place)
     if mass < 0.0:
-        raise DataError("a mass is not negative", place)
+        raise DataError("a mass is not negative", place, f"write `{-mass:g}`")
     return mass
 
 
@@ -92,7 +92,8 @@ def _spread(data: Any, place: Place) -> Vector:
     found = fields.vector(data, place)
     for k, each in enumerate(found):
         if each < 0.0:
-            raise DataError(f"a shift is not negative, as {each:g} is", (*place, k))
+            message, help = f"a shift is not negative, as {each:g} is", f"write `{-each:g}`"
+            raise DataError(message, (*place, k), f"{help}: it holds for both directions")
     for k, each in enumerate(found[:2]):
         fields.near(each, (*place, k))
     return found
@@ -131,11 +132,17 @@ _BODY: Table = {
 def _body(given: Fields) -> Body:
     kinds = [key for key in ("model", "path", "size") if key in given]
     if len(kinds) != 1:
-        raise DataError("a body has either a `model`, a `path` or a `size`", given.place)
+        help = f"add one of them: `model` is one of {fields.listed(MODELS)}, `path` a URDF or SDF"
+        help = f"{help} file, `size` the edges of a box, as in `size: [0.05, 0.05, 0.05]`"
+        if kinds:
+            help = f"remove {fields.listed(kinds[1:])} or `{kinds[0]}`"
+        message = "a body has either a `model`, a `path` or a `size`"
+        raise DataError(message, given.place, help)
     if "size" not in given:
         for key in ("mass", "friction"):
             if key in given:
-                raise DataError(f"`{key}` needs `size`", (*given.place, key))
+                help = f"remove `{key}`: the {kinds[0]} has its own, or describe a box with `size`"
+                raise DataError(f"`{key}` needs `size`", (*given.place, key), help)
     colour: RGB | None = given["colour"]
     return Body(
         name=given.name,

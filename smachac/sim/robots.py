@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from smachac.robots.description import (
+    NO_PARTS,
     Description,
     Finger,
     Gripper,
@@ -134,7 +135,7 @@ def _parts(station: Station, base: Pose) -> Iterable[RobotPart]:
     for each in station.parts:
         found = _described(each.robot, ())
         if isinstance(found, Station):
-            raise DataError("a part has no parts of its own", each.place)
+            raise DataError("a part has no parts of its own", each.place, NO_PARTS)
         part = _part(found, each.name)
         place = part.base if each.base is None else compose(base, each.base)
         names = limb_names(each.name, [limb.name for limb in part.limbs])

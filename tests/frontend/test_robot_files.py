@@ -113,13 +113,22 @@ def test_a_mistake_is_a_diagnostic_with_its_place(
             ARM.replace("[a, b]", "[a]"),
             "`b` also moves the tool link `hand`: write `joints: [a, b]`, or remove its angle",
         ),
-        (ARM.replace("[a, b]", "[a]").replace("tool: hand", "tool: elbow"), None),
-        (ARM.replace("[0.0, 0.5]", "[0.0]"), None),
-        (ARM.replace("[a, b]", "[a]").replace("arm.urdf", "no.urdf"), None),
-        (ARM.replace("[a, b]", "[a]").replace("urdf: arm.urdf", ""), None),
+        (
+            ARM.replace("[a, b]", "[a]").replace("tool: hand", "tool: elbow"),
+            "write 1, one for each of the `joints`: `a`",
+        ),
+        (ARM.replace("[0.0, 0.5]", "[0.0]"), "add the items of `b`: one for each of the `joints`"),
+        (
+            ARM.replace("[a, b]", "[a]").replace("arm.urdf", "no.urdf"),
+            "write 1, one for each of the `joints`: `a`",
+        ),
+        (
+            ARM.replace("[a, b]", "[a]").replace("urdf: arm.urdf", ""),
+            "add `urdf: ...` (the URDF file: beside this file, or in PyBullet's data)",
+        ),
     ],
 )
-def test_the_joint_that_an_arm_lacks(tmp_path: Path, arm: str, help: str | None) -> None:
+def test_the_joint_that_an_arm_lacks(tmp_path: Path, arm: str, help: str) -> None:
     (found,) = [i for i in smachac.check(project(tmp_path, arm_yml=arm)) if i.code == "SM018"]
     assert found.help == help
 

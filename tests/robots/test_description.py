@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from smachac.robots import description, scene
+from smachac.robots import description, fields, scene
 from smachac.robots.description import Description, Station, UrdfJoint
 from smachac.robots.fields import DataError
 from smachac.robots.files import BUILT_IN, built_in, plain
@@ -243,11 +243,19 @@ def test_a_mistake_in_a_scene_has_its_place(
             "`open` is 0.0 m, less than `closed`, 0.085 m",
             "write `{open: 0.085, closed: 0.0}`",
         ),
-        ("{open: 0.08, closed: 0.08}", "`open` and `closed` are the same width, 0.08 m", None),
-        ("{open: 0.08, closed: -0.1}", "`closed` is -0.1 m: a width is not negative", None),
+        (
+            "{open: 0.08, closed: 0.08}",
+            "`open` and `closed` are the same width, 0.08 m",
+            "write a larger width for `open` than `0.08`",
+        ),
+        (
+            "{open: 0.08, closed: -0.1}",
+            "`closed` is -0.1 m: a width is not negative",
+            "write `closed: 0.0` if the fingers touch",
+        ),
     ],
 )
-def test_widths_that_are_swapped_or_wrong(width: str, message: str, help: str | None) -> None:
+def test_widths_that_are_swapped_or_wrong(width: str, message: str, help: str) -> None:
     text = ROBOT.replace("width: {open: 0.08, closed: 0}", f"width: {width}")
     with pytest.raises(DataError) as error:
         description.read(plain(text))
@@ -273,3 +281,31 @@ def test_the_frame_of_a_body_that_is_not_before_it(frame: str, message: str, hel
         scene.read({"bodies": bodies})
     assert caught.value.message == message
     assert help in (caught.value.help or "")
+
+
+@pytest.mark.parametrize(
+    ("shape", "data", "help"),
+    [
+        (fields.number, "0.5", "write the number without quotes: `0.5`"),
+        (fields.number, [0.5], "write the number without the brackets: `0.5`"),
+        (fields.number, "0,5", "a decimal comma? write `0.5`"),
+        (fields.number, "50mm", "write the number without its unit: `0.05`"),
+        (fields.number, True, "write a finite number, as in `0.5`"),
+        (fields.text, ["base"], "write one text, as in `base`"),
+        (fields.text, 5, 'write it in quotes: `"5"`'),
+        (fields.truth, "yes", "write `true` or `false`, without quotes"),
+        (fields.positive, -0.2, "write `0.2`"),
+        (fields.probability, 30, "write `0.3` for 30 %"),
+        (fields.texts, "base", "write `[base]`"),
+        (fields.pose, [0.1, 0.2], "add one number: the form is `[x, y, z]`"),
+        (fields.pose, [[0.1, 0.2, 0.3]], "write the position, as in `[0.5, 0.0, 0.2]`, or a list"),
+        (fields.pose, [[0.1, 0.2], [0, 0, 0, 1]], "add one number: the form is `[x, y, z]`"),
+        (fields.pose, [[0, 0, 0], [0, 0, 1]], "add one number: the form is `[qx, qy, qz, qw]`"),
+    ],
+)
+def test_a_value_of_another_shape_has_a_repair(
+    shape: fields.Shape[object], data: object, help: str
+) -> None:
+    with pytest.raises(DataError) as error:
+        shape(data, ("here",))
+    assert error.value.help.startswith(help)

@@ -1,7 +1,6 @@
-"""Unusual but correct projects, written by hand: each of `unusual/*.yml` is one, without a finding.
+"""Unusual but correct projects, written by hand (`unusual_projects`), are without a finding.
 
-A file holds the files of a project, one after another: a line `# --- name` begins another one. Its
-first line may permit notes: `# permitted: SM401`.
+The first line of one may permit notes: `# permitted: SM401`.
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from smachac.targets.python import TARGET
 from smachac.verify import verify
 from smachac.verify.players.python import player
 from tests.trust.project_text import MAIN, analysed
+from tests.trust.unusual_projects import PROJECTS, files_in
 
-PROJECTS = sorted((Path(__file__).parent / "unusual").glob("*.yml"))
 PERMITTED = "# permitted:"
 BUILT_ONLY = {
     "class_from_an_installed_package",
@@ -32,16 +31,6 @@ BUILT_ONLY = {
 }
 """Projects with a package that is not installed here, with code that only Python evaluates, or with
 a state type whose states have different outcomes, as no stand-in has."""
-
-
-def files_in(text: str) -> dict[str, str]:
-    """The files of a project by name, with their texts."""
-    first, *others = text.split("\n# --- ")
-    files = {MAIN: first + "\n"}
-    for each in others:
-        name, _, content = each.partition("\n")
-        files[name] = content + "\n"
-    return files
 
 
 @pytest.mark.parametrize("path", PROJECTS, ids=lambda path: path.stem)

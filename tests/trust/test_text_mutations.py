@@ -1,0 +1,31 @@
+"""Damage to the text of a correct project: a finding, mostly one, that holds what was lost.
+
+`python bench/repairs.py` runs more mutants, and prints a table.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.trust.text_mutations import TEXT_MUTATIONS, Repair, repairs
+from tests.trust.unusual_projects import unusual_projects
+
+EACH = 40
+
+
+def found(kind: str, each: int) -> list[Repair]:
+    """The findings about `each` mutants of a kind, of projects in turn."""
+    projects = sorted(unusual_projects().items())
+    offset = 7 * list(TEXT_MUTATIONS).index(kind)
+    drawn = [projects[(turn * 3 + offset) % len(projects)] for turn in range(each)]
+    made = [repairs(files, kind, f"{kind} {name}") for name, files in drawn]
+    return [each for each in made if each is not None]
+
+
+@pytest.mark.parametrize("kind", TEXT_MUTATIONS)
+def test_damage_to_a_text_gives_findings_that_can_be_read(kind: str) -> None:
+    for repair in found(kind, EACH):
+        for item in repair.findings:
+            assert item.message
+            assert item.help, (repair.mutant, item.message)
+            assert 0 <= item.span.start <= item.span.end <= len(item.span.source.text)
