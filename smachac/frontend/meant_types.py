@@ -28,7 +28,7 @@ def has_unknown_variable(entries: Mapping[str, Entry], type_: StateType) -> bool
 def meant_type(
     entries: Mapping[str, Entry],
     type_: StateType,
-    names: Callable[[], Iterable[str]],
+    names: Iterable[str],
     find: Callable[[str], StateType | None],
     report: Report,
 ) -> StateType | None:
@@ -46,7 +46,7 @@ def meant_type(
         for each in (steps.value.entries if steps and isinstance(steps.value, Map) else ())
     }
     fitting = []
-    for name in names():
+    for name in names:
         other = find(name)
         if other is not None and _fits(other, own, ends, entries):
             fitting.append(other)

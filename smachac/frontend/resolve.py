@@ -82,6 +82,7 @@ from smachac.frontend.sub_scripts import (
     sub_script_state,
 )
 from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
+from smachac.frontend.unknown_templates import one_for_each_template, types_with_the_names
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import (
     Entry,
@@ -183,6 +184,7 @@ class _Resolver:
         self.parsed: dict[tuple[str, str], tuple[Tree | None, bool]] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
         self.calls: dict[Span, KeptCall] = {}
+        self.unknown: set[str] = set()  # the templates that were not found
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
@@ -200,7 +202,7 @@ class _Resolver:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
-        self.report[:] = one_for_all_calls(self.report)
+        self.report[:] = one_for_each_template(one_for_all_calls(self.report))
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
@@ -598,13 +600,13 @@ class _Resolver:
 
         if not has_unknown_variable(entries, type_):
             return None
-
-        def find(name: str) -> StateType | None:
-            found = self.found_types.get(name)
-            return found or find_state_type(name, self.library, [])
-
-        found = meant_type(entries, type_, lambda: self.known_templates()[1], find, self.report)
+        _, names = self.known_templates()
+        found = meant_type(entries, type_, names, self.other_type, self.report)
         return self.state_type(found.name) if found is not None else None
+
+    def other_type(self, name: str) -> StateType | None:
+        """A type that the script need not use; its faults are not reported."""
+        return self.found_types.get(name) or find_state_type(name, self.library, [])
 
     def meant_template(self, entries: Entries) -> Entry | None:
         """The field with another name that is meant for `template`, if it names a type that does
@@ -654,8 +656,14 @@ class _Resolver:
             searched, names = self.known_templates()
             known = [*names, *([] if role else schema.CONTAINERS)]
             other = self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
-            self.not_found(template_not_found(word, searched, known, other))
-            meant = schema.CONTAINERS.get(guesser_of(tuple(known)).sure(word.text) or "")
+            near = guesser_of(tuple(known)).sure(word.text)
+            first = word.text not in self.unknown
+            self.unknown.add(word.text)
+            fitting: tuple[tuple[str, ...], ...] = ()
+            if first and near is None and not other and not role:
+                fitting = types_with_the_names(entries, word.text, names, self.other_type)
+            self.not_found(template_not_found(word, searched, known, other, *fitting))
+            meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
                 return StateType(name=meant, kind="container"), meant
             return StateType(name=word.text, open=True), role or nested

@@ -13,7 +13,7 @@ from dataclasses import replace
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import either, listed
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
@@ -244,14 +244,19 @@ def _part_meant(word: str, parts: tuple[str, ...]) -> str | None:
 
 
 def _pair_for(entry: Entry) -> str | None:
-    """How a loop is written whose mapping is `{wp: waypoints}`; None for other mappings."""
+    """How a loop is written whose mapping is `{wp: waypoints}`, with other words after the pair;
+    None for other mappings."""
     entries = entry.value.entries if isinstance(entry.value, Map) else ()
-    if entry.key.value != "for_each" or len(entries) != 1:
+    if entry.key.value != "for_each" or not entries:
         return None
-    word, items = str(entries[0].key.value), entries[0].value.span.text
-    if word in ("in", "item", "on") or _part_meant(word, ("in", "item", "on")) or "\n" in items:
+    (word, *others), items = [str(each.key.value) for each in entries], entries[0].value.span.text
+    parts = ("in", "item", "on")
+    if any(name in parts or _part_meant(name, parts) for name in (word, *others)):
         return None
-    return f"write `for_each: {{item: {word}, in: {items}}}`"
+    if "\n" in items:
+        return None
+    help = f"write `for_each: {{item: {word}, in: {items}}}`"
+    return f"{help}; there is no part {either(others)}" if others else help
 
 
 def _mapping_for(entry: Entry, required: Mapping[str, str]) -> str:

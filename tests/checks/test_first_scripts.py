@@ -261,7 +261,7 @@ DATA = [
         [{"name": "arm", "home": []}],
         "write `arm:` with its keys below it, without the `-`, without `name:` inside",
     ),
-    (["arm"], None),
+    (["arm"], "write a name for each, with its keys below it: `name: {...}`"),
 ]
 
 
@@ -277,7 +277,7 @@ NUMBERS = [
     ("40 mm", "write the number without its unit: `0.04`"),
     ("90deg", "write the number without its unit: `1.570796327`"),
     ("0,5", "a decimal comma? write `0.5`"),
-    ("heavy", None),
+    ("heavy", "write a finite number, as in `0.5`"),
 ]
 
 
@@ -361,15 +361,22 @@ def test_a_look_up_in_the_braces_of_jinja() -> None:
     ]
 
 
-@pytest.mark.parametrize("loop", ["block in blocks", "{block: blocks}"])
-def test_a_loop_in_another_form(loop: str) -> None:
+@pytest.mark.parametrize(
+    ("loop", "more"),
+    [
+        ("block in blocks", ""),
+        ("{block: blocks}", ""),
+        ("{block: blocks, exhausted: done}", "; there is no part `exhausted`"),
+    ],
+)
+def test_a_loop_in_another_form(loop: str, more: str) -> None:
     main = PATROL.replace(
         "      transitions: {held: BOTH, slipped: LET_GO}",
         f"      for_each: {loop}\n      input_keys: [block]\n"
         "      transitions: {held: BOTH, slipped: LET_GO, preempted: aborted}",
     )
     assert reported({"main.yml": main}) == [
-        ("SM004", loop, "write `for_each: {item: block, in: blocks}`")
+        ("SM004", loop, "write `for_each: {item: block, in: blocks}`" + more)
     ]
 
 

@@ -19,7 +19,7 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, guesser_of, respelt
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import both, either, listed
 
 _PACKAGE = re.compile(r"package://|file://|\$\(find|\$\{|\$\(")
 """The beginnings of paths that ROS replaces when a program is launched."""
@@ -164,7 +164,12 @@ def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
     effect="there is no code for this state, so no program is generated",
 )
 def template_not_found(
-    word: Word, searched: Sequence[str], known: Iterable[str], other: str = ""
+    word: Word,
+    searched: Sequence[str],
+    known: Iterable[str],
+    other: str = "",
+    fitting: Sequence[str] = (),
+    used: Sequence[str] = (),
 ) -> Finding:
     """The type of a state has neither an interface nor a template in any folder.
 
@@ -185,11 +190,14 @@ def template_not_found(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     names = sorted(known)
+    help = _where(word, f"{word.text}.yml", searched, names, "templates", other)
+    if fitting:
+        help = f"did you mean {either(fitting)}, with {both(used)}?"
     return Finding(
         span=word.span,
         message=f"the template `{word.text}` was not found",
         arguments=(word.text,),
-        help=_where(word, f"{word.text}.yml", searched, names, "templates", other),
+        help=help,
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 

@@ -1,0 +1,81 @@
+"""Templates that were not found: the types that a state means by the names it uses, and one finding
+for all states that name the same template."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.spelling import words_of
+from smachac.frontend import schema
+from smachac.frontend.errors.references import template_not_found
+from smachac.frontend.fields import pairs_of
+from smachac.frontend.yaml_tree import Entry
+from smachac.ir.nodes import StateType
+
+MOST_TYPES = 200
+"""Among more types than these, none is proposed: each has to be read."""
+
+MOST_MEANT = 3
+"""If more types than these have the names that a state uses, none is proposed."""
+
+MOST_PLACES = 5
+"""The other states that are shown beside the first that names an unknown template."""
+
+
+def types_with_the_names(
+    entries: Mapping[str, Entry],
+    word: str,
+    names: Sequence[str],
+    find: Callable[[str], StateType | None],
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The names of the types that have all variables, keys and outcomes of a state, and those
+    variables and keys. Types that share a word with the unknown name `word` come alone, if there
+    are any. `names` are those of all types."""
+    fields = schema.names_for("state")
+    variables = [key for key in entries if key not in fields]
+    keys = [inner.text for inner, _ in pairs_of(entries["remapping"].value)] \
+        if "remapping" in entries else []  # fmt: skip
+    used = tuple(dict.fromkeys([*keys, *variables]))
+    if not used or len(names) > MOST_TYPES:
+        return (), ()
+    steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    ends = {outcome.text for outcome, _ in steps}
+    types = [each for each in map(find, names) if each is not None]
+    fitting = [each for each in types if _has(each, used, ends)]
+    common = words_of(word) - {"state"}
+    near = [each for each in fitting if words_of(each.name) & common]
+    found = tuple(each.name for each in near or fitting)
+    return (found, used) if len(found) <= MOST_MEANT else ((), ())
+
+
+def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:
+    """Whether a type declares these variables or keys, and these outcomes."""
+    if type_.kind != "state" or type_.open or type_.any_variable:
+        return False
+    keys = {each.name for each in (*type_.input_keys, *type_.output_keys)}
+    outcomes = {each.name for each in type_.outcomes} | {"error", "timeout"}
+    return keys.union(type_.variables).issuperset(used) and outcomes.issuperset(ends)
+
+
+def one_for_each_template(found: Sequence[Diagnostic]) -> Report:
+    """The findings, with one for each template that was not found, at the first state that names
+    it."""
+    places: dict[str, list[Diagnostic]] = {}
+    for item in found:
+        if item.kind is template_not_found.code:
+            places.setdefault(item.finding.arguments[0], []).append(item)
+    kept: Report = []
+    for item in found:
+        if item.kind is not template_not_found.code:
+            kept.append(item)
+            continue
+        first, *others = places[item.finding.arguments[0]]
+        if item is first:
+            shown = (
+                Related(span=each.span, message="the same here") for each in others[:MOST_PLACES]
+            )
+            finding = replace(item.finding, related=(*item.finding.related, *shown))
+            kept.append(replace(item, finding=finding) if others else item)
+    return kept

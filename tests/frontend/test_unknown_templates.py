@@ -1,0 +1,58 @@
+"""Templates that were not found: one finding for all states, and the types with the same names."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.trust.project_text import analysed
+
+TWO = """
+name: sm
+template: PyBulletBase
+outcomes: [done, lost]
+userdata:
+  spot: [[0.4, 0.0, 0.2], [1.0, 0.0, 0.0, 0.0]]
+  above: [[0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]
+states:
+  - A: {template: NAME, FIELDS, transitions: {succeeded: B, aborted: lost}}
+  - B: {template: NAME, FIELDS, transitions: {succeeded: done, aborted: lost}}
+"""
+
+
+def about(name: str, fields: str) -> list[tuple[str, str, int]]:
+    """The text, the help and the number of other places of each SM013."""
+    text = TWO.replace("NAME", name).replace("FIELDS", fields)
+    found = [item for item in analysed({"main.yml": text}).report if item.code == "SM013"]
+    return [(item.span.text, item.help or "", len(item.finding.related)) for item in found]
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "help"),
+    [
+        (
+            "MoveToPoseState",
+            "remapping: {pose: spot, offset: above}",
+            "did you mean `MoveAlongState` or `PoseToJointPositionsState`, with `offset` and",
+        ),
+        (
+            "HandState",
+            "command: open",
+            "did you mean `GripperInterfaceState` or `GripperState`, with `command`?",
+        ),
+        ("GriperState", "command: open", "did you mean `GripperState`? (searched in"),
+        ("Wave", "times: 3", "put `Wave.yml` in one of the folders"),
+        ("Wave", "tags: [arm]", "put `Wave.yml` in one of the folders"),
+    ],
+)
+def test_one_finding_names_the_types_with_the_names_of_the_state(
+    name: str, fields: str, help: str
+) -> None:
+    ((text, told, others),) = about(name, fields)
+    assert (text, others) == (name, 1)
+    assert told.startswith(help)
+
+
+def test_two_unknown_templates_are_two_findings() -> None:
+    text = TWO.replace("NAME", "Wave", 1).replace("NAME", "Nod").replace("FIELDS, ", "")
+    report = analysed({"main.yml": text}).report
+    assert [item.span.text for item in report if item.code == "SM013"] == ["Wave", "Nod"]
