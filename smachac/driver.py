@@ -37,7 +37,7 @@ from smachac.frontend.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.targets import BuildContext, Files, Target, errors, load_target
-from smachac.targets.interface_check import code_faults, target_faults
+from smachac.targets.interface_check import code_faults, missing_templates, target_faults
 from smachac.targets.runtime_files import runtime_files
 from smachac.targets.template_imports import template_imports
 from smachac.targets.undefined_names import undefined_names
@@ -236,7 +236,7 @@ def template_faults(machine: Machine, library: Library) -> Report:
     from smachac.targets.python.template_sources import uses_own_templates
 
     if not uses_own_templates(machine, library):
-        return []
+        return missing_templates(machine, library)
     found: Report = []
     lacking: Report = []
     for ros in dict.fromkeys((library.ros, *ROS_VERSIONS)):

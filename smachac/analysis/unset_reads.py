@@ -43,7 +43,7 @@ class Missing:
 
 def missing_keys(flow: DataFlow) -> tuple[Missing, ...]:
     """The keys that are needed where they may be unset, in the order of the script."""
-    provided = cache(lambda path: _provided(flow.scopes[path]))
+    provided = cache(lambda path: provided_keys(flow.scopes[path]))
     found = [
         (scope, key, tuple(vertices))
         for scope in flow.scopes.values()
@@ -113,7 +113,7 @@ class Provided(NamedTuple):
         return self.anything or key in self.keys
 
 
-def _provided(scope: UserdataScope) -> Provided:
+def provided_keys(scope: UserdataScope) -> Provided:
     container = scope.container
     keys = {*scope.held, *scope.inputs}
     if isinstance(container, nodes.Iterator):

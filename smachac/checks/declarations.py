@@ -90,6 +90,8 @@ def dead_key(context: Context) -> Iterator[Finding]:
     unset: dict[str, set[str]] = {}
     for each in context.missing_keys("nowhere", "remapped"):
         unset.setdefault(each.scope.path, set()).add(each.key)
+    for empty in context.empty_remaps:
+        unset.setdefault(empty.scope.path, set()).add(empty.remap.to)
     in_functions = function_reads(context)
     for scope in flow.scopes.values():
         container = scope.container
@@ -155,6 +157,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     """The keys about which another finding is, each with the path of its container."""
     found = {(each.keeper.path, each.own) for each in context.lost_outputs}  # SM307
     found |= {(each.other, each.key) for each in context.missing_keys("outside")}
+    found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
     return found | keys_of_misplaced(context.misplaced)  # SM101
@@ -417,6 +420,9 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept |= _swapped_lists(context)
     kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
+    empty: dict[str, list[str]] = {}
+    for each in context.empty_remaps:
+        empty.setdefault(each.scope.path, []).append(each.remap.to)
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     yield from _unwritten_outputs(context)
@@ -431,6 +437,8 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         for key in container.inputs:
             if key.name in used or (scope.path, key.name) in kept:
                 continue
+            if any(guesser([key.name])(name) for name in empty.get(scope.path, ())):
+                continue  # SM302
             copied = copied_remap(container, key.name)
             if copied is not None:
                 yield copied_finding(scope.path, copied, key.name)

@@ -22,6 +22,7 @@ from smachac.analysis.unset_reads import (
 from smachac.checks.candidate_keys import fitting_key, unread_output
 from smachac.checks.declarations import MeantKey, meant_keys, swapped_loop
 from smachac.checks.edits import with_input, with_output
+from smachac.checks.empty_remaps import empty_remap_findings
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import placeholder
@@ -338,7 +339,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     another value than intended, or is not set at all.
 
     Exactly: in `remapping: {a: b}`, `a` is not a key of the state, or nothing in the container
-    sets `b`.
+    sets `b`. A warning if `a` is an optional key: the state works without it.
 
     Wrong:
         name: sm
@@ -370,6 +371,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     guesses = _Guesses()
     for missing in context.missing_keys("remapped"):
         yield from _remapped(missing, guesses)
+    yield from empty_remap_findings(context)
 
 
 def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:

@@ -65,6 +65,9 @@ _OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
 }
 """Fields that other tools have, with those of interfaces that they are meant for."""
 
+TEMPLATE_ENDINGS = frozenset(["py", "tpl", "j2", "jinja", "jinja2"])
+"""The endings of files of templates: a dotted text with another ending names a class."""
+
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
 
@@ -294,13 +297,25 @@ def _code(section: Section, report: Report) -> dict[str, str]:
     for language, value in _declared(section):
         if isinstance(value, Scalar):
             found[language] = str(value.value)
-            names = found[language].replace(":", ".", 1).split(".")
-            if language == "python" and ":" in found[language] and not all(map(is_name, names)):
+            help = _class_meant(found[language]) if language == "python" else None
+            if help is not None:
                 message = f"`{value.value}` is not the name of a class in a Python module"
-                help = "write it as `my_robot.states:Grasp`, or give the file name of a template"
                 arguments = ("class", str(value.value))
                 report.append(wrong_shape(value.span, message, help, arguments=arguments))
     return found
+
+
+def _class_meant(text: str) -> str | None:
+    """The help for a text that is neither `module:Class` nor the name of a template; None for one
+    of these."""
+    names = text.replace(":", ".", 1).split(".")
+    importable = all(map(is_name, names))
+    if ":" in text:
+        form = "write it as `my_robot.states:Grasp`, or give the file name of a template"
+        return None if importable else form
+    if not importable or len(names) < 2 or names[-1] in TEMPLATE_ENDINGS:
+        return None
+    return f"write a colon before the class: `{'.'.join(names[:-1])}:{names[-1]}`"
 
 
 def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:

@@ -15,6 +15,7 @@ from typing import Protocol
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, Parameter
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
@@ -84,6 +85,27 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
         yield replace(item, severity=Severity.WARNING)
     for item in (*argument_faults(machine, library), *_smacha_faults(machine, library)):
         yield replace(item, severity=Severity.WARNING)
+
+
+def missing_templates(machine: Machine, library: Library) -> list[Diagnostic]:
+    """SM605 for each type of a machine whose template does not exist."""
+    found = (missing_template(type_, library) for _, type_ in own_types(machine, library))
+    return [each for each in found if each is not None]
+
+
+def missing_template(type_: StateType, library: Library) -> Diagnostic | None:
+    """SM605 for the file of a template that an interface names and no folder has."""
+    file, place = type_.code.get("python", ""), type_.class_spans.get(("python", ""))
+    if place is None or not file.endswith((".py", ".tpl")) or library.template(file) is not None:
+        return None
+    ending = ".tpl.py"
+    names = [name for name in library.template_names() if library.own_template(f"{name}{ending}")]
+    near = guesser(names)(file.removesuffix(ending))
+    help = f"add the file `{file}` to a folder of templates"
+    if near is not None:
+        help = f"did you mean `{near}{ending}`?"
+    message = f"the template `{file}` of the state type `{type_.name}` was not found"
+    return template_error(place, message, help, (type_.name,))
 
 
 def target_faults(machine: Machine, library: Library, target: Language) -> Iterator[Diagnostic]:

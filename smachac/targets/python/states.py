@@ -9,7 +9,7 @@ from itertools import chain, count
 from textwrap import indent
 
 from smachac.analysis.code_slots import called_with_userdata
-from smachac.diagnostics.diagnostic import Diagnostic, did_you_mean
+from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend import schema
@@ -28,6 +28,7 @@ from smachac.ir.nodes import (
     Variable,
 )
 from smachac.ir.traversal import own_outcomes
+from smachac.targets.interface_check import missing_template
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, OtherContainerError, adapted
 from smachac.targets.python.buffers import (
@@ -438,14 +439,8 @@ def _used(leaf: Leaf, module: ModuleParts) -> UsedType:
         if package and not code.endswith((".py", ".tpl")):
             help = f'write `code: {{python: "{package}:{class_}"}}` in `{leaf.type}.yml`'
         first = module.without_code.setdefault(leaf.type, leaf.span)
-        written = type_.class_spans.get(("python", ""))
-        if written is not None and code.endswith((".py", ".tpl")):
-            library = module.context.library
-            files = [f"{name}.tpl.py" for name in library.template_names()]
-            files = [file for file in files if library.own_template(file) is not None]
-            message = f"the template `{code}` of the state type `{leaf.type}` was not found"
-            help, first = did_you_mean(code, files) or help, written
-        raise BlockError(template_error(first, message, help, (leaf.type,)))
+        missing = missing_template(type_, module.context.library)
+        raise BlockError(missing or template_error(first, message, help, (leaf.type,)))
     else:
         found = module.blocks.names(code)
         used = UsedType(
