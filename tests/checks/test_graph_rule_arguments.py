@@ -82,9 +82,9 @@ CALLED = """\
 @pytest.mark.parametrize(
     ("code", "replaced", "arguments"),
     [
-        ("SM101", {}, {("", "bad"), ("", "bda"), ("", "NOWHERE")}),
-        ("SM102", {}, {("LOOP", "side"), ("", "okk"), ("", "failed")}),
-        ("SM104", {}, {("WORK", "failed"), ("WORK", "x")}),
+        ("SM101", {}, {("", "", "failed"), ("", "bad"), ("", "bda"), ("", "NOWHERE")}),
+        ("SM102", {}, {("LOOP", "side"), ("", "okk")}),
+        ("SM104", {}, {("WORK", "x")}),
         ("SM105", {"never": "failed"}, {("WORK", "failed")}),
         ("SM201", {}, {("LOST",)}),
         ("SM203", {"NOWHERE": "ok", ", x]": "]", "never": "failed"}, {("", "bad"), ("", "FIRST")}),

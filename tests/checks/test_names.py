@@ -41,9 +41,16 @@ def test_a_misspelt_target_is_one_fault() -> None:
     assert found(root) == ["SM101 sm/PICK", "SM101 sm/PLACE"]
 
 
-def test_what_no_target_means_is_unreachable() -> None:
+def test_the_only_state_that_no_target_means_is_meant() -> None:
     root = machine("sm", "done", leaf("A", {"ok": "XYZ"}), leaf("B", {"ok": "done"}))
-    assert found(root) == ["SM101 sm/A", "SM201 sm/B"]
+    assert one(root, "SM101").help == "did you mean `B`? no transition leads to it"
+    assert found(root) == ["SM101 sm/A"]
+
+
+def test_what_no_target_means_is_unreachable() -> None:
+    others = [leaf("B", {"ok": "done"}), leaf("C", {"ok": "done"})]
+    root = machine("sm", "done", leaf("A", {"ok": "XYZ"}), *others)
+    assert found(root) == ["SM101 sm/A", "SM201 sm/B", "SM201 sm/C"]
 
 
 def test_children_that_run_together_have_no_transitions() -> None:

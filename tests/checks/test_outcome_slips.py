@@ -131,9 +131,10 @@ def test_a_state_with_two_transitions_to_its_wrong_name() -> None:
     script = WATCH.replace("OUTCOMES", "done, again, lost").replace("- SAY", "- SPAEK")
     script = script.replace("TRANSITIONS", "done: SPEAK, again: SPEAK, lost: aborted")
     found = analysed({"main.yml": script}).report
-    assert [item.code for item in found] == ["SM101", "SM101"]
-    places = [[each.message for each in item.related] for item in found]
-    assert places == [["no transition leads to `SPAEK`"]] * 2
+    assert [(item.code, item.span.text, item.help) for item in found] == [
+        ("SM101", "SPAEK", "did you mean `SPEAK`?")
+    ]
+    assert [each.span.text for each in found[0].related] == ["SPEAK", "SPEAK"]
 
 
 def test_the_only_variable_under_another_name() -> None:
