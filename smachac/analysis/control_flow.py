@@ -81,8 +81,7 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
     if len(left) == 1 and len(names) == len(container.children):
         choices = states or (ends if left[0].islower() else [])
         if len(choices) == 1 and not are_opposite(left[0], choices[0]):
-            near = every(left[0])
-            found[left[0]] = MeantTarget(choices[0], near != choices[0])
+            found[left[0]] = MeantTarget(choices[0], free(left[0]) != choices[0])
             left = []
     for target in left:
         near = free(target) or every(target)
@@ -109,6 +108,9 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
     if not unknown or is_open(child):
         return []
     guess = guesser(outcome_names(child))
+    default = missing_default(child)
+    if default is not None:
+        return [(step, default[1]) for step in unknown]
     near = {step.outcome: guess(step.outcome) for step in unknown}
     others = [step.outcome for step in unknown if not near[step.outcome] and not is_catch_all(step)]
     alike: dict[str, str] = {}
@@ -123,6 +125,21 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
         if stops and len(others) == 1 and others[0] not in GOOD | SUCCESSES:
             alike.setdefault(others[0], PREEMPTED)
     return [(step, near[step.outcome] or alike.get(step.outcome)) for step in unknown]
+
+
+def missing_default(node: Node) -> tuple[Transition, str] | None:
+    """The transition for the outcome that a state without its `default_outcome` is meant to end
+    with, and the default of the interface in its place, which has no transition."""
+    held = [each for each in node.variables if each.name == "default_outcome"
+            and each.span == node.span] if isinstance(node, Leaf) else []  # fmt: skip
+    if len(held) != 1 or is_open(node):
+        return None
+    default, names = str(held[0].value.data), outcome_names(node)
+    unknown = [step for step in node.transitions if step.outcome not in names]
+    handled = {step.outcome for step in node.transitions}
+    if len(unknown) != 1 or default in handled or default not in names:
+        return None
+    return unknown[0], default
 
 
 def outcome_of_one_meaning(child: Node, name: str) -> str | None:
@@ -173,7 +190,7 @@ def is_catch_all(step: Transition) -> bool:
 def corrected(container: Linear) -> Linear:
     """A container with misspelt targets and outcomes corrected, where a near name exists.
 
-    A state that declares no outcome gets those of its transitions.
+    A state gets the unknown outcomes of its transitions for which no known one is meant.
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
@@ -197,7 +214,10 @@ def corrected(container: Linear) -> Linear:
             for step in node.transitions
             if not (step in lost and _catches_itself(node, target(step)))
         ]
-        outcomes = node.outcomes or tuple(Outcome(name=s.outcome, span=s.span) for s in steps)
+        known = {each.name for each in node.outcomes}
+        more = [step for step in steps if step.outcome not in known]
+        added = dict.fromkeys(Outcome(name=step.outcome, span=step.span) for step in more)
+        outcomes = (*node.outcomes, *added)
         return replace(node, outcomes=outcomes, transitions=tuple(map(target, steps)))
 
     children = tuple(map(child, container.children))

@@ -15,6 +15,7 @@ from smachac.analysis.control_flow import (
     is_catch_all,
     is_open,
     meant_targets,
+    missing_default,
     places_of,
     strays,
     unknown_outcomes,
@@ -100,11 +101,11 @@ def unknown_target(context: Context) -> Iterator[Finding]:
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
         paths.setdefault(node.name, context.plain_paths.get(path, path))
-    alike: dict[tuple[str, object], list[_Lost]] = {}
+    alike: dict[tuple[object, ...], list[_Lost]] = {}
     for at, fault in enumerate(lost):
         target = fault.step.target
         if (fault.path, target) not in causes and f"{fault.path}/{fault.child.name}" not in moved:
-            alike.setdefault((fault.path, target or at), []).append(fault)
+            alike.setdefault((fault.path, target or at, fault.child.via), []).append(fault)
     for first, *others in alike.values():
         yield _with_others(_nowhere(first, paths.get(first.step.target)), others)
     for path, container in context.containers:
@@ -354,6 +355,7 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
         return
     known = _known_outcomes(child)
     guess = guesser([*outcome_names(child), EXCEPTIONS])
+    default = missing_default(child)
     for step, known_meant in unknown:
         meant = known_meant or guess.sure(step.outcome)
         retried = _retried(child, step.outcome)
@@ -367,10 +369,16 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
             span=step.span,
             message=message,
             arguments=(own_name(child, step.span), step.outcome),
-            help=retried or _catch_all(child, step) or did_you_mean(meant) or known,
+            help=(f"add `default_outcome: {step.outcome}` to `{child.name}`" if default else None)
+            or retried
+            or _catch_all(child, step)
+            or did_you_mean(meant)
+            or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
-            edits=respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
+            edits=()
+            if default is not None
+            else respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
         )
 
 

@@ -413,8 +413,6 @@ def _judge_children(
     else:
         for word in _inner_words(state):
             found.use("transitions", word)
-        if state.initial is None and names:
-            found.use("its beginning", names[0])
         if state.owner == "Sequence":
             return
     if all(name in found.used for name in texts):
