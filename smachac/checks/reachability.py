@@ -108,7 +108,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
                 if twice is not None
                 else _out_help(child, *way_out)
                 if way_out is not None
-                else _why_unreachable(container, child, before.get(child.name, [])),
+                else _why_unreachable(container, child),
                 related=(
                     *_led_places(twice),
                     *(_out_places(container, *way_out) if way_out is not None else ()),
@@ -294,9 +294,7 @@ def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:
     return before
 
 
-def _why_unreachable(container: Linear, child: Node, before: list[str]) -> str:
-    if before:
-        return f"first make a state that leads to it reachable: {listed(before)}"
+def _why_unreachable(container: Linear, child: Node) -> str:
     if isinstance(container, Sequence):
         return (
             f"give the state before it the outcome `{container.connector_outcome}` without a"

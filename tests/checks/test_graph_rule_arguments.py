@@ -86,7 +86,7 @@ CALLED = """\
         ("SM102", {}, {("LOOP", "side"), ("", "okk")}),
         ("SM104", {}, {("WORK", "x")}),
         ("SM105", {"never": "failed"}, {("WORK", "failed")}),
-        ("SM201", {}, {("LOST",)}),
+        ("SM201", {", x]": "]"}, {("LOST",)}),
         ("SM203", {"NOWHERE": "ok", ", x]": "]", "never": "failed"}, {("", "bad"), ("", "FIRST")}),
         ("SM204", {}, {("LOOP", "failed")}),
         ("SM205", {"states": "initial: A\n    states"}, {("", "A")}),
