@@ -27,7 +27,7 @@ def misdeclared(context: Context, *kinds: DeclarationKind) -> Iterator[Finding]:
 def _finding(each: Misdeclared) -> Finding:
     word, what = each.word, "state" if each.kind == "child" else "outcome"
     users = " and ".join(each.users)
-    use = "use" if len(each.users) > 1 or each.users[0].endswith("s") else "uses"
+    use = "use" if len(each.users) > 1 or users.endswith("s") else "uses"
     names = both(each.meant)
     near = guesser(each.meant)
     if word.text:
