@@ -10,9 +10,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
+from smachac.diagnostics.negation import are_opposite
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, edges, reachable
@@ -47,6 +48,48 @@ def places_of(container: nodes.Container) -> Guesser:
     return guesser([*(child.name for child in container.children), *outcome_names(container)])
 
 
+class MeantTarget(NamedTuple):
+    """The known name that is meant by the unknown target of a transition. `paired`: the two are not
+    alike, but no transition leads to this name, and it is the only such name."""
+
+    name: str
+    paired: bool = False
+
+
+def meant_targets(container: Linear) -> dict[str, MeantTarget]:
+    """The names that are meant by the unknown targets of transitions in a container: the nearest
+    one, first of those to which nothing leads; or the only one to which nothing leads."""
+    names, exits = children_names(container), frozenset(outcome_names(container))
+    lost = [step.target for child in container.children for step in strays(child, names, exits)]
+    if not lost:
+        return {}
+    led = {step.target for child in container.children for step in child.transitions
+           if step.target != child.name}  # fmt: skip
+    states = [name for name in dict.fromkeys(child.name for child in container.children)
+              if name not in led and name != container.initial]  # fmt: skip
+    ends = [name for name in outcome_names(container) if name not in led]
+    free, every = guesser([*states, *ends]), places_of(container)
+    found: dict[str, MeantTarget] = {}
+    for target in dict.fromkeys(lost):
+        near = (free.sure(target) or every.sure(target)) if target else None
+        if near is not None:
+            found[target] = MeantTarget(near)
+    taken = {each.name for each in found.values()}
+    left = [target for target in dict.fromkeys(lost) if target and target not in found]
+    states = [name for name in states if name not in taken]
+    ends = [name for name in ends if name not in taken and name.islower()]
+    if len(left) == 1 and len(names) == len(container.children):
+        choices = states or (ends if left[0].islower() else [])
+        if len(choices) == 1 and not are_opposite(left[0], choices[0]):
+            found[left[0]] = MeantTarget(choices[0], free(left[0]) != choices[0])
+            left = []
+    for target in left:
+        near = free(target) or every(target)
+        if near is not None:
+            found[target] = MeantTarget(near)
+    return found
+
+
 def strays(child: Node, names: frozenset[str], exits: frozenset[str]) -> list[Transition]:
     """The transitions of a child that lead neither to one of `names` nor out by one of `exits`."""
     return [
@@ -65,12 +108,38 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
     if not unknown or is_open(child):
         return []
     guess = guesser(outcome_names(child))
+    default = missing_default(child)
+    if default is not None:
+        return [(step, default[1]) for step in unknown]
     near = {step.outcome: guess(step.outcome) for step in unknown}
-    used = {*near.values(), *(step.outcome for step in child.transitions)}
-    left = [name for name in outcome_names(child) if name not in used and name != PREEMPTED]
     others = [step.outcome for step in unknown if not near[step.outcome] and not is_catch_all(step)]
-    alike = _of_one_meaning(child, others, left) if others and left else {}
+    alike: dict[str, str] = {}
+    for origins in (("written", "implicit", "connector"), ("written",)):
+        used = {*near.values(), *alike.values()}
+        used |= {step.outcome for step in child.transitions if step.origin in origins}
+        left = [name for name in outcome_names(child) if name not in used and name != child.catches]
+        others = [name for name in others if name not in alike]
+        if others and left:
+            alike |= _of_one_meaning(child, others, [name for name in left if name != PREEMPTED])
+        stops = left == [PREEMPTED] and "implicit" in origins
+        if stops and len(others) == 1 and others[0] not in GOOD | SUCCESSES:
+            alike.setdefault(others[0], PREEMPTED)
     return [(step, near[step.outcome] or alike.get(step.outcome)) for step in unknown]
+
+
+def missing_default(node: Node) -> tuple[Transition, str] | None:
+    """The transition for the outcome that a state without its `default_outcome` is meant to end
+    with, and the default of the interface in its place, which has no transition."""
+    held = [each for each in node.variables if each.name == "default_outcome"
+            and each.span == node.span] if isinstance(node, Leaf) else []  # fmt: skip
+    if len(held) != 1 or is_open(node):
+        return None
+    default, names = str(held[0].value.data), outcome_names(node)
+    unknown = [step for step in node.transitions if step.outcome not in names]
+    handled = {step.outcome for step in node.transitions}
+    if len(unknown) != 1 or default in handled or default not in names:
+        return None
+    return unknown[0], default
 
 
 def outcome_of_one_meaning(child: Node, name: str) -> str | None:
@@ -121,14 +190,15 @@ def is_catch_all(step: Transition) -> bool:
 def corrected(container: Linear) -> Linear:
     """A container with misspelt targets and outcomes corrected, where a near name exists.
 
-    A state that declares no outcome gets those of its transitions.
+    A state gets the unknown outcomes of its transitions for which no known one is meant.
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
-    guess = places_of(container)
+    meant = meant_targets(container)
 
     def target(step: Transition) -> Transition:
-        return replace(step, target=guess(step.target) or step.target)
+        known = meant.get(step.target)
+        return step if known is None else replace(step, target=known.name)
 
     def child(node: Node) -> Node:
         unknown = unknown_outcomes(node)
@@ -142,14 +212,23 @@ def corrected(container: Linear) -> Linear:
                 outcome=wrong.get(step.outcome) or step.outcome,
             )
             for step in node.transitions
+            if not (step in lost and _catches_itself(node, target(step)))
         ]
-        outcomes = node.outcomes or tuple(Outcome(name=s.outcome, span=s.span) for s in steps)
+        known = {each.name for each in node.outcomes}
+        more = [step for step in steps if step.outcome not in known]
+        added = dict.fromkeys(Outcome(name=step.outcome, span=step.span) for step in more)
+        outcomes = (*node.outcomes, *added)
         return replace(node, outcomes=outcomes, transitions=tuple(map(target, steps)))
 
     children = tuple(map(child, container.children))
     if all(new is old for new, old in zip(children, container.children, strict=True)):
         return container
     return replace(container, children=children)
+
+
+def _catches_itself(node: Node, step: Transition) -> bool:
+    """Whether the exceptions of a state lead to itself, because `on_error` is misspelt."""
+    return step.outcome == node.catches and step.target == node.name and bool(node.catches)
 
 
 def outline(

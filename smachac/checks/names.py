@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from itertools import count
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
+    MeantTarget,
     children_names,
     is_catch_all,
     is_open,
+    meant_targets,
+    missing_default,
     places_of,
     strays,
     unknown_outcomes,
@@ -20,6 +24,7 @@ from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.declarations import meant_keys
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
+from smachac.checks.misdeclared import misdeclared
 from smachac.checks.misplaced_states import misplaced_finding
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -31,10 +36,13 @@ from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
 from smachac.ir.outcome_names import GOOD, SUCCESSES
 from smachac.ir.traversal import PREEMPTED, outcome_names
 
+EXCEPTIONS = "error"
+"""The name by which a script refers to the exceptions of a state (docs/language.md)."""
+
 
 class _Lost(NamedTuple):
-    """A transition with an unknown target. `meant` is the nearest known name; `sure`, the only
-    known name one slip away."""
+    """A transition with an unknown target. `meant` is the known name that is meant; `sure`, the
+    only known name one slip away; `paired`: nothing else leads to the name that is meant."""
 
     path: str
     container: Linear
@@ -42,6 +50,7 @@ class _Lost(NamedTuple):
     step: Transition
     meant: str | None
     sure: str | None
+    paired: bool
 
 
 @rule("SM101", "unknown-target", Severity.ERROR, firm=True)
@@ -82,6 +91,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: stacked}
     """
+    yield from misdeclared(context, "container", "child")
     lost = context.at_containers(_lost)
     misplaced = context.misplaced if lost else ()
     for each in misplaced:
@@ -91,10 +101,13 @@ def unknown_target(context: Context) -> Iterator[Finding]:
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
         paths.setdefault(node.name, context.plain_paths.get(path, path))
-    for fault in lost:
-        if (fault.path, fault.step.target) in causes or f"{fault.path}/{fault.child.name}" in moved:
-            continue
-        yield _nowhere(fault, paths.get(fault.step.target))
+    alike: dict[tuple[object, ...], list[_Lost]] = {}
+    for at, fault in enumerate(lost):
+        target = fault.step.target
+        if (fault.path, target) not in causes and f"{fault.path}/{fault.child.name}" not in moved:
+            alike.setdefault((fault.path, target or at, fault.child.via), []).append(fault)
+    for first, *others in alike.values():
+        yield _with_others(_nowhere(first, paths.get(first.step.target)), others)
     for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
             yield from _idle_transitions(context, path, container, moved)
@@ -102,12 +115,15 @@ def unknown_target(context: Context) -> Iterator[Finding]:
 
 def _lost(path: str, container: Container) -> Iterator[_Lost]:
     guess: Guesser | None = None
+    targets: Mapping[str, MeantTarget] = {}
     copied = copied_name(container)
     for _, linear, child, step in stray_transitions(path, container):
-        guess = guess or places_of(container)
+        if guess is None:
+            guess, targets = places_of(container), meant_targets(linear)
         if not _was_reported(step) and step.target != copied:  # SM106
-            meant, sure = guess(step.target), guess.sure(step.target)
-            yield _Lost(path, linear, child, step, meant, sure)
+            meant = targets.get(step.target)
+            name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
+            yield _Lost(path, linear, child, step, name, guess.sure(step.target), paired)
 
 
 def copied_name(container: Container) -> str | None:
@@ -129,19 +145,41 @@ def _was_reported(step: Transition) -> bool:
     return not step.target and step.target_span.text not in ("''", '""', "")
 
 
+MOST_ALIKE = 5
+"""The most further transitions to one unknown target that a finding shows."""
+
+
+def _with_others(found: Finding, others: list[_Lost]) -> Finding:
+    """The finding on the first of several transitions with one unknown target, with the others."""
+    places = dict.fromkeys(each.step.target_span for each in others)
+    places.pop(found.span, None)
+    more = [part for span in [*places][:MOST_ALIKE] for part in other_place(span, "and here")]
+    words = [Word(each.step.target, each.step.target_span) for each in others]
+    edits = [edit for word in words if word.span in places
+             for edit in respelt(word, others[0].sure)]  # fmt: skip
+    return replace(
+        found,
+        related=(*found.related, *more),
+        edits=(*found.edits, *edits) if found.edits else (),
+    )
+
+
 def _targets(container: Linear) -> str:
     """The names that a transition in a container can have as its target."""
     return listed([*(child.name for child in container.children), *outcome_names(container)])
 
 
 def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
-    path, container, child, step, meant, sure = fault
+    path, container, child, step, meant, sure, paired = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
         whole = f"the transition for outcome `{step.outcome}` of `{child.name}` has no target"
     above = elsewhere.rpartition("/")[0] if elsewhere else ""
     help = did_you_mean(meant)
-    if above:
+    if paired:
+        is_state = meant in children_names(container)
+        help = f"{help} {'no transition leads to it' if is_state else 'no state ends with it'}"
+    elif above:
         help = _through_outcome(container, step, above)
         sure = None
     if sure is not None and not _same_case(step.target, sure):
@@ -281,6 +319,7 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
+    yield from misdeclared(context, "interface", "state")
     found = context.at_containers(_unknown_outcomes)
     loops: set[str] = set()
     if any(each.span.text == PREEMPTED for each in found):
@@ -315,8 +354,10 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     if not unknown:
         return
     known = _known_outcomes(child)
-    guess = guesser(outcome_names(child))
-    for step, meant in unknown:
+    guess = guesser([*outcome_names(child), EXCEPTIONS])
+    default = missing_default(child)
+    for step, known_meant in unknown:
+        meant = known_meant or guess.sure(step.outcome)
         retried = _retried(child, step.outcome)
         message = f"`{child.name}` has no outcome `{step.outcome}`"
         if retried is not None and isinstance(child, nodes.Iterator):
@@ -328,10 +369,16 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
             span=step.span,
             message=message,
             arguments=(own_name(child, step.span), step.outcome),
-            help=retried or _catch_all(child, step) or did_you_mean(meant) or known,
+            help=(f"add `default_outcome: {step.outcome}` to `{child.name}`" if default else None)
+            or retried
+            or _catch_all(child, step)
+            or did_you_mean(meant)
+            or known,
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
-            edits=respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
+            edits=()
+            if default is not None
+            else respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
         )
 
 

@@ -16,6 +16,7 @@ from smachac.analysis.control_flow import (
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.wording import both
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.leaf import functions, variable
@@ -233,13 +234,95 @@ def unhandled_outcome(context: Context) -> Iterator[Finding]:
 
 def _unhandled_outcomes(path: str, container: Container) -> Iterator[Finding]:
     if isinstance(container, StateMachine | nodes.Sequence):
+        free = unentered(container) if any(map(unhandled, container.children)) else []
         for child in container.children:
-            for outcome in unhandled(child):
-                meant = meant_ending(child) if isinstance(child, nodes.Iterator) else None
-                if meant is not None and meant.result is outcome:
-                    yield _misnamed_ending(path, meant)
-                else:
-                    yield _unhandled(path, container, child, outcome)
+            left = unhandled(child)
+            meant = meant_ending(child) if isinstance(child, nodes.Iterator) and left else None
+            if meant is not None and meant.result in left:
+                left.remove(meant.result)
+                yield _misnamed_ending(path, meant)
+            if not left:
+                continue
+            targets = _targets(container, child, left, free)
+            if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
+                for outcome in left:
+                    yield _unhandled(path, container, child, outcome, targets[outcome.name])
+            else:
+                yield _several_unhandled(path, container, child, targets)
+
+
+def unentered(container: Linear) -> list[str]:
+    """The states of a container to which no transition of another state leads."""
+    led = {step.target for child in container.children for step in child.transitions
+           if step.target != child.name}  # fmt: skip
+    return [child.name for child in container.children
+            if child.name not in led and child.name != container.initial]  # fmt: skip
+
+
+def _targets(
+    container: Linear, child: Node, left: Iterable[Outcome], free: list[str]
+) -> dict[str, str]:
+    """For each outcome without a transition the target that it probably needs. `free` are the
+    states of the container to which nothing leads yet; those that are used are removed."""
+    found: dict[str, str] = {}
+    rest = [each.name for each in left]
+    good = [name for name in rest if name in successes(child) or not fails(child, name)]
+    good = [name for name in good if name != PREEMPTED]
+    bad = [name for name in rest if name not in good and name != PREEMPTED]
+    names = [each.name for each in container.children]
+    after = [name for name in free if names.index(name) > names.index(child.name)]
+    for outcome in (*good, *bad):
+        choice = next(iter(after or free), None)
+        if choice is not None:
+            found[outcome] = choice
+            free.remove(choice)
+            after = [name for name in after if name != choice]
+    for outcome in rest:
+        if outcome not in found:
+            found[outcome] = _target(container, child, outcome)
+    return {name: found[name] for name in rest}
+
+
+def _target(container: Linear, child: Node, outcome: str) -> str:
+    """The target that an outcome probably needs: that of the same outcome of other states, a
+    failure of the container or its stop, or what comes after a success."""
+    ends = outcome_names(container)
+    failed = [name for name in ends if fails(container, name)]
+    names = [each.name for each in container.children]
+    alike = [step.target for each in container.children if each is not child
+             for step in each.transitions if step.outcome == outcome]  # fmt: skip
+    others = [name for name in alike if name in ends or outcome == PREEMPTED]
+    if outcome == PREEMPTED:
+        targets = [*([PREEMPTED] if PREEMPTED in ends else []), *others, *failed]
+    elif fails(child, outcome):
+        targets = [*others, *failed]
+    elif outcome in successes(child):
+        targets = [*names[names.index(child.name) + 1 :], *successes(container)]
+    else:
+        used = {step.target for each in container.children for step in each.transitions}
+        targets = [name for name in ends if name not in used and name != PREEMPTED]
+        targets += [*others, *failed]
+    plain = [name for name in ends if name != PREEMPTED]
+    return next(iter([*targets, *reversed(plain), *ends, *names]))
+
+
+def _several_unhandled(
+    path: str, container: Linear, child: Node, targets: dict[str, str]
+) -> Finding:
+    """SM104 for a state of which several outcomes have no transition."""
+    rows = ", ".join(f"{name}: {target}" for name, target in targets.items())
+    help = f"add `{rows}` to the transitions of `{child.name}`"
+    if not any(step.origin == "written" for step in child.transitions):
+        help = f"write `transitions: {{{rows}}}` in `{child.name}`"
+    return Finding(
+        span=child.span,
+        message=f"the outcomes {both(targets)} of `{child.name}` have no transitions, and"
+        f" `{container.name}` has no outcomes of these names",
+        arguments=(child.name, *targets),
+        help=help,
+        related=calls(child, child.span),
+        node=f"{path}/{child.name}",
+    )
 
 
 class MeantEnding(NamedTuple):
@@ -304,20 +387,6 @@ def unhandled(child: Node) -> list[Outcome]:
     return [outcome for outcome in child.outcomes if outcome.name not in handled]
 
 
-def _step(container: Linear, child: Node, outcome: str) -> str:
-    """The transition that is probably missing: after a success to the next state, otherwise to a
-    failure of the container."""
-    ends = outcome_names(container)
-    failed = [name for name in ends if fails(container, name)]
-    targets = [PREEMPTED, *failed] if outcome == PREEMPTED and PREEMPTED in ends else failed
-    if outcome in successes(child):
-        names = [each.name for each in container.children]
-        targets = [*names[names.index(child.name) + 1 :], *successes(container)]
-    if not targets:
-        return f"`{outcome}: TARGET`"
-    return f"`{outcome}: {targets[0]}` (or another state or outcome)"
-
-
 def _field_that_adds(node: Node, outcome: str) -> str:
     """The field `timeout`, `retry` or `for_each` of a state that adds an outcome; empty if the
     state itself has it."""
@@ -339,7 +408,7 @@ def meant_default(leaf: Leaf) -> str | None:
     return left[0] if len(left) == 1 and left[0] in handled else None
 
 
-def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> Finding:
+def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, target: str) -> Finding:
     held = child.variables if isinstance(child, Leaf) else ()
     default = next((each for each in held if each.name == "default_outcome"), None)
     meant = meant_default(child) if isinstance(child, Leaf) else None
@@ -367,8 +436,7 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome) -> F
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add {_step(container, child, outcome.name)} to the transitions of"
-        f" `{child.name}`, or `{outcome.name}` to the outcomes of `{container.name}`",
+        help=f"{why}add `{outcome.name}: {target}` to the transitions of `{child.name}`",
         related=(
             *(other_place(outcome.span, origin) if inside else ()),
             *calls(child, child.span),

@@ -8,7 +8,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
+from smachac.analysis.control_flow import children_names, strays
 from smachac.checks.messages import other_place
+from smachac.checks.outcomes import unhandled
 from smachac.checks.property_turns import Turn, turn_of
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
@@ -33,7 +35,7 @@ from smachac.ir.properties import (
     in_words,
 )
 from smachac.ir.script_paths import sugared_child, walk_script
-from smachac.ir.traversal import walk
+from smachac.ir.traversal import outcome_names, walk
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit
@@ -126,12 +128,36 @@ def _failures(context: Context) -> Iterator[_Failure]:
     from smachac.interpreter.counterexample import replay
 
     nodes = dict(context.states)
+    open_ends = _open_ends(context) if context.judgements else frozenset()
     for number, each in enumerate(context.judgements, 1):
         example = each.counterexample
-        if example is not None:
+        if example is not None and not _is_open(example, open_ends):
             shown = replay(context.machine, example.visits, example.again)
             turn = turn_of(each.property.form, shown, len(example.visits), nodes)
             yield _Failure(number, each.property, example, shown, turn)
+
+
+def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
+    """The outcomes of states that lead nowhere (SM101, SM104), each with the path of the state."""
+    found: set[tuple[str, str]] = set()
+    for path, container in context.linear:
+        names, exits = children_names(container), frozenset(outcome_names(container))
+        for child in container.children:
+            ends = [step.outcome for step in strays(child, names, exits)]
+            ends += [each.name for each in unhandled(child)]
+            found.update((f"{path}/{child.name}", end) for end in ends)
+    return frozenset(found)
+
+
+def _is_open(example: Counterexample, open_ends: frozenset[tuple[str, str]]) -> bool:
+    """Whether a counterexample passes an outcome that leads nowhere: its path is not one of the
+    script that was meant."""
+    if not open_ends:
+        return False
+    if any((visit.path, visit.outcome) in open_ends for visit in example.visits):
+        return True
+    last = example.visits[-1].path if example.visits else ""
+    return any(last.startswith(f"{path}/") for path, _ in open_ends)
 
 
 def _named(given: Property) -> str:

@@ -89,11 +89,13 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
             missed = missed_states(context)
             missed |= {each.path for each in context.misplaced}
         before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
+        first = _first_hidden(container, hidden, before, seen)
         for child in hidden:
-            if f"{path}/{child.name}" in (missed or ()):
+            if child.name not in first or f"{path}/{child.name}" in (missed or ()):
                 continue  # SM701 reports the transition that must lead to it, SM101 its place
             twice = _led_twice(container, seen) if not before.get(child.name) else None
             past = _led_past(container, child, seen) if not before.get(child.name) else None
+            way_out = _way_out(container, child, seen) if past is None else None
             if past is not None:
                 yield _passed(path, container, child, past)
                 continue
@@ -104,10 +106,41 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
                 arguments=(child.name,),
                 help=_led_help(child, twice)
                 if twice is not None
-                else _why_unreachable(container, child, before.get(child.name, [])),
-                related=(*_led_places(twice), *calls(child, child.span)),
+                else _out_help(child, *way_out)
+                if way_out is not None
+                else _why_unreachable(container, child),
+                related=(
+                    *_led_places(twice),
+                    *(_out_places(container, *way_out) if way_out is not None else ()),
+                    *calls(child, child.span),
+                ),
                 node=f"{path}/{child.name}",
             )
+
+
+def _first_hidden(
+    container: Linear, hidden: list[Node], before: dict[str, list[str]], seen: Collection[str]
+) -> set[str]:
+    """The states by which the hidden ones are entered: those to which no other one leads, and the
+    first one of a circle. None if as many outcomes of states that can be entered have no
+    transitions (SM104)."""
+    after: dict[str, list[str]] = {}
+    for name, sources in before.items():
+        for source in sources:
+            after.setdefault(source, []).append(name)
+    found: list[str] = []
+    covered: set[str] = set()
+    alone = [child.name for child in hidden if not before.get(child.name)]
+    for name in (*alone, *(child.name for child in hidden)):
+        if name not in covered:
+            found.append(name)
+            todo = [name]
+            while todo:
+                if (each := todo.pop()) not in covered:
+                    covered.add(each)
+                    todo += after.get(each, [])
+    left = sum(len(unhandled(child)) for child in container.children if child.name in seen)
+    return set(found) if len(found) > left else set()
 
 
 class _LedPast(NamedTuple):
@@ -132,6 +165,29 @@ def _led_past(container: Linear, child: Node, seen: Collection[str]) -> _LedPast
         if step.target in after and step.origin == "written" and not fails(before, step.outcome)
     ]
     return _LedPast(before, steps[0]) if len(steps) == 1 else None
+
+
+def _way_out(
+    container: Linear, child: Node, seen: Collection[str]
+) -> tuple[Node, Transition] | None:
+    """The state before another one in the script, with an outcome that is not one of failure and
+    has no transition, so that the container ends with it."""
+    number = next(at for at, each in enumerate(container.children) if each is child)
+    before = container.children[number - 1] if number else None
+    if before is None or before.name not in seen or isinstance(container, Sequence):
+        return None
+    steps = [step for step in before.transitions if step.origin == "implicit"
+             and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
+    return (before, steps[0]) if len(steps) == 1 else None
+
+
+def _out_help(child: Node, before: Node, step: Transition) -> str:
+    return f"add `{step.outcome}: {child.name}` to the transitions of `{before.name}`"
+
+
+def _out_places(container: Linear, before: Node, step: Transition) -> tuple[Related, ...]:
+    text = f"`{step.outcome}` of `{before.name}` has no transition, so `{container.name}` ends"
+    return other_place(before.span, text)
 
 
 def _passed(path: str, container: Linear, child: Node, past: _LedPast) -> Finding:
@@ -238,9 +294,7 @@ def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:
     return before
 
 
-def _why_unreachable(container: Linear, child: Node, before: list[str]) -> str:
-    if before:
-        return f"first make a state that leads to it reachable: {listed(before)}"
+def _why_unreachable(container: Linear, child: Node) -> str:
     if isinstance(container, Sequence):
         return (
             f"give the state before it the outcome `{container.connector_outcome}` without a"

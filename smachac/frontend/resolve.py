@@ -30,6 +30,7 @@ from smachac.frontend.errors.script import (
 from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
+from smachac.frontend.meant_declarations import with_meant_declarations
 from smachac.frontend.meant_types import has_unknown_variable, meant_type
 from smachac.frontend.message_definitions import (
     definitions_of,
@@ -210,7 +211,7 @@ class _Resolver:
             self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
         definitions = definitions_of(base, self.library)
-        return Script(
+        script = Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
@@ -225,6 +226,7 @@ class _Resolver:
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
             aliases=self.aliases,
         )
+        return with_meant_declarations(script, self.library, self.report)
 
     def has_too_many_keys(self) -> bool:
         """Whether the script has too much userdata, which is reported where most of it is."""
@@ -316,7 +318,15 @@ class _Resolver:
         self.uses.params(params, begin, self.report, around.via)
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
-        return State(owner=owner, type=type_, via=around.via, states=children, **fields)
+        listed = entries["outcomes"].value.span if "outcomes" in entries else None
+        return State(
+            owner=owner,
+            type=type_,
+            via=around.via,
+            states=children,
+            outcomes_place=listed,
+            **fields,
+        )
 
     def fill(self, key: str, entry: Entry, scope: Scope, *, flat: bool) -> Entry:
         """The field with values in place of its look-ups and aliases of types. `flat`: see

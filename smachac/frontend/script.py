@@ -13,7 +13,17 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.schema import FieldOwner
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.message_types import Definitions, MissingDefinitions, OtherTypes
-from smachac.ir.nodes import FixedParam, Outcome, Param, Preset, StateType, Unused, Value, Variable
+from smachac.ir.nodes import (
+    FixedParam,
+    Misdeclared,
+    Outcome,
+    Param,
+    Preset,
+    StateType,
+    Unused,
+    Value,
+    Variable,
+)
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import Type
@@ -91,9 +101,10 @@ class State(NamedTuple):
     `owner` selects the fields of the schema: "base", a container type or "state". `via`: the calls
     of sub-scripts that lead to it, outermost first. `variables` are those of the state type,
     `written` all fields as a template of SMACHA's kind needs them, `misplaced_keys` the input keys
-    that are written as variables. The other fields have the names
-    of the schema; None and empty values mean that the script has no such field, or a wrong one,
-    which was reported. A tuple, because a frozen dataclass of so many fields is slow to make.
+    that are written as variables, `outcomes_place` the place of the list of outcomes. The other
+    fields have the names of the schema; None and empty values mean that the script has no such
+    field, or a wrong one, which was reported. A tuple, because a frozen dataclass of so many fields
+    is slow to make.
     """
 
     name: Word
@@ -130,6 +141,7 @@ class State(NamedTuple):
     scene: Word | None = None
     frames: tuple[Word, ...] = ()
     misplaced_keys: tuple[str, ...] = ()
+    outcomes_place: Span | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,6 +159,7 @@ class Script:
     missing_definitions: MissingDefinitions = field(default_factory=dict)
     other_types: OtherTypes = field(default_factory=dict)
     unused: tuple[Unused, ...] = ()
+    misdeclared: tuple[Misdeclared, ...] = ()
     properties: tuple[Property, ...] = ()
     params: tuple[Param, ...] = ()
     fixed_params: tuple[FixedParam, ...] = ()

@@ -149,6 +149,7 @@ def _read_interface(
             as_outcome(word, value, report, "optional")
             for word, value in _outcome_words(sections["outcomes"], report)
         ),
+        outcomes_place=_outcomes_place(tree, fields),
         writes=_writes(sections, report),
         given=given,
         claims=tuple(word.text for word in claims),
@@ -195,6 +196,13 @@ def _fields(tree: Map, report: Report) -> dict[str, Tree]:
         one = names[0] if names and key != "io_keys" else None
         report.append(unknown_variable(word, owner, INTERFACE_FIELDS, meant=one))
     return meant | fields
+
+
+def _outcomes_place(tree: Map, fields: Mapping[str, Tree]) -> Span | None:
+    """The place of the outcomes in an interface, or of its first field."""
+    if "outcomes" in fields:
+        return fields["outcomes"].span
+    return tree.entries[0].key.span if tree.entries else None
 
 
 def _section(name: str, tree: Tree | None, report: Report) -> Section:

@@ -242,6 +242,15 @@ def type_faults(
             ),
         )
     differences = [*_differences(type_, found)]
+    if (
+        machine is not None
+        and found.stale is not None
+        and not differences
+        and any(
+            each.kind == "interface" and each.owner == type_.name for each in machine.misdeclared
+        )
+    ):
+        return  # SM102: the interface is another one once its outcomes are corrected
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
     elif differences:

@@ -41,9 +41,16 @@ def test_a_misspelt_target_is_one_fault() -> None:
     assert found(root) == ["SM101 sm/PICK", "SM101 sm/PLACE"]
 
 
-def test_what_no_target_means_is_unreachable() -> None:
+def test_the_only_state_that_no_target_means_is_meant() -> None:
     root = machine("sm", "done", leaf("A", {"ok": "XYZ"}), leaf("B", {"ok": "done"}))
-    assert found(root) == ["SM101 sm/A", "SM201 sm/B"]
+    assert one(root, "SM101").help == "did you mean `B`? no transition leads to it"
+    assert found(root) == ["SM101 sm/A"]
+
+
+def test_what_no_target_means_is_unreachable() -> None:
+    others = [leaf("B", {"ok": "done"}), leaf("C", {"ok": "done"})]
+    root = machine("sm", "done", leaf("A", {"ok": "XYZ"}), *others)
+    assert found(root) == ["SM101 sm/A", "SM201 sm/B", "SM201 sm/C"]
 
 
 def test_children_that_run_together_have_no_transitions() -> None:
@@ -88,10 +95,10 @@ def test_an_iterator_loops_only_on_outcomes_of_its_child() -> None:
     )
 
 
-def test_a_state_beside_an_unknown_outcome_is_unreachable() -> None:
+def test_a_state_behind_an_unknown_outcome_is_no_second_fault() -> None:
     root = machine("sm", "done", leaf("A", {"ok": "done", "bogus": "B"}, outcomes="ok"),
                    leaf("B", {"ok": "done"}))  # fmt: skip
-    assert found(root) == ["SM102 sm/A", "SM201 sm/B"]
+    assert found(root) == ["SM102 sm/A"]
 
 
 def test_a_state_that_lists_no_outcomes_is_one_fault() -> None:
@@ -175,8 +182,9 @@ def test_endings_of_an_iterator_are_declared(options: dict[str, Any], codes: lis
 
 def test_every_visible_outcome_needs_a_transition() -> None:
     known = leaf("A", {"ok": "done"}, outcomes="ok no maybe")
-    assert found(machine("sm", "done", known)) == ["SM104 sm/A", "SM104 sm/A"]
-    assert found(machine("sm", "done", replace(known, open=True))) == ["SM104 sm/A"] * 2
+    assert found(machine("sm", "done", known)) == ["SM104 sm/A"]
+    item = one(machine("sm", "done", replace(known, open=True)), "SM104")
+    assert item.finding.help == "add `no: done, maybe: done` to the transitions of `A`"
     both = concurrence("BOTH", "ok", leaf("L", outcomes="x y"), default="ok", to={"ok": "done"})
     assert found(machine("sm", "done", both)) == []
 

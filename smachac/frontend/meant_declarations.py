@@ -1,0 +1,572 @@
+"""Declarations of outcomes and states that lack or misspell a name which several places use.
+
+The side that is wrong is the one with fewer uses: if a class returns `done` and a transition is for
+`done`, but the interface has `doe`, which nothing uses, then the interface means `done`. The script
+is corrected before it is lowered, so that the fault is one finding, without its consequences.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
+
+from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.frontend.loader import Library
+from smachac.frontend.script import ANY_OUTCOME, ERROR, EXHAUSTED, TIMEOUT, Script, State
+from smachac.ir.nodes import DeclarationKind, Expression, Misdeclared, Outcome, StateType, Struct
+from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
+from smachac.ir.properties import atoms
+
+Place: TypeAlias = "tuple[int, ...]"
+"""The place of a state in a script: its number in each container, outermost first."""
+
+
+_CPP_OUTCOMES = re.compile(r"enum class Outcome\b[^{;]*(\{[^}]*\})")
+"""The outcomes of a class in C++ (docs/targets.md)."""
+
+_NAME = re.compile(r"[A-Za-z_]\w*")
+
+
+@dataclass(slots=True)
+class _Declarer:
+    """A state, container or state type that declares names, and the uses of its names.
+
+    `declared` are the names that it has, `listed` those of them that can be misspelt, with their
+    places; `used` are the uses of names by what uses them. `path` is that of its first state. For a
+    container, `others` are the names of its states, `outer` the outcomes of the container around.
+    """
+
+    kind: DeclarationKind
+    name: str
+    path: str
+    declared: tuple[str, ...]
+    listed: tuple[Word, ...]
+    place: Span | None
+    here: Span
+    via: tuple[Span, ...]
+    others: tuple[str, ...] = ()
+    outer: frozenset[str] = frozenset()
+    used: dict[str, dict[str, list[Word]]] = field(default_factory=dict)
+
+    def use(self, by: str, word: Word) -> None:
+        """Add a use of a name."""
+        if word.text:
+            self.used.setdefault(word.text, {}).setdefault(by, []).append(word)
+
+    def places(self, name: str) -> list[Word]:
+        """The places that use a name, each once."""
+        every = [word for some in self.used[name].values() for word in some]
+        return list({word.span: word for word in every}.values())
+
+
+@dataclass(slots=True)
+class _Repairs:
+    """The faults that were found, and the correct names by state type and by state.
+
+    `reported` is what was reported before, by text; `loops` are the places of the loops over states
+    with corrected outcomes.
+    """
+
+    reported: Mapping[Source, Report]
+    found: list[Misdeclared] = field(default_factory=list)
+    loops: set[Span] = field(default_factory=set)
+    types: dict[str, StateType] = field(default_factory=dict)
+    outcomes: dict[Place, tuple[Outcome, ...]] = field(default_factory=dict)
+    names: dict[Place, str] = field(default_factory=dict)
+
+
+def with_meant_declarations(script: Script, library: Library, report: Report) -> Script:
+    """The script with its misspelt and incomplete declarations corrected, and these faults. What
+    was reported about uses of their names is removed."""
+    if not _has_unknown(script.base):
+        return script
+    states = dict(_walk(script.base))
+    reported: dict[Source, Report] = {}
+    for item in report:
+        reported.setdefault(item.span.source, []).append(item)
+    repairs = _Repairs(reported)
+    _judge_types(states, library, repairs)
+    for place, state in states.items():
+        _judge_state(script, states, place, state, repairs)
+    if not (repairs.types or repairs.outcomes or repairs.names):
+        return script
+    uses = {word.span: word.text for fault in repairs.found for word in fault.uses}
+    report[:] = [item for item in report if not _follows(item, uses, repairs)]
+    base = _corrected(script.base, (), repairs, uses)
+    types = dict(script.state_types) | repairs.types
+    return replace(script, base=base, state_types=types, misdeclared=tuple(repairs.found))
+
+
+def _follows(item: Diagnostic, uses: Mapping[Span, str], repairs: _Repairs) -> bool:
+    """Whether a finding is about the use of a name that is correct: an outcome of a field `on`, or
+    one in the `writes` of an interface; or about a loop without `on`."""
+    given = item.finding.arguments
+    if given == ("on",):
+        return item.span in repairs.loops
+    return given[:1] in (("outcome",), ("outcomes",)) and item.span in uses
+
+
+def _walk(base: State) -> Iterator[tuple[Place, State]]:
+    """All states with their places, containers before the states in them."""
+    stack: list[tuple[Place, State]] = [((), base)]
+    while stack:
+        place, state = stack.pop()
+        yield place, state
+        inner = [((*place, at), each) for at, each in enumerate(state.states)]
+        stack.extend(reversed(inner))
+
+
+# --- the names that states use
+
+
+def _has_unknown(base: State) -> bool:
+    """Whether some name of a script is probably unknown: nothing else needs to be judged."""
+    for _, state in _walk(base):
+        ends = {name for name, _ in _ends(state)}
+        if not state.type.open and any(word.text not in ends for word in _own_words(state)):
+            return True
+        names = {each.name.text for each in state.states}
+        exits = {each.name for each in state.outcomes}
+        for word in _inner_words(state):
+            if word.text not in exits and word.text not in names:
+                return True
+        for child in state.states if state.owner in ("Concurrence", "Iterator") else ():
+            known = {name for name, _ in _ends(child)}
+            if not child.type.open and any(w.text not in known for w in _words_about(state, child)):
+                return True
+        named = {word.text for _, rows in state.outcome_map for word, _ in rows}
+        if not named <= names:
+            return True
+        facts = state.type.class_facts
+        if facts is not None and any(word.text not in ends for word in facts.returns):
+            return True
+    return False
+
+
+def _ends(state: State) -> Iterator[tuple[str, Span]]:
+    """The outcomes with which a state can end, each with its place."""
+    if state.owner == "state":
+        for each in state.type.outcomes:
+            yield each.name, each.span
+    for each in state.outcomes:
+        yield each.name, each.span
+    here = state.name.span
+    default = state.type.variables.get("default_outcome")
+    if state.owner == "state" and state.default_outcome is not None:
+        yield state.default_outcome
+    elif state.owner == "state" and default is not None:
+        given = [each.value.data for each in state.variables if each.name == default.name]
+        if not given and default.default is not None:
+            given = [default.default.data]
+        yield from ((name, here) for name in given if isinstance(name, str))
+    yield from ((name, here) for name in _added(state))
+
+
+def _added(state: State) -> Iterator[str]:
+    """The outcomes that the sugar of a state, and the exceptions in it, can add."""
+    yield ERROR
+    if state.owner == "Iterator":
+        words = {key.text: to.text for key, to in state.final_outcome_map}
+        end = state.exhausted_outcome.text if state.exhausted_outcome is not None else EXHAUSTED
+        yield words.get(end, end)
+    if state.sugar.timeout is not None:
+        yield TIMEOUT
+    if state.sugar.retry is not None:
+        yield EXHAUSTED
+    if any((state.sugar.timeout, state.sugar.retry, state.sugar.for_each)):
+        yield PREEMPTED
+
+
+def _own_words(state: State) -> Iterator[Word]:
+    """The names of outcomes of a state in its own fields."""
+    yield from (key for key, _ in state.transitions)
+    for part in (state.sugar.retry, state.sugar.for_each):
+        for word in part.on if part is not None else ():
+            written = word.span.text
+            # An unknown outcome in `on` was reported, and replaced with the nearest one.
+            yield Word(written, word.span) if written.isidentifier() else word
+
+
+def _words_about(parent: State, child: State) -> Iterator[Word]:
+    """The names of outcomes of a state in the fields of its container."""
+    for _, rows in parent.outcome_map:
+        for name, ending in rows:
+            if name.text == child.name.text and ending.text != ANY_OUTCOME:
+                yield ending
+    yield from (*parent.loop_outcomes, *parent.break_outcomes)
+    end = parent.exhausted_outcome.text if parent.exhausted_outcome is not None else EXHAUSTED
+    yield from (key for key, _ in parent.final_outcome_map if key.text != end)
+
+
+def _inner_words(state: State) -> Iterator[Word]:
+    """The names of outcomes and states in a container, by which it continues or ends."""
+    if state.owner == "Concurrence":
+        yield from (name for name, _ in state.outcome_map)
+        if state.default_outcome is not None:
+            yield state.default_outcome
+    elif state.owner == "Iterator":
+        yield from (to for _, to in state.final_outcome_map)
+    elif state.owner != "state":
+        for child in state.states:
+            yield from (target for _, target in child.transitions)
+        if state.on_error is not None:
+            yield state.on_error
+        if state.initial is not None:
+            yield state.initial
+
+
+def _code_words(script: Script, state: State) -> Iterator[Word]:
+    """The names of outcomes of a state in the values of its variables."""
+    for each in state.variables:
+        data = each.value.data
+        known = state.type.variables.get(each.name)
+        if each.role == "conditions" and isinstance(data, Struct):
+            yield from (Word(name, each.span) for name, _ in data.entries)
+        elif each.role == "steps" and isinstance(data, tuple):
+            ends = [dict(step.entries).get("outcome") for step in data if isinstance(step, Struct)]
+            yield from (Word(end, each.span) for end in ends if isinstance(end, str))
+        elif known is not None and known.returns == "outcome":
+            text = data.text if isinstance(data, Expression) else str(data)
+            facts = script.functions.get(text)
+            yield from facts.texts if facts is not None else ()
+
+
+# --- interfaces of state types
+
+
+def _judge_types(states: Mapping[Place, State], library: Library, repairs: _Repairs) -> None:
+    """The faults in the outcomes of interfaces of the user."""
+    declarers: dict[str, _Declarer] = {}
+    for place, state in states.items():
+        type_ = state.type
+        fixed = not (type_.open or type_.built_in or "outcomes" in type_.given)
+        if state.owner != "state" or not fixed or type_.outcomes_place is None:
+            continue
+        found = declarers.get(type_.name)
+        if found is None:
+            words = tuple(Word(each.name, each.span) for each in type_.outcomes)
+            names = tuple(each.name for each in type_.outcomes)
+            at = _path(states, place)
+            here = type_.outcomes_place
+            found = _Declarer("interface", type_.name, at, names, words, here, here, ())
+            declarers[type_.name] = found
+        added = {*_added(state)} - {*found.declared}
+        parent = states[place[:-1]]
+        for word in (*_own_words(state), *_words_about(parent, state)):
+            if word.text not in added:
+                found.use("the script", word)
+    for name, each in declarers.items():
+        type_ = _type_of(states, name)
+        for word in _words_of_writes(type_, repairs.reported):
+            each.use("`writes`", word)
+        for word in (*_class_words(type_), *_header_words(type_, library)):
+            each.use("its class", word)
+        fault = _fault(each, repairs)
+        if fault is not None:
+            renamed = dict(fault.renamed)
+            writes = tuple((renamed.get(end, end), keys) for end, keys in type_.writes)
+            outcomes = _outcomes(type_.outcomes, fault)
+            repairs.types[name] = replace(type_, outcomes=outcomes, writes=writes)
+
+
+def _type_of(states: Mapping[Place, State], name: str) -> StateType:
+    """The state type of a name."""
+    return next(each.type for each in states.values() if each.type.name == name)
+
+
+def _class_words(type_: StateType) -> Iterator[Word]:
+    """The outcomes that the class of a type returns or declares."""
+    facts = type_.class_facts
+    if facts is not None:
+        yield from (each.outcome for each in facts.endings)
+        yield from facts.outcomes or ()
+
+
+def _words_of_writes(type_: StateType, reported: Mapping[Source, Report]) -> list[Word]:
+    """The outcomes in the `writes` of an interface; only those that it does not declare, if some
+    were reported, because the others can stand for them."""
+    place = type_.outcomes_place
+    unknown = [
+        Word(item.span.text, item.span)
+        for item in (reported.get(place.source, ()) if place is not None else ())
+        if item.finding.arguments == ("outcomes", item.span.text)
+    ]
+    ends = {end for end, _ in type_.writes}
+    return unknown or [Word(each.name, each.span) for each in type_.outcomes if each.name in ends]
+
+
+def _header_words(type_: StateType, library: Library) -> Iterator[Word]:
+    """The outcomes in the header of a type's class in C++."""
+    code = type_.classes.get("cpp", {})
+    header = library.code(code.get("header", "")) if code else None
+    name = code.get("class", "").rpartition("::")[2]
+    begin = re.search(rf"\b(class|struct)\s+{re.escape(name)}\b", header.text) if header else None
+    if header is None or begin is None:
+        return
+    found = _CPP_OUTCOMES.search(header.text, begin.end())
+    for each in _NAME.finditer(header.text, *found.span(1)) if found is not None else ():
+        yield Word(each[0], Span(header, *each.span()))
+
+
+# --- outcomes and states of the script
+
+
+def _judge_state(
+    script: Script,
+    states: Mapping[Place, State],
+    place: Place,
+    state: State,
+    repairs: _Repairs,
+) -> None:
+    """The faults in the outcomes that a state declares, and in the names of its states."""
+    if state.owner == "state" and (state.type.open or "outcomes" not in state.type.given):
+        return
+    path = _path(states, place)
+    words = tuple(Word(each.name, each.span) for each in state.outcomes)
+    names = tuple(name for name, _ in _ends(state))
+    kind: DeclarationKind = "state" if state.owner == "state" else "container"
+    others = tuple(each.name.text for each in state.states)
+    found = _Declarer(
+        kind,
+        state.name.text,
+        path,
+        names,
+        words,
+        state.outcomes_place,
+        state.name.span,
+        state.via,
+        others,
+    )
+    for word in _own_words(state):
+        found.use("its transitions", word)
+    if place:
+        parent = states[place[:-1]]
+        if parent.owner in ("base", "StateMachine", "Sequence"):
+            found.outer = frozenset(each.name for each in parent.outcomes)
+        for word in _words_about(parent, state):
+            found.use(f"`{parent.name.text}`", word)
+    for word in _code_words(script, state):
+        found.use("its code", word)
+    if kind == "container":
+        by = "its outcome map" if state.owner == "Concurrence" else "its states"
+        for word in _inner_words(state):
+            if word.text not in others:
+                found.use(by, word)
+        _use_implied(found, state)
+        _judge_children(found, script, states, place, repairs)
+    known = {each.name.text for each in states.values()}
+    if not known.isdisjoint(found.used):
+        for name in known.intersection(found.used):
+            del found.used[name]
+    fault = _fault(found, repairs)
+    if fault is not None:
+        repairs.outcomes[place] = _outcomes(state.outcomes, fault)
+        if state.sugar.for_each is not None and not set(fault.meant).isdisjoint(GOOD_OUTCOMES):
+            repairs.loops.add(state.sugar.for_each.span)
+
+
+def _use_implied(found: _Declarer, state: State) -> None:
+    """Add the uses of outcomes of a container by states that end with the same outcome."""
+    loops = {word.text for word in state.loop_outcomes}
+    mapped = {key.text: to for key, to in state.final_outcome_map}
+    for child in state.states:
+        handled = {key.text for key, _ in child.transitions}
+        for name, span in _ends(child):
+            if state.owner == "Iterator":
+                if not state.break_outcomes and name not in loops and name != ERROR:
+                    found.use(f"`{child.name.text}`", mapped.get(name, Word(name, span)))
+            elif name in {*found.declared, *found.used} and name not in handled:
+                found.use("its states", Word(name, span))
+
+
+def _judge_children(
+    outer: _Declarer,
+    script: Script,
+    states: Mapping[Place, State],
+    place: Place,
+    repairs: _Repairs,
+) -> None:
+    """The states of a container with a misspelt name: several places use a similar name."""
+    state = states[place]
+    names = [each.name for each in state.states]
+    texts = tuple(each.text for each in names)
+    if state.owner == "Iterator" or len({*texts}) < len(texts):
+        return
+    found = _Declarer(
+        "child",
+        outer.name,
+        outer.path,
+        (*texts, *outer.declared),
+        tuple(names),
+        None,
+        outer.here,
+        state.via,
+    )
+    if state.owner == "Concurrence":
+        for _, rows in state.outcome_map:
+            for word, _ in rows:
+                found.use("its outcome map", word)
+    else:
+        for word in _inner_words(state):
+            found.use("transitions", word)
+        if state.owner == "Sequence":
+            return
+    if all(name in found.used for name in texts):
+        return
+    known = {each.name.text for each in states.values()}
+    for each in script.properties:
+        for atom in atoms(each.form):
+            for name in atom.name.split("/") if atom.subject == "path" else ():
+                if name not in known:
+                    found.use("properties", Word(name, atom.span))
+    renamed, _ = _meant(found, pairs=False)
+    for old, new in renamed.items():
+        if new in known:
+            continue
+        word = next(each for each in names if each.text == old)
+        repairs.names[(*place, texts.index(old))] = new
+        repairs.found.append(_finding(found, word, (new,), ""))
+        outer.used.pop(new, None)
+
+
+# --- which name is meant
+
+
+def _fault(found: _Declarer, repairs: _Repairs) -> Misdeclared | None:
+    """The fault of a declarer of outcomes, which is added to those that were found, unless another
+    fault of its list was reported."""
+    renamed, added = _meant(found, pairs=True)
+    fault: Misdeclared | None = None
+    if (added or renamed) and _was_reported(found, repairs.reported):
+        return _finding(found, Word("", found.here), added, "")
+    if added:
+        place, last = found.place or found.here, found.listed[-1:]
+        if last and "\n" in place.text:
+            place = last[0].span
+        fault = _finding(found, Word("", place), added, _list_with(found, added))
+        repairs.found.append(fault)
+    for old, new in renamed.items():
+        word = next(each for each in found.listed if each.text == old)
+        one = _finding(found, word, (new,), "")
+        repairs.found.append(one)
+        fault = one if fault is None else fault
+    return fault._replace(renamed=tuple(renamed.items())) if fault is not None else None
+
+
+def _was_reported(found: _Declarer, reported: Mapping[Source, Report]) -> bool:
+    """Whether the list of a declarer has a wrong shape, or an interface without one has a field of
+    another name."""
+    place = found.place
+    if place is None:
+        return False
+    return any(
+        place.start <= item.span.start <= place.end
+        or (found.kind == "interface" and not found.listed and item.code in ("SM002", "SM003"))
+        for item in reported.get(place.source, ())
+    )
+
+
+def _list_with(found: _Declarer, added: tuple[str, ...]) -> str:
+    """The list of outcomes in the script with more names."""
+    written = found.place.text if found.place is not None else ""
+    if written[:1] == "{" and written[-1:] == "}" and "\n" not in written:
+        parts = [written[1:-1].strip(), *(f"{name}: {{}}" for name in added)]
+        return f"outcomes: {{{', '.join(filter(None, parts))}}}"
+    names = [*(word.text for word in found.listed), *added]
+    return f"outcomes: [{', '.join(names)}]"
+
+
+def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str, ...]]:
+    """The names that are meant by misspelt ones of a declarer, and the names that it lacks.
+    `pairs`: names that are not alike can belong together."""
+    unknown = [name for name in found.used if name not in found.declared and name.isidentifier()]
+    if not unknown:
+        return {}, ()
+    unused = [word.text for word in found.listed if word.text not in found.used]
+    renamed: dict[str, str] = {}
+    for name in unknown:
+        near = guesser(unused)(name) if unused and _is_strong(found, name) else None
+        if near is not None:
+            renamed[near] = name
+            unused.remove(near)
+    if not pairs:
+        return renamed, ()
+    left = [name for name in unknown if name not in renamed.values()]
+    strong = [name for name in left if _is_certain(found, name)]
+    unused = [name for name in unused if name != PREEMPTED or found.kind == "container"]
+    if len(strong) == len(left) == len(unused) == 1:
+        return renamed | {unused[0]: left[0]}, ()
+    empty = not found.declared or {*found.declared} <= {ERROR}
+    return renamed, tuple(name for name in left if name in strong or empty)
+
+
+def _is_strong(found: _Declarer, name: str) -> bool:
+    """Whether several places use a name."""
+    return len(found.used[name]) > 1 or len(found.places(name)) > 1
+
+
+def _is_certain(found: _Declarer, name: str) -> bool:
+    """Whether a name is certainly meant to be declared: two sides use it, or several places in a
+    container that no other names are like."""
+    if len(found.used[name]) > 1:
+        return True
+    if found.kind != "container" or len(found.places(name)) < 2:
+        return False
+    if "/" in found.path and name not in found.outer:
+        return False
+    shouted = any(each.isupper() for each in found.others)
+    known = guesser((*found.declared, *found.others))
+    return shouted and name.islower() and known(name) is None
+
+
+def _finding(found: _Declarer, word: Word, meant: tuple[str, ...], text: str) -> Misdeclared:
+    users = tuple(dict.fromkeys(by for name in meant for by in found.used[name]))
+    uses = tuple(word for name in meant for word in found.places(name))
+    return Misdeclared(
+        found.kind, found.name, word, meant, users, uses, text, found.path, found.via
+    )
+
+
+# --- the corrected script
+
+
+def _outcomes(outcomes: Iterable[Outcome], fault: Misdeclared) -> tuple[Outcome, ...]:
+    """The outcomes of a declarer without its fault."""
+    renamed = dict(fault.renamed)
+    kept = [replace(each, name=renamed.get(each.name, each.name)) for each in outcomes]
+    names = {each.name for each in kept}
+    places = {word.text: word.span for word in reversed(fault.uses)}
+    more = (Outcome(name=name, span=places[name]) for name in fault.meant if name not in names)
+    return (*kept, *more)
+
+
+def _corrected(state: State, place: Place, repairs: _Repairs, uses: Mapping[Span, str]) -> State:
+    states = tuple(
+        _corrected(each, (*place, at), repairs, uses) for at, each in enumerate(state.states)
+    )
+    sugar = state.sugar
+    if sugar.retry is not None:
+        sugar = replace(sugar, retry=replace(sugar.retry, on=_respelt(sugar.retry.on, uses)))
+    if sugar.for_each is not None:
+        on = _respelt(sugar.for_each.on, uses)
+        sugar = replace(sugar, for_each=replace(sugar.for_each, on=on))
+    name = state.name._replace(text=repairs.names.get(place, state.name.text))
+    type_ = state.type
+    if type_.name in repairs.types and not type_.open:
+        type_ = repairs.types[type_.name]
+    outcomes = repairs.outcomes.get(place, state.outcomes)
+    return state._replace(name=name, type=type_, outcomes=outcomes, sugar=sugar, states=states)
+
+
+def _respelt(words: tuple[Word, ...], uses: Mapping[Span, str]) -> tuple[Word, ...]:
+    """Words, of which some are names that were not known."""
+    return tuple(Word(uses.get(word.span, word.text), word.span) for word in words)
+
+
+def _path(states: Mapping[Place, State], place: Place) -> str:
+    """The path of a state at a place."""
+    return "/".join(states[place[:end]].name.text for end in range(len(place) + 1))
