@@ -67,6 +67,7 @@ from smachac.frontend.state_fields import (
     has_wrong_transitions,
     is_field,
     meant_container,
+    params_meant,
     read_fields,
     second_key,
     with_further_states,
@@ -76,6 +77,7 @@ from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import (
     SUB_SCRIPT_HELP,
     one_for_all_calls,
+    one_for_all_look_ups,
     overridden,
     params_at_call,
     params_beside_call,
@@ -200,7 +202,7 @@ class _Resolver:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
-        self.report[:] = one_for_all_calls(self.report)
+        self.report[:] = one_for_all_look_ups(one_for_all_calls(self.report))
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
@@ -259,7 +261,7 @@ class _Resolver:
         of the call, if the state is that of a sub-script."""
         if "params" in own:
             own["params"] = self.limit_depth(own["params"])
-        params = own.get("params")
+        params = own.get("params") or params_meant(own)
         begin = begin or self.uses.mark(self.report)
         scope = child_scope(around.scope, params.value if params else None, self.report)
         entries: dict[str, Entry] = {}
@@ -278,7 +280,7 @@ class _Resolver:
         entries = with_outer_variables(name, entries, type_, self.report)
         entries |= self.lists(own, scope, type_)
         entries |= texts_meant(own, scope, type_, self.report)
-        entries = with_meant_fields(entries, owner, type_)
+        entries = with_meant_fields(entries, owner, type_, self.report)
         self.uses.type(type_)
         if scope:
             self.fixed_params += fixed_params(own, type_, scope)
