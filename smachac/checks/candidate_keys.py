@@ -52,8 +52,8 @@ MOST_FITTING = 3
 
 def fitting_keys(types: Types, scope: UserdataScope, reader: Reader) -> list[str]:
     """The keys in the container of a state that have the type of one of its inputs and that the
-    state does not read, first those that nothing reads; none where the type of the input is not
-    known, or if there are too many."""
+    state does not read, first those that nothing reads, and those that a state sets before the
+    initial values; none where the type of the input is not known, or if there are too many."""
     wanted = types.inputs.get((reader.path, reader.key), ANY)
     names = remapping(reader.node)
     if is_open(wanted) or reader.key in names or not isinstance(reader.node, Leaf):
@@ -66,5 +66,5 @@ def fitting_keys(types: Types, scope: UserdataScope, reader: Reader) -> list[str
         if key not in own and not is_open(type_) and widened(type_) != ANY and fits(type_, wanted)
     ]
     read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
-    found.sort(key=lambda key: key in read)
+    found.sort(key=lambda key: (key in read, key in scope.held))
     return found if len(found) <= MOST_FITTING else []

@@ -640,21 +640,23 @@ def lost_output(context: Context) -> Iterator[Finding]:
             effect = f"`{reader}` stops when it reads the key"
         elif itself:
             effect = f"each run of `{reader}` begins with the value that was set before the first"
+        listed_here = [key for key in keeper.outputs if key.span.source is written.source]
+        place = written if called else keeper.span
+        if called and listed_here:
+            place = listed_here[-1].span
         fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
-            span=wrong.span if wrong is not None else written if called else keeper.span,
+            span=wrong.span if wrong is not None else place,
             message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
             f" `{keeper.name}`: {happens}",
             arguments=(lost.own,),
-            help=fix
-            or f"add `{lost.own}` to the `output_keys` of"
-            + (
-                f" the outermost state in `{written.source.name}`"
-                if called
-                else f" `{keeper.name}`"
-            ),
+            help=fix or _output_help(lost.own, keeper, written if called else None),
             related=(
-                *(other_place(written, f"`{lost.writer.name}` sets it here") if not called else ()),
+                *(
+                    other_place(written, f"`{lost.writer.name}` sets it here")
+                    if place != written
+                    else ()
+                ),
                 *other_place(lost.reader.span, lost.reader.words),
                 *_list_of(keeper, keeper.outputs, "output_keys"),
                 *calls(keeper, keeper.span),
@@ -666,3 +668,15 @@ def lost_output(context: Context) -> Iterator[Finding]:
             if called or wrong is not None or not lost.is_missing
             else with_output(keeper, lost.own),
         )
+
+
+def _output_help(key: str, keeper: Container, written: Span | None) -> str:
+    """The help for an output that a container lacks. `written`: where a state in a sub-script sets
+    it, if the container is the outermost state of that."""
+    if written is None:
+        return f"add `{key}` to the `output_keys` of `{keeper.name}`"
+    where = f"the outermost state in `{written.source.name}`"
+    own = [each.name for each in keeper.outputs if each.span.source is written.source]
+    if own:
+        return f"write `output_keys: [{', '.join([*own, key])}]` in {where}"
+    return f"add `output_keys: [{key}]` to {where}"

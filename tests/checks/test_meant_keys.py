@@ -128,3 +128,45 @@ def test_a_remapping_of_a_key_that_only_the_code_sets() -> None:
     text = COUNT.replace("      output_keys: [count]\n", "      remapping: {total: count}\n")
     text = text.replace("{count: 'lambda", "{total: 'lambda")
     assert [row[0] for row in reported({"main.yml": text})] == ["SM308"]
+
+
+CALL = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {count: 0}
+states:
+  - DROP: {script: drop, transitions: {done: SHOW}}
+  - SHOW: {template: PrintUserdataState, input_keys: [count, spot], transitions: {succeeded: done}}
+"""
+DROP = """\
+- DROP:
+    template: StateMachine
+    outcomes: [done]
+    input_keys: [count]
+    output_keys: [spot]
+    states:
+      - COUNT:
+          template: CallbacksState
+          input_keys: [count]
+          output_keys: [count, spot]
+          callbacks: {count: 'lambda ud: ud.count + 1', spot: 'lambda ud: 1.5'}
+          transitions: {succeeded: done}
+"""
+
+
+def test_an_output_that_a_sub_script_lacks() -> None:
+    help = "write `output_keys: [spot, count]` in the outermost state in `drop.yml`"
+    assert reported({"main.yml": CALL, "drop.yml": DROP}) == [("SM307", "spot", help)]
+    both = DROP.replace("[spot]", "[spot, count]")
+    assert reported({"main.yml": CALL, "drop.yml": both}) == []
+
+
+def test_two_keys_of_the_type_of_an_input() -> None:
+    text = COUNT.replace("label: none_yet", "up: [0, 0, 1], down: [0, 0, 0.5]").replace(
+        "[count, label]", "[count, up, down, place: Point]"
+    )
+    text = text.replace("[count, up, down, place: Point]", "{count: int, place: 'list[float]'}")
+    help = "write `remapping: {place: up}` or `remapping: {place: down}` in `SHOW`: these keys have"
+    found = [row for row in reported({"main.yml": text}) if row[0] == "SM301"]
+    assert found == [("SM301", "place", f"{help} its type")]
