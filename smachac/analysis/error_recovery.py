@@ -31,6 +31,9 @@ def unknown_remaps(node: Node) -> list[UnknownRemap]:
         return []
     own = {key.name for key in (*node.inputs, *node.outputs)}
     wrong = [remap for remap in node.remaps if remap.key not in own]
+    if wrong and isinstance(node, Leaf):  # SM308 and SM310 report keys that only the code uses
+        used = {*undeclared_writes(node), *(key for key, _ in undeclared_reads(node))}
+        wrong = [remap for remap in wrong if remap.key not in used]
     if not wrong:
         return []
     taken = {remap.key for remap in node.remaps}

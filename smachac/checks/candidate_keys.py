@@ -46,13 +46,18 @@ def unread_output(scope: UserdataScope, missing: str) -> UnreadOutput | None:
     return found[0] if len(found) == 1 else None
 
 
-def fitting_key(types: Types, scope: UserdataScope, reader: Reader) -> str | None:
-    """The only key in the container of a state that has the type of one of its inputs and that the
-    state does not read; None where the type of the input is not known."""
+MOST_FITTING = 3
+"""More keys of one type are no help."""
+
+
+def fitting_keys(types: Types, scope: UserdataScope, reader: Reader) -> list[str]:
+    """The keys in the container of a state that have the type of one of its inputs and that the
+    state does not read, first those that nothing reads, and those that a state sets before the
+    initial values; none where the type of the input is not known, or if there are too many."""
     wanted = types.inputs.get((reader.path, reader.key), ANY)
     names = remapping(reader.node)
     if is_open(wanted) or reader.key in names or not isinstance(reader.node, Leaf):
-        return None
+        return []
     own = {names.get(each.name, each.name) for each in reader.node.inputs}
     keys = {key: type_ for (path, key), type_ in types.keys.items() if path == scope.path}
     found = [
@@ -60,4 +65,6 @@ def fitting_key(types: Types, scope: UserdataScope, reader: Reader) -> str | Non
         for key, type_ in keys.items()
         if key not in own and not is_open(type_) and widened(type_) != ANY and fits(type_, wanted)
     ]
-    return found[0] if len(found) == 1 else None
+    read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
+    found.sort(key=lambda key: (key in read, key in scope.held))
+    return found if len(found) <= MOST_FITTING else []

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Literal, NamedTuple
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Literal
 
 from smachac.analysis.accesses import callback_names, userdata_fields
 from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import is_open
 from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
-from smachac.analysis.unset_reads import Missing, container_name, reader_at
+from smachac.analysis.unset_reads import Missing, container_name
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.expressions import unknown_endings
+from smachac.checks.meant_keys import (
+    meant_keys,
+    misnamed_finding,
+    misnamed_keys,
+    sees_everything,
+    used_in,
+)
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes import meant_default
@@ -36,14 +42,13 @@ from smachac.checks.word_loops import (
 )
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Node, Remap
 from smachac.ir.traversal import remapping
-from smachac.ir.types import ANY
 
 
 @rule(
@@ -93,11 +98,14 @@ def dead_key(context: Context) -> Iterator[Finding]:
     for empty in context.empty_remaps:
         unset.setdefault(empty.scope.path, set()).add(empty.remap.to)
     in_functions = function_reads(context)
+    all_misnamed = misnamed_keys(context)
+    misnamed = {each.word.span: each for each in all_misnamed.values()}
+    inner = {(path.rpartition("/")[0], key) for path, key in all_misnamed}
     for scope in flow.scopes.values():
         container = scope.container
-        if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
+        if context.of_container(sees_everything, scope.path, scope) or container.sugar:
             continue
-        read = context.of_container(_used_in, scope.path, scope)
+        read = context.of_container(used_in, scope.path, scope)
         yield from loops_over_names_of_lists(scope, read)
         misplaced = _misplaced_keys(container)
         untyped = any(map(lacks_type_key, container.children))
@@ -107,6 +115,13 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 continue
             if key in in_functions.get(scope.path, ()):
                 continue  # SM310
+            if (scope.path, key) in inner:
+                continue  # SM306: an input of a container inside is misspelt
+            wrong = misnamed.get(span)
+            if wrong is not None:
+                if wrong.declared:
+                    yield misnamed_finding(wrong, scope.path, container_name(scope, span))
+                continue  # otherwise SM301
             if any(guesser([key])(name) for name in unset.get(scope.path, ())):
                 continue  # SM301 or SM302 is about the same slip
             if any(_remaps_unknown(child, key) for child in container.children):
@@ -124,6 +139,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
             if copied is not None:
                 yield copied_finding(scope.path, copied, key)
                 continue
+            back = _turned_preset(scope, key, read) if node is container else None
             is_result = container is flow.machine.root and node is not container
             where = container_name(scope, span)
             yield Finding(
@@ -131,6 +147,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 message=f"`{key}` is set, but nothing in {where} reads it",
                 arguments=(key,),
                 help=_reader_help(scope, key, node)
+                or (f"write `{back}: {key}`: the name of the key comes first" if back else None)
                 or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
                 f" it, or to the `output_keys` of {where}",
                 related=calls(node, span),
@@ -223,84 +240,17 @@ def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
     )
 
 
-class MeantKey(NamedTuple):
-    """A key that nothing sets, and the only preset or input of its container that nothing reads,
-    which is probably meant for it: by a remapping or, if `looped`, by a `for_each` over its items.
-    `word` is the name of that preset or input, `state` the path of the state that reads the key."""
-
-    missing: Missing
-    word: Word
-    state: str
-    looped: bool
-
-
-def meant_keys(context: Context) -> dict[str, MeantKey]:
-    """The keys that are probably meant for keys that nothing sets, by path of the container. Only
-    where one key is unset and one is unread, and where the type of the reader fits, or is not known
-    and the names have a word in common."""
-    missing: dict[str, list[Missing]] = {}
-    for each in context.missing_keys("nowhere"):
-        missing.setdefault(each.scope.path, []).append(each)
-    found: dict[str, MeantKey] = {}
-    for path, (first, *others) in missing.items():
-        scope = first.scope
-        if others:
-            continue
-        if context.of_container(_sees_everything, path, scope):
-            continue
-        read = context.of_container(_used_in, path, scope)
-        unread = [
-            (Word(preset.key, preset.span), type_of_data(preset.value.data), preset.value.data)
-            for preset in scope.container.userdata
-            if preset.key not in read
-        ]
-        unread += [
-            (Word(key.name, key.span), key.type, None)
-            for key in scope.container.inputs
-            if key.name not in read
-        ]
-        reader = reader_at(scope, first.vertices[0], first.key)
-        wanted = context.types.inputs.get((reader.path, reader.key), ANY)
-        if len(unread) != 1 or reader.key != first.key or reader.node is scope.container:
-            continue
-        word, given, data = unread[0]
-        looped = isinstance(data, tuple) and not isinstance(reader.node, nodes.Iterator)
-        alike = not set(word.text.split("_")).isdisjoint(first.key.split("_"))
-        fits = alike if ANY in (wanted, given) else misfit(given, wanted) is None
-        if not fits:
-            if looped:
-                found[path] = MeantKey(first, word, reader.path, looped=True)
-        else:
-            found[path] = MeantKey(first, word, reader.path, looped=False)
-    return found
+def _turned_preset(scope: UserdataScope, key: str, known: Collection[str]) -> str | None:
+    """The key of a container that is the value of a preset which nothing reads, and has no value
+    itself: name and value have changed places."""
+    values = {preset.key: preset.value.data for preset in scope.container.userdata}
+    value = values.get(key)
+    return value if isinstance(value, str) and value in known and value not in values else None
 
 
 def _remaps_unknown(node: Node, key: str) -> bool:
     """Whether a remapping of a state has a key of the container in place of its own."""
     return any(key in (each.remap.key, each.meant) for each in unknown_remaps(node))
-
-
-def _sees_everything(scope: UserdataScope) -> bool:
-    """Whether a state in a container can read any key."""
-    raw = isinstance(scope.container, nodes.Iterator)
-    return any(
-        is_open(child)
-        or (raw and isinstance(child, Leaf))
-        or (isinstance(child, nodes.Iterator) and not child.item_key)
-        for child in scope.container.children
-    )
-
-
-def _used_in(scope: UserdataScope) -> set[str]:
-    """The keys that a state in a container declares as inputs, that its class reads, or over which
-    it iterates, and the outputs of the container."""
-    found = {*scope.reads.get(START, ()), *scope.outputs}
-    for child in scope.container.children:
-        names = remapping(child)
-        found.update(names.get(key.name, key.name) for key in child.inputs)
-        if isinstance(child, Leaf) and child.class_facts is not None:
-            found.update(word.text for word in child.class_facts.reads)  # SM310
-    return found
 
 
 def _written_in(scope: UserdataScope) -> set[str]:
@@ -420,6 +370,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept |= _swapped_lists(context)
     kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
+    misnamed = {each.word.span: each for each in misnamed_keys(context).values()}
     empty: dict[str, list[str]] = {}
     for each in context.empty_remaps:
         empty.setdefault(each.scope.path, []).append(each.remap.to)
@@ -431,11 +382,15 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
         container = scope.container
         if isinstance(container, nodes.Iterator):
             yield from words_as_lists(scope.path, container)
-        if context.of_container(_sees_everything, scope.path, scope) or container.sugar:
+        if context.of_container(sees_everything, scope.path, scope) or container.sugar:
             continue
-        used = context.of_container(_used_in, scope.path, scope)
+        used = context.of_container(used_in, scope.path, scope)
         for key in container.inputs:
             if key.name in used or (scope.path, key.name) in kept:
+                continue
+            wrong = misnamed.get(key.span)
+            if wrong is not None and wrong.declared:
+                yield misnamed_finding(wrong, scope.path, container_name(scope, key.span))
                 continue
             if any(guesser([key.name])(name) for name in empty.get(scope.path, ())):
                 continue  # SM302
@@ -452,7 +407,9 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             if key.name in set_ or id(key) in misspelt:
                 continue
             if (outer, scope.outputs[key.name]) not in missing:
-                yield _unused(scope.path, container, key, "output")
+                own = {each.name for each in container.outputs}
+                meant = guesser(sorted(set_ - own)).sure(key.name)
+                yield _unused(scope.path, container, key, "output", meant)
     yield from _unused_by_the_script(context)
 
 
@@ -466,7 +423,9 @@ def _unwritten_outputs(context: Context) -> Iterator[Finding]:
             yield finding
 
 
-def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -> Finding:
+def _unused(
+    path: str, node: Node, key: Key, role: Literal["input", "output"], meant: str | None = None
+) -> Finding:
     span = key.span if not isinstance(node, Leaf) else place_of(node, key)
     verb = "read" if role == "input" else "set"
     effect = "a state that reads the key afterwards finds it unset, or with an older value"
@@ -482,10 +441,12 @@ def _unused(path: str, node: Node, key: Key, role: Literal["input", "output"]) -
         span=span,
         message=f"`{node.name}` declares the {role} key `{key.name}`, but {nothing}",
         arguments=(role, key.name),
-        help=f"remove `{key.name}` from the `{role}_keys` of `{node.name}`, or {other}",
+        help=did_you_mean(meant)
+        or f"remove `{key.name}` from the `{role}_keys` of `{node.name}`, or {other}",
         effect=effect,
         related=calls(node, span),
         node=path,
+        edits=respelt(Word(key.name, span), meant),
     )
 
 
@@ -548,6 +509,11 @@ def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Fin
     if callbacks is None or conditions is None or not (callbacks or chooses):
         return
     called = [*callbacks.values(), *conditions.values()]
+    if chooses and not called and not [*unknown_endings(path, leaf)]:
+        lacking = _without_conditions(path, leaf)
+        if lacking is not None:
+            yield lacking
+            return
     known = [userdata_fields(code.text) for code in called]
     fields = [each for each in known if each is not None]
     if len(fields) == len(known):
@@ -560,6 +526,28 @@ def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Fin
         yield from _unused_keys(path, leaf, arguments, used, "input")
     if chooses and not [*unknown_endings(path, leaf)] and meant_default(leaf) is None:
         yield from _unused_outcomes(path, leaf, conditions)
+
+
+def _without_conditions(path: str, leaf: Leaf) -> Finding | None:
+    """The finding on a state of conditions that has none, although it has outcomes for them."""
+    possible = {variable(leaf, "default_outcome"), leaf.catches}
+    outcomes = [each for each in leaf.outcomes if each.name not in possible]
+    held = variable_of(leaf, "conditions")
+    if not outcomes or held is None or meant_default(leaf) is not None:
+        return None
+    names = [each.name for each in outcomes]
+    keys = [name if is_plain(name) else f"'{name}'" for name in names]
+    pairs = ", ".join(f"{key}: 'lambda ud: ...'" for key in keys)
+    reads = listed([f"ud.{key.name}" for key in leaf.inputs if key.role == "argument"])
+    return Finding(
+        span=outcomes[0].span,
+        message=f"`{leaf.name}` has no condition for {listed(names)}",
+        arguments=("conditions", *names),
+        help=f"write `{held.name}: {{{pairs}}}`" + (f", with {reads}" if reads else ""),
+        effect="the transitions for these outcomes are never taken",
+        related=calls(leaf, outcomes[0].span),
+        node=path,
+    )
 
 
 def _unused_outcomes(path: str, leaf: Leaf, conditions: Iterable[str]) -> Iterator[Finding]:

@@ -21,8 +21,8 @@ from smachac.analysis.control_flow import (
     unknown_outcomes,
 )
 from smachac.analysis.misplaced_states import stray_transitions
-from smachac.checks.declarations import meant_keys
 from smachac.checks.expressions import unknown_endings
+from smachac.checks.meant_keys import meant_keys
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
 from smachac.checks.misdeclared import misdeclared
 from smachac.checks.misplaced_states import misplaced_finding

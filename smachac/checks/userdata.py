@@ -19,13 +19,19 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
-from smachac.checks.candidate_keys import fitting_key, unread_output
-from smachac.checks.declarations import MeantKey, meant_keys, swapped_loop
+from smachac.checks.candidate_keys import fitting_keys, unread_output
+from smachac.checks.declarations import swapped_loop
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.empty_remaps import empty_remap_findings
+from smachac.checks.initial_presets import (
+    counts,
+    initial_value,
+    missing_together,
+    together_finding,
+)
+from smachac.checks.meant_keys import MeantKey, meant_keys, misnamed_keys
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
-from smachac.checks.type_words import placeholder
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
@@ -36,7 +42,6 @@ from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import remapping
-from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -98,28 +103,51 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     guesses = _Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
     presets = meant_keys(context)
+    misnamed = misnamed_keys(context)
     moved = {each.path for each in context.misplaced}
-    unwritten = set(read_unwritten(context, unwritten_keys(context)).values())
-    for missing in context.missing_keys("unset", "nowhere"):
-        if missing.cause == "nowhere" and _is_dropped(missing):
-            continue  # SM308 reports the cause
-        if (missing.scope.path, missing.key) in unwritten:
-            continue  # SM306 reports the cause
+    causes = _with_their_own_cause(context)
+    for lacking in missing_together(causes, used) if not moved else ():
+        if lacking[0].scope.path in presets:
+            continue
+        yield together_finding(context, lacking)
+        causes = [each for each in causes if all(each is not one for one in lacking)]
+    for missing in causes:
         swapped = swapped_loop(missing)
         if swapped is not None:
             yield _swapped(missing, swapped)
             continue
+        wrong = misnamed.get((missing.scope.path, missing.key))
         meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
             if witness.reader.path in moved:
                 continue  # SM101: the state is in a wrong container
             users = used(missing.scope.path).get(missing.key, [])
             finding = _unset(missing, witness, users, guesses, context.types)
-            if meant is not None and meant.missing is missing:
+            if wrong is not None:
+                help = f"did you mean `{wrong.word.text}`?"
+                related = other_place(wrong.word.span, f"nothing reads `{wrong.word.text}`")
+                finding = replace(finding, help=help, related=(*related, *finding.related))
+            elif meant is not None and meant.missing is missing:
                 finding = _with_meant_key(finding, witness, meant)
             elif missing.cause != "nowhere":
                 finding = _with_outer_key(finding, missing, flow.scopes)
             yield finding
+
+
+def _with_their_own_cause(context: Context) -> list[Missing]:
+    """The keys that nothing sets, or not on every path, without those whose cause another rule
+    reports: SM308, SM306, or SM305."""
+    misnamed = misnamed_keys(context)
+    unwritten = set(read_unwritten(context, unwritten_keys(context)).values())
+    found: list[Missing] = []
+    for missing in context.missing_keys("unset", "nowhere"):
+        place = missing.scope.path, missing.key
+        wrong = misnamed.get(place)
+        if missing.cause == "nowhere" and _is_dropped(missing):
+            continue  # SM308
+        if place not in unwritten and (wrong is None or not wrong.declared):
+            found.append(missing)
+    return found
 
 
 def _with_outer_key(
@@ -246,15 +274,17 @@ def _unset(
 ) -> Finding:
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
-    wanted = types.inputs.get((reader.path, reader.key), ANY)
-    value = f"`userdata: {{{missing.key}: {placeholder(wanted)}}}`"
+    value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
     where = "on every path" if witness.always else "on this path too,"
     help = (
         f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
     )
     help += f" `{name}`: {value}"
+    is_counter = missing.cause == "unset" and counts(users)
+    if is_counter:
+        help = f"give `{missing.key}` an initial value in `{name}`: {value}"
     related: tuple[Related, ...] = ()
-    if not witness.always and len(witness.path) > 2 and witness.path[-2].is_outcome:
+    if not (is_counter or witness.always) and len(witness.path) > 2 and witness.path[-2].is_outcome:
         before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
         if any(use.path == before.node for use in users if use.kind not in ("reads", "copies in")):
             help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
@@ -271,10 +301,13 @@ def _unset(
             guess = guesses.of(scope).sure(missing.key)  # the state reads that key too
         help = did_you_mean(guess) or _item_help(scope.container, node, missing.key) or help
         unread = unread_output(scope, missing.key) if guess is None else None
-        fitting = fitting_key(types, scope, reader) if guess is None else None
-        if fitting is not None:
-            help = f"write `remapping: {{{reader.key}: {fitting}}}` in `{node.name}`, if it must"
-            help += f" read `{fitting}`, which has this type"
+        fitting = fitting_keys(types, scope, reader) if guess is None else []
+        if len(fitting) == 1:
+            help = f"write `remapping: {{{reader.key}: {fitting[0]}}}` in `{node.name}`, if it must"
+            help += f" read `{fitting[0]}`, which has this type"
+        elif fitting and reader.key == missing.key:
+            ways = " or ".join(f"`remapping: {{{reader.key}: {key}}}`" for key in fitting)
+            help = f"write {ways} in `{node.name}`: these keys have its type"
         if unread is not None:
             help = unread.help
             related = other_place(unread.place, f"nothing reads `{unread.key}`")
@@ -474,8 +507,11 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
               transitions: {done: held}
     """
     flow = context.corrected_flow
+    misnamed = misnamed_keys(context)
     for missing in context.missing_keys("outside"):
         scope, key = missing.scope, missing.key
+        if (scope.path, key) in misnamed and misnamed[scope.path, key].declared:
+            continue  # SM306 reports the cause
         reader = reader_at(scope, missing.vertices[0], key)
         holder = flow.scopes[missing.other].container
         between = _between(flow, scope.path, missing.other)
@@ -606,21 +642,23 @@ def lost_output(context: Context) -> Iterator[Finding]:
             effect = f"`{reader}` stops when it reads the key"
         elif itself:
             effect = f"each run of `{reader}` begins with the value that was set before the first"
+        listed_here = [key for key in keeper.outputs if key.span.source is written.source]
+        place = written if called else keeper.span
+        if called and listed_here:
+            place = listed_here[-1].span
         fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
-            span=wrong.span if wrong is not None else written if called else keeper.span,
+            span=wrong.span if wrong is not None else place,
             message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
             f" `{keeper.name}`: {happens}",
             arguments=(lost.own,),
-            help=fix
-            or f"add `{lost.own}` to the `output_keys` of"
-            + (
-                f" the outermost state in `{written.source.name}`"
-                if called
-                else f" `{keeper.name}`"
-            ),
+            help=fix or _output_help(lost.own, keeper, written if called else None),
             related=(
-                *(other_place(written, f"`{lost.writer.name}` sets it here") if not called else ()),
+                *(
+                    other_place(written, f"`{lost.writer.name}` sets it here")
+                    if place != written
+                    else ()
+                ),
                 *other_place(lost.reader.span, lost.reader.words),
                 *_list_of(keeper, keeper.outputs, "output_keys"),
                 *calls(keeper, keeper.span),
@@ -632,3 +670,15 @@ def lost_output(context: Context) -> Iterator[Finding]:
             if called or wrong is not None or not lost.is_missing
             else with_output(keeper, lost.own),
         )
+
+
+def _output_help(key: str, keeper: Container, written: Span | None) -> str:
+    """The help for an output that a container lacks. `written`: where a state in a sub-script sets
+    it, if the container is the outermost state of that."""
+    if written is None:
+        return f"add `{key}` to the `output_keys` of `{keeper.name}`"
+    where = f"the outermost state in `{written.source.name}`"
+    own = [each.name for each in keeper.outputs if each.span.source is written.source]
+    if own:
+        return f"write `output_keys: [{', '.join([*own, key])}]` in {where}"
+    return f"add `output_keys: [{key}]` to {where}"

@@ -13,6 +13,7 @@ from smachac.diagnostics.diagnostic import Edit, Report
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
+from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_errors import JOINED, spaced
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong, known_wrong
@@ -244,10 +245,11 @@ def as_outcomes(tree: Tree, report: Report) -> tuple[Outcome, ...]:
 def as_outcome(word: Word, tree: Tree, report: Report, *more: str) -> Outcome:
     """An outcome with what is written below its name: `doc`, `failure`, and what `more` names."""
     parts: dict[str, Tree] = {}
-    for entry in as_map(tree, report):
+    known, owner = ("doc", "failure", *more), Owner("outcome", "an outcome")
+    for entry in as_map(with_turned(tree, known, owner, report), report):
         part = Word(str(entry.key.value), entry.key.span)
-        if part.text not in (known := ("doc", "failure", *more)):
-            report.append(unknown_variable(part, Owner("outcome", "an outcome"), known))
+        if part.text not in known:
+            report.append(unknown_variable(part, owner, known))
         parts[part.text] = entry.value
     return Outcome(
         name=word.text,

@@ -101,6 +101,19 @@ def look_up_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
     return None
 
 
+def _with_meant_look_ups(tree: Seq, scope: Scope, report: Report) -> Seq:
+    """A list with the misspelt `params` of the look-ups in it corrected, which are reported."""
+    items = list(tree.items)
+    for at, item in enumerate(items):
+        if not isinstance(item, Seq) or len(item.items) != 2:
+            continue
+        if look_up_meant(item, scope, report) is not None:
+            word = item.items[0]
+            assert isinstance(word, Scalar)
+            items[at] = Seq((replace(word, value="params"), item.items[1]), item.span)
+    return tree if items == list(tree.items) else Seq(tuple(items), tree.span)
+
+
 def texts_meant(
     own: Mapping[str, Entry], scope: Scope, type_: StateType, report: Report
 ) -> dict[str, Entry]:
@@ -185,6 +198,8 @@ def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) ->
     word = look_up_word(tree)
     if word is not None:
         return _found(word, scope, report)
+    if scope:
+        tree = _with_meant_look_ups(tree, scope, report)
     items = tuple(fill_in(item, scope, report) for item in tree.items)
     if not names and any(look_up_word(item) is not None for item in tree.items):
         joined = _joined(items, tree, report)
@@ -198,9 +213,20 @@ def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) ->
 def _found(word: Word, scope: Scope, report: Report) -> Tree:
     value = scope.get(word.text)
     if value is None:
-        report.append(unresolved_look_up(word, scope))
+        report.append(unresolved_look_up(word, scope, _turned_param(word.text, scope)))
         return known_wrong(word.span)
     return value
+
+
+def _turned_param(name: str, scope: Scope) -> str | None:
+    """The only param in scope whose value is the name of a missing one: both have changed
+    places."""
+    found = [
+        key
+        for key, value in scope.items()
+        if isinstance(value, Scalar) and value.value == name and value.plain
+    ]
+    return found[0] if len(found) == 1 else None
 
 
 def _joined(items: tuple[Tree, ...], tree: Seq, report: Report) -> Tree | None:

@@ -68,6 +68,7 @@ from smachac.frontend.state_fields import (
     has_wrong_transitions,
     is_field,
     meant_container,
+    params_meant,
     read_fields,
     second_key,
     with_further_states,
@@ -77,6 +78,7 @@ from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import (
     SUB_SCRIPT_HELP,
     one_for_all_calls,
+    one_for_all_look_ups,
     overridden,
     params_at_call,
     params_beside_call,
@@ -203,7 +205,8 @@ class _Resolver:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
-        self.report[:] = one_for_each_template(one_for_all_calls(self.report))
+        report = one_for_all_look_ups(one_for_all_calls(self.report))
+        self.report[:] = one_for_each_template(report)
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
@@ -263,7 +266,7 @@ class _Resolver:
         of the call, if the state is that of a sub-script."""
         if "params" in own:
             own["params"] = self.limit_depth(own["params"])
-        params = own.get("params")
+        params = own.get("params") or params_meant(own)
         begin = begin or self.uses.mark(self.report)
         scope = child_scope(around.scope, params.value if params else None, self.report)
         entries: dict[str, Entry] = {}
@@ -282,7 +285,7 @@ class _Resolver:
         entries = with_outer_variables(name, entries, type_, self.report)
         entries |= self.lists(own, scope, type_)
         entries |= texts_meant(own, scope, type_, self.report)
-        entries = with_meant_fields(entries, owner, type_)
+        entries = with_meant_fields(entries, owner, type_, self.report)
         self.uses.type(type_)
         if scope:
             self.fixed_params += fixed_params(own, type_, scope)

@@ -24,10 +24,12 @@ from smachac.frontend.fields import (
     wrong,
 )
 from smachac.frontend.missing_outcomes import outcomes_used
+from smachac.frontend.paired_fields import paired_fields, paired_help
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, Pairs, State
 from smachac.frontend.sugar import NAMES, is_own, read_sugar
+from smachac.frontend.turned_entries import with_turned_fields
 from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
@@ -185,19 +187,25 @@ def accepts(type_: StateType, name: str) -> bool:
 
 
 def with_meant_fields(
-    entries: dict[str, Entry], owner: FieldOwner, type_: StateType
+    entries: dict[str, Entry], owner: FieldOwner, type_: StateType, report: Report
 ) -> dict[str, Entry]:
     """The fields, with those of unknown names also under the names that are meant, where that is
     certain: then one misspelt name is one finding. The role of a variable means the variable, as
-    `conditions` in a ConditionalOutcomeState."""
+    `conditions` in a ConditionalOutcomeState. Fields whose name and value have changed places are
+    reported."""
     unknown = [
         key
         for key in entries
         if ((row := schema.VARIABLES.get(key)) is None or owner not in row.owners)
-        and not accepts(type_, key)
+        and (not accepts(type_, key) or _is_unused(key, type_))
     ]
     if not unknown:
         return entries
+    if not type_.any_variable:
+        known = {*schema.names_for(owner), *type_.variables}
+        whose = _owner_of(owner, type_, of_type=owner == "state")
+        entries = with_turned_fields(entries, known, type_.variables, whose, report)
+        unknown = [key for key in unknown if key in entries]
     guess = guesser_of((*schema.names_for(owner), *type_.variables))
     meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
     roles: dict[str, str] = {each.role: name for name, each in type_.variables.items() if each.role}
@@ -205,7 +213,23 @@ def with_meant_fields(
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
-    return {name: entry for name, entry in meant.items() if name is not None} | entries
+    found = {name: entry for name, entry in meant.items() if name is not None}
+    left = [key for key in unknown if all(entries[key] is not each for each in found.values())]
+    return found | paired_fields(left, {*entries, *found}, entries, owner, type_) | entries
+
+
+def params_meant(entries: Entries) -> Entry | None:
+    """The field that is certainly a misspelt `params` (SM003)."""
+    for key, entry in entries.items():
+        is_map = key not in schema.VARIABLES and isinstance(entry.value, Map)
+        if is_map and guesser_of(FIELDS_OF_STATES).sure(key) == "params":
+            return entry
+    return None
+
+
+def _is_unused(key: str, type_: StateType) -> bool:
+    """Whether a template that accepts any variable has no use of this one."""
+    return type_.used is not None and key not in type_.used and key not in type_.variables
 
 
 def has_wrong_transitions(entries: Mapping[str, Entry], fields: Mapping[str, object]) -> bool:
@@ -260,9 +284,13 @@ def _known_fields(
                 strays.append((word, target))
             as_key = _as_key(word, entry, entries, type_)
             stray = target is not None
+            certain = paired_help(word.text, sure, [*known, *own])
             report.append(
-                unknown_variable(word, whose, known, own=own, meant=sure, outcome=stray, key=as_key)
-            )
+                unknown_variable(
+                    word, whose, known, own=own, meant=sure, outcome=stray, key=as_key,
+                    certain=certain,
+                )
+            )  # fmt: skip
             if as_key is not None:
                 read["misplaced_keys"] = (*read.get("misplaced_keys", ()), word.text)
             meant.add(guesser_of((*dict.fromkeys((*known, *own)),))(word.text))
@@ -364,7 +392,11 @@ def _check_required(
         if key not in entries and key not in meant:
             whose = _owner_of(owner, type_, of_type=key in type_.variables)
             related: tuple[Related, ...] = ()
-            if inner is not None:
+            place = name.span
+            if inner is not None and key in schema.REQUIRED[owner]:
+                place = inner.span  # one finding for all calls
+                related = (Related(span=name.span, message="in the sub-script called here"),)
+            elif inner is not None:
                 related = (Related(span=inner.span, message="the sub-script does not set it"),)
             variable = type_.variables.get(key)
             example = examples.get(key, "")
@@ -375,9 +407,7 @@ def _check_required(
             inside = entry.key.span if entry is not None else None
             help = _with_type(key, variable)
             report.append(
-                missing_variable(
-                    name.span, key, whose, related, example, help=help, in_params=inside
-                )
+                missing_variable(place, key, whose, related, example, help=help, in_params=inside)
             )
 
 

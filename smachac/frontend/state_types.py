@@ -19,6 +19,7 @@ from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.loader import Library
 from smachac.frontend.schema import INTERFACE_FIELDS, KEY_FACTS, VARIABLE_FACTS
+from smachac.frontend.turned_entries import with_turned, with_turned_types
 from smachac.frontend.type_annotations import as_record, read_type
 from smachac.frontend.type_classes import (
     ALL_GIVEN,
@@ -210,6 +211,11 @@ def _section(name: str, tree: Tree | None, report: Report) -> Section:
     mapping `{picked: {}, lost: {}}`: nothing is stated about them."""
     if tree is None:
         return ()
+    if name in ("variables", "input_keys", "output_keys"):
+        what = "variable" if name == "variables" else "key"
+        tree = with_turned_types(tree, Owner("interface", "an interface", what), report)
+    if name in ("input_keys", "output_keys") and isinstance(tree, Map):
+        return tuple([_with_turned_facts(each, report) for each in as_map(tree, report, "{}")])
     if name not in _LISTED or not isinstance(tree, Seq):
         return as_map(tree, report, "{}")
     names = [item for item in tree.items if isinstance(item, Scalar)]
@@ -456,7 +462,9 @@ def _variables(section: Section, report: Report) -> dict[str, VariableType]:
 
 
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
-    meant = check_fields(tree, f"the variable `{name}`", VARIABLE_FACTS, report)
+    whose = f"the variable `{name}`"
+    tree = with_turned(tree, VARIABLE_FACTS, Owner(whose, whose, "field"), report)
+    meant = check_fields(tree, whose, VARIABLE_FACTS, report)
     role = _role(tree, _VARIABLE_ROLES, report)
     type_ = described(_type(tree, report), tree, role, report)
     limits = limits_of(tree, type_, role, report)
@@ -535,6 +543,13 @@ def _keys(section: Section, report: Report) -> tuple[Key, ...]:
         check_fields(entry.value, f"the key `{entry.key.value}`", KEY_FACTS, report)
     declared = _declared_words(section)
     return tuple([_key(*each, report) for each in declared if not _is_set(each[1], "optional")])
+
+
+def _with_turned_facts(entry: Entry, report: Report) -> Entry:
+    """The entry of a key with the facts that are turned round turned back."""
+    whose = f"the key `{entry.key.value}`"
+    new = with_turned(entry.value, KEY_FACTS, Owner(whose, whose, "field"), report)
+    return entry if new is entry.value else Entry(entry.key, new)
 
 
 def _key(name: Word, tree: Tree, report: Report) -> Key:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
-from smachac.diagnostics.diagnostic import Diagnostic, Report
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.errors.references import (
     bad_sub_script,
     look_up_of_all_calls,
@@ -173,6 +173,32 @@ def one_for_all_calls(found: Sequence[Diagnostic]) -> Report:
             item = replace(item, finding=look_up_of_all_calls(item.finding, place, given, calls))
         kept.append(item)
     return kept
+
+
+def one_for_all_look_ups(found: Sequence[Diagnostic]) -> Report:
+    """The findings, with one for all look-ups in a text that fail for the same reason."""
+    first: dict[tuple[str, Source, str | None], int] = {}
+    kept: Report = []
+    for item in found:
+        if item.kind is not unresolved_look_up.code or item.finding.related:
+            kept.append(item)
+            continue
+        which = item.finding.arguments[0], item.span.source, item.finding.help
+        at = first.setdefault(which, len(kept))
+        if at == len(kept):
+            kept.append(item)
+        if item.span == kept[at].span:
+            continue
+        others = kept[at].finding.related
+        if len(others) < MOST_LOOK_UPS and all(each.span != item.span for each in others):
+            more = Related(span=item.span, message=f"`{which[0]}` is used here too")
+            related = (*others, more)
+            kept[at] = replace(kept[at], finding=replace(kept[at].finding, related=related))
+    return kept
+
+
+MOST_LOOK_UPS = 3
+"""The most further look-ups that a finding shows."""
 
 
 def _look_up_of_other_name(item: Diagnostic) -> Span | None:

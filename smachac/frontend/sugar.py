@@ -16,7 +16,9 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import either, listed
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_items, as_name, as_names, pairs_of, wrong
+from smachac.frontend.paired_fields import paired_help
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
+from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import UNKNOWN
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.ir.nodes import Expression, Outcome, StateType, Value
@@ -211,14 +213,24 @@ def _parts(
         return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
     parts: dict[str, Tree] = {}
-    written = {str(each.key.value) for each in entry.value.entries}
-    for each in entry.value.entries:
+    whole: Tree = entry.value
+    if MEANT_PARTS.keys().isdisjoint(str(each.key.value) for each in entry.value.entries):
+        whole = with_turned(whole, known, owner, report)
+    entries = whole.entries if isinstance(whole, Map) else ()
+    written = {str(each.key.value) for each in entries}
+    paired = _paired([each for each in entries if each.key.value not in known], written, required)
+    for each in entries:
         word = Word(str(each.key.value), each.key.span)  # `on` is fine here, unlike in names
         if word.text in known:
             parts[word.text] = each.value
             continue
         others = tuple(name for name in known if name not in written)
         meant = _part_meant(word.text, others)
+        if meant is None and paired:
+            help = paired_help(word.text, paired, ())
+            report.append(unknown_variable(word, owner, others, certain=help))
+            parts[paired] = each.value
+            continue
         if meant is None:
             report.append(unknown_variable(word, owner, others))
             continue
@@ -228,6 +240,17 @@ def _parts(
         if name not in parts:
             report.append(missing_variable(entry.key.span, name, owner, example=example))
     return parts
+
+
+def _paired(unknown: list[Entry], written: set[str], required: Mapping[str, str]) -> str:
+    """The only required part that is missing, if there is one unknown part, which it then means;
+    empty otherwise."""
+    missing = [name for name in required if name not in written]
+    if len(unknown) != 1 or len(missing) != 1:
+        return ""
+    value, name = unknown[0].value, missing[0]
+    is_number = isinstance(value, Scalar) and type(value.value) is int
+    return name if is_number == (name == "max") else ""
 
 
 def _part_meant(word: str, parts: tuple[str, ...]) -> str | None:

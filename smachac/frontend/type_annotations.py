@@ -58,8 +58,28 @@ def read_type(text: str, place: Word, report: Report) -> Type | None:
         return None
     unknown = unknown_words(type_)
     if unknown:
-        report.append(bad_type(place, WORDS, unknown[0]))
+        turned: list[tuple[str, str]] = []
+        meant = _fields_turned_back(type_, turned)
+        name, type_name = next((pair for pair in turned if pair[0] == unknown[0]), ("", ""))
+        help = f"write `{name}: {type_name}`: the name of the field comes first" if name else None
+        report.append(bad_type(place, WORDS, unknown[0], help=help))
+        type_ = meant if help else type_
     return type_
+
+
+def _fields_turned_back(type_: Type, turned: list[tuple[str, str]]) -> Type:
+    """A type with the fields of records turned back that have a type as their name and an unknown
+    word as their type. These are collected, as names and types."""
+    args = [_fields_turned_back(arg, turned) if isinstance(arg, Type) else arg
+            for arg in type_.args]  # fmt: skip
+    for at in range(0, len(args) if type_.name == "record" else 0, 2):
+        name, field = str(args[at]), args[at + 1]
+        if name not in WORDS or not isinstance(field, Type) or field.args:
+            continue
+        if unknown_words(field) and field.name not in args[::2]:
+            turned.append((field.name, name))
+            args[at : at + 2] = [field.name, Type(name)]
+    return Type(type_.name, tuple(args))
 
 
 def _with_records(tree: Tree) -> Tree:

@@ -254,7 +254,7 @@ def bad_sub_script(
     Severity.ERROR,
     effect="the value is unknown, so no program is generated",
 )
-def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
+def unresolved_look_up(word: Word, scope: Iterable[str], turned: str | None = None) -> Finding:
     """A look-up names a param that is not in scope.
 
     The value is unknown. In the generated program the look-up would be a wrong constant or invalid
@@ -284,11 +284,12 @@ def unresolved_look_up(word: Word, scope: Iterable[str]) -> Finding:
               transitions: {done: done}
     """
     names = sorted(scope)
-    help = f"add `{word.text}: ...` to the `params` of the state, of a container around it or of"
-    help += " the script"
+    help = f"add `{word.text}: ...` to the `params` of the script"
     if names:
         others = f"{help}; in scope are {listed(names)}"
         help = did_you_mean(word.text, names) or others
+    if turned:
+        help = f"write `{word.text}: {turned}` in `params`: the name of the param comes first"
     return Finding(
         span=word.span,
         message=f"the param `{word.text}` is not in scope here",
@@ -387,6 +388,8 @@ def _renamed_param(wrong: Word, name: str) -> str:
     """The help for a param of a call that has another name in the sub-script."""
     source, end = wrong.span.source, wrong.span.end
     value = _SHORT_VALUE.match(source.text, end)
+    if value is not None and value[1] == name:
+        return f"write `{name}: {wrong.text}`: the name of the param comes first"
     if value is None:
         return f"write `{name}:` in place of `{wrong.text}:`"
     return f"write `{name}: {value[1]}` in place of `{wrong.text}: {value[1]}`"

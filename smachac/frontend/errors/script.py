@@ -167,6 +167,7 @@ def unknown_variable(
     outcome: bool = False,
     key: str | None = None,
     type_name: str | None = None,
+    certain: str | None = None,
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -194,7 +195,6 @@ def unknown_variable(
     variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
     sure = meant or Guesser(names).sure(word.text)
     number = _number_before(word)
-    certain: str | None = None
     if number:
         certain = f"a decimal comma? write `{number}.{word.text}`"
     elif outcome:
@@ -429,7 +429,9 @@ def _word_in(span: Span, word: str) -> Span:
 
 
 @problem("SM017", "bad-type", Severity.ERROR)
-def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
+def bad_type(
+    place: Word, known: Iterable[str], unknown: str = "", *, help: str | None = None
+) -> Finding:
     """A type cannot be parsed, or contains the name of an unknown type.
 
     Without a type, values are not checked, and a wrong value can reach the robot. An unknown name
@@ -461,7 +463,7 @@ def bad_type(place: Word, known: Iterable[str], unknown: str = "") -> Finding:
     """
     word = unknown or place.text
     meant = OTHER_NAMES.get(word.casefold())
-    help = f"write `{meant}`" if meant else None
+    help = help or (f"write `{meant}`" if meant else None)
     if word.isidentifier():
         help = help or did_you_mean(word, known)
     if unknown:

@@ -1,0 +1,170 @@
+"""Keys that nothing reads, and the keys that are probably meant by them: read, but not set."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from smachac.analysis.context import Context
+from smachac.analysis.control_flow import is_open
+from smachac.analysis.definite_assignment import UserdataScope
+from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.type_lattice import misfit
+from smachac.analysis.unset_reads import Missing, Reader, reader_at
+from smachac.checks.messages import other_place
+from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import guesser, respelt
+from smachac.ir import nodes
+from smachac.ir.graph import START
+from smachac.ir.nodes import Leaf
+from smachac.ir.traversal import remapping
+from smachac.ir.types import ANY
+
+
+class MeantKey(NamedTuple):
+    """A key that nothing sets, and the only preset or input of its container that nothing reads,
+    which is probably meant for it: by a remapping or, if `looped`, by a `for_each` over its items.
+    `word` is the name of that preset or input, `state` the path of the state that reads the key."""
+
+    missing: Missing
+    word: Word
+    state: str
+    looped: bool
+
+
+def meant_keys(context: Context) -> dict[str, MeantKey]:
+    """The keys that are probably meant for keys that nothing sets, by path of the container. Only
+    where one key is unset and one is unread, and where the type of the reader fits, or is not known
+    and the names have a word in common."""
+    missing: dict[str, list[Missing]] = {}
+    for each in context.missing_keys("nowhere"):
+        missing.setdefault(each.scope.path, []).append(each)
+    found: dict[str, MeantKey] = {}
+    for path, (first, *others) in missing.items():
+        scope = first.scope
+        if others:
+            continue
+        if context.of_container(sees_everything, path, scope):
+            continue
+        read = context.of_container(used_in, path, scope)
+        unread = [
+            (Word(preset.key, preset.span), type_of_data(preset.value.data), preset.value.data)
+            for preset in scope.container.userdata
+            if preset.key not in read
+        ]
+        unread += [
+            (Word(key.name, key.span), key.type, None)
+            for key in scope.container.inputs
+            if key.name not in read
+        ]
+        reader = reader_at(scope, first.vertices[0], first.key)
+        wanted = context.types.inputs.get((reader.path, reader.key), ANY)
+        if len(unread) != 1 or reader.key != first.key or reader.node is scope.container:
+            continue
+        word, given, data = unread[0]
+        looped = isinstance(data, tuple) and not isinstance(reader.node, nodes.Iterator)
+        alike = not set(word.text.split("_")).isdisjoint(first.key.split("_"))
+        fits = alike if ANY in (wanted, given) else misfit(given, wanted) is None
+        if not fits:
+            if looped:
+                found[path] = MeantKey(first, word, reader.path, looped=True)
+        else:
+            found[path] = MeantKey(first, word, reader.path, looped=False)
+    return found
+
+
+class Misnamed(NamedTuple):
+    """A preset or input of a container that nothing reads, and the key that is meant by it, which
+    is read, and unset without it. `reader` reads that one. `turned`: the key is the value of the
+    preset. `declared`: the declaration is the slip, not its reader, as the key has more uses."""
+
+    word: Word
+    meant: str
+    reader: Reader
+    turned: bool = False
+    declared: bool = True
+
+
+def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
+    """The presets and inputs that mean a key of a similar name, by the path of their container and
+    that key."""
+    found: dict[tuple[str, str], Misnamed] = {}
+    presets = meant_keys(context)
+    for each in context.missing_keys("unset", "nowhere", "outside"):
+        scope = each.scope
+        if context.of_container(sees_everything, scope.path, scope) or scope.container.sugar:
+            continue
+        read = context.of_container(used_in, scope.path, scope)
+        words = {Word(preset.key, preset.span): preset.value.data
+                 for preset in scope.container.userdata if preset.key not in read}  # fmt: skip
+        turned = [word for word, data in words.items() if data == each.key]
+        inputs = [Word(key.name, key.span) for key in scope.container.inputs]
+        unread = [*words, *(word for word in inputs if word.text not in read)]
+        guess = guesser([each.key])
+        alike = turned or [word for word in unread if guess(word.text) is not None]
+        declared = each.cause == "outside" or bool(turned) or _uses_in_text(scope, each.key) > 1
+        preset = presets.get(scope.path)
+        if preset is not None and preset.missing is each and not turned:
+            continue  # SM301 names both
+        if len(alike) == 1 and (declared or each.cause == "unset"):
+            reader = reader_at(scope, each.vertices[0], each.key)
+            found[scope.path, each.key] = Misnamed(
+                alike[0], each.key, reader, bool(turned), declared
+            )
+    return found
+
+
+def _uses_in_text(scope: UserdataScope, key: str) -> int:
+    """How often the text names a key in a container. A key that an interface names counts twice:
+    it cannot be misspelt."""
+    count = sum(each.name == key for each in scope.container.outputs)
+    for node in scope.children.values():
+        names = remapping(node)
+        own = {each.name: each for each in (*node.inputs, *node.outputs)}
+        count += sum(remap.to == key for remap in node.remaps)
+        if key in own and key not in names:
+            given = own[key].span.source is not node.span.source
+            lists = (node.inputs, node.outputs)
+            count += 2 if given else sum(key in {each.name for each in one} for one in lists)
+    return count
+
+
+def misnamed_finding(found: Misnamed, path: str, where: str) -> Finding:
+    """The finding on a declaration whose name is the slip."""
+    word, meant, reader, turned, _ = found
+    return Finding(
+        span=word.span,
+        message=f"nothing in {where} reads `{word.text}`: `{reader.node.name}` reads `{meant}`",
+        arguments=(word.text, meant),
+        help=f"write `{meant}: {word.text}`: the name of the key comes first"
+        if turned
+        else f"did you mean `{meant}`?",
+        effect=f"`{meant}` is unset: `{reader.node.name}` fails when it reads it",
+        related=other_place(reader.span, f"`{meant}` is read here"),
+        severity=Severity.ERROR,
+        node=path,
+        edits=() if turned else respelt(word, guesser([meant]).sure(word.text)),
+    )
+
+
+def sees_everything(scope: UserdataScope) -> bool:
+    """Whether a state in a container can read any key."""
+    raw = isinstance(scope.container, nodes.Iterator)
+    return any(
+        is_open(child)
+        or (raw and isinstance(child, Leaf))
+        or (isinstance(child, nodes.Iterator) and not child.item_key)
+        for child in scope.container.children
+    )
+
+
+def used_in(scope: UserdataScope) -> set[str]:
+    """The keys that a state in a container declares as inputs, that its class reads, or over which
+    it iterates, and the outputs of the container."""
+    found = {*scope.reads.get(START, ()), *scope.outputs}
+    for child in scope.container.children:
+        names = remapping(child)
+        found.update(names.get(key.name, key.name) for key in child.inputs)
+        if isinstance(child, Leaf) and child.class_facts is not None:
+            found.update(word.text for word in child.class_facts.reads)  # SM310
+    return found
