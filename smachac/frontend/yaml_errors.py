@@ -72,6 +72,14 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
     )
 
 
+def stopped_at(text: str, error: Any) -> list[int]:
+    """Indexes of the lines in which the fault of an exception of the parser can be."""
+    stop = _stop(text, error)
+    above = [start for start, _ in _lines_above(stop, 1)]
+    first = [] if stop.first is None else [stop.first]
+    return list(dict.fromkeys([stop.at, *above, *first]))
+
+
 def _stop(text: str, error: Any) -> _Stop:
     first, mark = (getattr(error, name, None) for name in ("context_mark", "problem_mark"))
     problem, context = (_one_line(getattr(error, name, None)) for name in ("problem", "context"))
@@ -221,7 +229,10 @@ def _colon(stop: _Stop) -> _Fault | None:
         joined = JOINED.match(stop.text, stop.first)
         if joined is not None:
             return _Fault(SPACE_MISSING, spaced(joined[0]), *joined.span())
+        word = _WORD.match(stop.text, stop.first)
         help = "write `key: value`, with a space after `:`"
+        if word is not None and stop.text[word.end() : word.end() + 1] in ("", "\n", "\r"):
+            return _Fault("a `:` is missing after this key", f"write `{word[0]}:`", *word.span())
         return _Fault("a `:` is missing after this key", help, stop.first)
     if not stop.problem.startswith("mapping values are not allowed"):
         return None
