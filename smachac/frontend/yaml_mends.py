@@ -123,6 +123,7 @@ _BEYOND = 2
 """How far from the repaired lines the next fault is, in characters."""
 
 _GOES_ON = (",", "[", "{")
+_CLOSING = ("]", "}")
 
 
 def _lines(text: str, index: int) -> _Lines:
@@ -155,6 +156,10 @@ def _ranked(text: str, lines: _Lines) -> list[tuple[float, _Mend]]:
     most = 1.0 if before is None else min(1.0, before - 0.3)
     ranked: list[tuple[float, _Mend]] = []
     for mend in islice(dict.fromkeys(_mends(part)), _MOST_TRIALS if most > 0 else 0):
+        if part[: mend.at].rstrip().endswith(_GOES_ON) and mend.written in _CLOSING:
+            continue  # what the brackets hold was not written yet
+        if mend.removed and not part[mend.at + 1 :].strip():
+            continue
         cost = _cost(mend.apply(part), text)
         if cost is not None and cost < most:
             ranked.append((cost + 0.1 * bool(mend.removed.strip(" =")), mend.moved(lines.start)))
