@@ -344,18 +344,24 @@ def _misindented(stop: _Stop) -> _Fault | None:
         return None
     below = _column_below(stop, column)
     first = opened[0]
-    if first.column > column == below and _is_alone(stop, first):
-        message = f"`- {first.name}:` is indented by {first.column} spaces, the items after it by"
+    if first.column != column == below and _is_alone(stop, first):
+        message = f"`- {first.name}:` is indented by {_of_spaces(first.column)}, the items after it"
         end = first.start + len(first.name) + 3
-        help = f"indent it and the lines below it by {_of_spaces(column)}, like `- {name}:`"
-        return _Fault(f"{message} {column}", help, first.start, end)
-    due = min(opened, key=lambda item: (abs(item.column - column), -item.column))
-    due = next((item for item in opened if item.column == below), due)
+        return _Fault(f"{message} by {column}", _shift(column, name), first.start, end)
+    due = min(
+        opened, key=lambda item: (abs(item.column - column), item.column != below, -item.column)
+    )
     around = next((item.name for item in opened if item.column < due.column), "")
     owner = f"of `{around}`" if around else "of the script"
     message = f"`- {name}:` is indented by {_of_spaces(column)}, the items {owner} by {due.column}"
-    help = f"indent it and the lines below it by {_of_spaces(due.column)}, like `- {due.name}:`"
-    return _Fault(message, help, stop.at, stop.at + len(name) + 3)
+    return _Fault(message, _shift(due.column, due.name), stop.at, stop.at + len(name) + 3)
+
+
+def _shift(column: int, like: str) -> str:
+    """The help for an item at a wrong column. `like` is the name of an item at the right one."""
+    if not column:
+        return f"write it and the lines below it without indentation, like `- {like}:`"
+    return f"indent it and the lines below it by {_of_spaces(column)}, like `- {like}:`"
 
 
 def _of_spaces(number: int) -> str:
