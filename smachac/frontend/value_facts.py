@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-import re
 import math
+import re
 from collections.abc import Collection, Mapping
 
 from smachac.diagnostics.diagnostic import Report, Severity, did_you_mean

@@ -16,7 +16,8 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
-from smachac.frontend.schema import LONG, VARIABLES
+from smachac.frontend.fields import PRESET_FIELDS
+from smachac.frontend.schema import KEY_FACTS, LONG, OUTCOME_FACTS, VARIABLE_FACTS, VARIABLES
 from smachac.frontend.yaml_errors import SPACE_MISSING
 from smachac.frontend.yaml_tree import (
     MOST_REREAD,
@@ -67,13 +68,15 @@ def parse_mended(source: Source, report: Report) -> Tree | None:
     if not (doubts.stops or doubts.places) or len(source.text) > MOST_REREAD:
         report.extend(found)
         return tree
-    text, mends = source.text, Mended(source.text, ())
+    text, mends, sure = source.text, Mended(source.text, ()), True
     reports: Report = []
     tried: set[int] = set()
     while len(mends.changes) < MOST_MENDS:
-        mend = _mend(text, doubts, tried)
-        if mend is None:
+        best = _mend(text, doubts, tried)
+        if best is None:
             break
+        mend, is_only = best
+        sure = sure and is_only
         repaired = mend.apply(text)
         reports.append(_finding(source, mends, text, repaired, mend, bool(doubts.stops)))
         change = (mend.at, len(mend.removed), len(mend.written))
@@ -84,16 +87,17 @@ def parse_mended(source: Source, report: Report) -> Tree | None:
         report.extend(found)
         return tree
     report.extend(reports)
-    if doubts.stops:
+    if doubts.stops or not sure:
         return None
     return parse(source, report, None, mends)
 
 
-def _mend(text: str, doubts: Doubts, tried: set[int]) -> _Mend | None:
-    """The best repair for the first doubt; None if nothing repairs it. `tried` are the beginnings
-    of the lines in which nothing did."""
+def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | None:
+    """The best repair for the first doubt, and whether no other is as good; None if nothing repairs
+    it. `tried` are the beginnings of the lines in which nothing did."""
     stops = bool(doubts.stops)
-    best: tuple[float, int, _Mend] | None = None
+    best: tuple[float, _Mend] | None = None
+    costs: list[float] = []
     seen: set[_Lines] = set()
     for index in [*doubts.stops, *(() if stops else doubts.places)]:
         lines = _lines(text, index)
@@ -101,13 +105,16 @@ def _mend(text: str, doubts: Doubts, tried: set[int]) -> _Mend | None:
             continue
         seen.add(lines)
         for cost, mend in _ranked(text, lines)[:_MOST_WHOLE]:
-            if (best is None or cost < best[0]) and _holds(mend.apply(text), lines, stops):
-                best = (cost, index, mend)
+            if not _holds(mend.apply(text), lines, stops):
+                continue
+            costs.append(cost)
+            if best is None or cost < best[0]:
+                best = (cost, mend)
         if best is None:
             tried.add(lines.start)
         elif not stops:
             break
-    return best[2] if best is not None else None
+    return (best[1], costs.count(best[0]) == 1) if best is not None else None
 
 
 def _holds(text: str, lines: _Lines, stops: bool) -> bool:
@@ -123,7 +130,6 @@ _BEYOND = 2
 """How far from the repaired lines the next fault is, in characters."""
 
 _GOES_ON = (",", "[", "{")
-_CLOSING = ("]", "}")
 
 
 def _lines(text: str, index: int) -> _Lines:
@@ -152,14 +158,12 @@ def _line_end(text: str, index: int) -> int:
 def _ranked(text: str, lines: _Lines) -> list[tuple[float, _Mend]]:
     """The repairs of lines after which they have the form of a script, the best first."""
     part = text[lines.start : lines.end]
+    if part.rstrip().endswith(_GOES_ON):
+        return []  # it is still being written
     before = _cost(part, text)
     most = 1.0 if before is None else min(1.0, before - 0.3)
     ranked: list[tuple[float, _Mend]] = []
     for mend in islice(dict.fromkeys(_mends(part)), _MOST_TRIALS if most > 0 else 0):
-        if part[: mend.at].rstrip().endswith(_GOES_ON) and mend.written in _CLOSING:
-            continue  # what the brackets hold was not written yet
-        if mend.removed and not part[mend.at + 1 :].strip():
-            continue
         cost = _cost(mend.apply(part), text)
         if cost is not None and cost < most:
             ranked.append((cost + 0.1 * bool(mend.removed.strip(" =")), mend.moved(lines.start)))
@@ -176,7 +180,7 @@ _COMMENT = re.compile(r"(?:^|\s)#.*", re.M)
 _START = re.compile(
     r"(?:[\[{,(]|(?<![:\w]):(?= )|(?<=\w):(?= )|^\s*-(?= )) *(?=[^\s,\]}])|^\s*(?=\S)", re.M
 )
-_END = re.compile(r"(?<=[^\s\[{,])(?=\s*(?:[,\]}]|$))|(?<=\w)(?=: )", re.M)
+_END = re.compile(r"(?<=\{)(?=,)|(?<=[^\s\[{,])(?=\s*(?:[,\]}]|$))|(?<=\w)(?=: )", re.M)
 _EQUALS = re.compile(r"(?<=[\w\"'\0]) ?(?<![=<>!])=(?!=) ?(?=[\w\[{\"'.\0-])")
 _NO_SPACE = re.compile(r"(?<=\w):(?=[\w\[{\"'.\0-])(?<!::)")
 _GAP = re.compile(r"(?<=[\w\]})\"'\0])(?= +[\w\[{\"'.\0-])")
@@ -191,7 +195,7 @@ def _mends(part: str) -> Iterator[_Mend]:
     quotes = [quote for quote in "\"'" if quote in plain]
     for quote in quotes:
         yield from _with_sign(part, quote, quote)
-    for opening, closing in ("{}", "[]"):
+    for opening, closing in (("{", "}"), ("[", "]")):
         surplus = plain.count(opening) - plain.count(closing)
         if surplus:
             missing, much = (closing, opening) if surplus > 0 else (opening, closing)
@@ -239,6 +243,9 @@ _KEY = re.compile(r"[\w./<$~:-]+(?:\[\d*\])?")
 _ENTRY_INSIDE = re.compile(r", *\w+: |^\s*[,\]}]|[\[{,]\s*$")
 _WORDS = re.compile(r"([A-Za-z_]\w*) ([A-Za-z_]\w*)")
 _NUMBERS = re.compile(r"-?\d*\.?\d+ -?\d*\.?\d+")
+_FACTS = frozenset({*OUTCOME_FACTS, *KEY_FACTS, *VARIABLE_FACTS, *PRESET_FIELDS} - {"names"})
+"""What a mapping states about one name. A mapping of names has none of them."""
+
 _NAME_LISTS = ("outcomes", "input_keys", "output_keys", "claims", "tags")
 
 
@@ -250,7 +257,9 @@ def _cost_of(tree: Tree, owner: str, text: str) -> float:
         inside = sum(_cost_of(item, owner, text) for item in tree.items)
         return inside + _cost_of_items(tree, owner, text)
     flow = tree.span.text.startswith("{")
-    return sum(_cost_of_entry(entry, owner, flow, text) for entry in tree.entries)
+    facts = sum(entry.key.value in _FACTS for entry in tree.entries)
+    mixed = 0.2 * (flow and 0 < facts < len(tree.entries))
+    return mixed + sum(_cost_of_entry(entry, owner, flow, text) for entry in tree.entries)
 
 
 def _cost_of_items(tree: Seq, owner: str, text: str) -> float:
@@ -262,7 +271,9 @@ def _cost_of_items(tree: Seq, owner: str, text: str) -> float:
     two = sum(_NUMBERS.fullmatch(each) is not None for each in words)
     if LONG.get(owner, owner) in _NAME_LISTS and len(texts) == len(items):
         two += sum(_are_two(each, text) for each in words)
-    return float((0 < pairs < len(items)) + two)
+    numbers = sum(isinstance(each, int | float) for each in texts)
+    mixed = 0.2 * (0 < numbers < len(items) and any(isinstance(item, Seq) for item in items))
+    return float((0 < pairs < len(items)) + two) + mixed
 
 
 def _are_two(name: str, text: str) -> bool:
@@ -327,6 +338,8 @@ def _finding(
     left, right = _word_before(text, at), _word_after(text, end)
     if sign == ": ":
         message = f"a `:` is due after `{left}`, not `=`"
+        at += mend.removed.index("=")
+        end = at + 1
     elif mend.removed:
         message = f"this `{mend.removed}` is one too many"
         if sign:

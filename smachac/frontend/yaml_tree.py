@@ -269,7 +269,8 @@ def syntax_error_line(text: str) -> int | None:
     return None
 
 
-class _Mark(NamedTuple):
+@dataclass(slots=True)
+class _Mark:
     """A place in the text as the user wrote it."""
 
     index: int
@@ -481,7 +482,9 @@ class _Builder:
         if text[-1] in _LAST_SIGNS:
             if _is_torn(text):
                 self.doubtful.append(start)
-        elif self.stack and self.stack[-1].flow and _TWO_WORDS.fullmatch(text) is not None:
+        elif " = " in text or (
+            self.stack and self.stack[-1].flow and _TWO_WORDS.fullmatch(text) is not None
+        ):
             self.doubtful.append(start)
 
     def _check_tag(self, event: Any) -> None:
