@@ -163,8 +163,9 @@ def _ranked(text: str, lines: _Lines) -> list[tuple[float, _Mend]]:
     before = _cost(part, text)
     most = 1.0 if before is None else min(1.0, before - 0.3)
     ranked: list[tuple[float, _Mend]] = []
-    for mend in islice(dict.fromkeys(_mends(part)), _MOST_TRIALS if most > 0 else 0):
-        cost = _cost(mend.apply(part), text)
+    made = {mend.apply(part): mend for mend in islice(_mends(part), _MOST_TRIALS)}
+    for repaired, mend in made.items() if most > 0 else ():
+        cost = _cost(repaired, text)
         if cost is not None and cost < most:
             ranked.append((cost + 0.1 * bool(mend.removed.strip(" =")), mend.moved(lines.start)))
     return sorted(ranked, key=lambda each: (each[0], _order(each[1])))
@@ -269,6 +270,8 @@ def _cost_of_items(tree: Seq, owner: str, text: str) -> float:
     texts = [item.value for item in items if isinstance(item, Scalar) and item.plain]
     words = [each for each in texts if isinstance(each, str)]
     two = sum(_NUMBERS.fullmatch(each) is not None for each in words)
+    if LONG.get(owner, owner) in _NAME_LISTS:
+        two += pairs
     if LONG.get(owner, owner) in _NAME_LISTS and len(texts) == len(items):
         two += sum(_are_two(each, text) for each in words)
     numbers = sum(isinstance(each, int | float) for each in texts)
@@ -305,16 +308,19 @@ def _cost_of_entry(entry: Entry, owner: str, flow: bool, text: str) -> float:
     return cost + _cost_of(value, name, text)
 
 
+_INNER_BRACKET = re.compile(r", *[\[{]")
+
+
 def _cost_of_scalar(tree: Scalar) -> float:
     text = tree.value
     if not isinstance(text, str):
         return 0.0
     if not tree.plain:
         return 0.5 * (_ENTRY_INSIDE.search(text) is not None) + 0.3 * (not _is_even(text))
-    return float(not _is_even(text))
+    return float(not _is_even(text)) + 0.3 * (_INNER_BRACKET.search(text) is not None)
 
 
-_PAIRS = ("[]", "{}", "()")
+_PAIRS = (("[", "]"), ("{", "}"), ("(", ")"))
 
 
 def _is_even(text: str) -> bool:

@@ -114,3 +114,8 @@ def test_a_text_that_is_still_written_is_not_repaired(text: str) -> None:
 def test_examples_have_no_doubts() -> None:
     for path in sorted(EXAMPLES.rglob("*.yml")):
         assert mended(path.read_text("utf-8"))[1] == []
+
+
+def test_a_list_of_names_has_no_entries() -> None:
+    _, report = mended("input_keys: [degrees limit]\ninput: {degrees: 1, limit: 2}\n")
+    assert [item.finding.help for item in report] == ["write `input_keys: [degrees, limit]`"]
