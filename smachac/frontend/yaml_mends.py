@@ -308,7 +308,7 @@ def _cost_of_entry(entry: Entry, owner: str, flow: bool, text: str) -> float:
     return cost + _cost_of(value, name, text)
 
 
-_INNER_BRACKET = re.compile(r", *[\[{]")
+_INNER_BRACKET = re.compile(r""", *[\[{]|""$|''$""")
 
 
 def _cost_of_scalar(tree: Scalar) -> float:

@@ -13,8 +13,8 @@ name: sm
 template: Base
 outcomes: [done]
 states:
-  - ON: {template: Lamp, channel: /front/lamp, transitions: {succeeded: OFF}}
-  - OFF: {template: Lamp, channel: /rear/lamp, transitions: {succeeded: done}}
+  - LIGHT: {template: Lamp, channel: /front/lamp, transitions: {succeeded: DARK}}
+  - DARK: {template: Lamp, channel: /rear/lamp, transitions: {succeeded: done}}
 """
 TEMPLATE = """\
 {% block meta %}
