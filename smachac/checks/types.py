@@ -607,9 +607,22 @@ def _rewrite(clash: Clash) -> str:
         keys = "input_keys" if origin.cell.key in inputs else "output_keys"
         declared = f"`{origin.cell.key}: {wanted}` in the `{keys}` of {_owner(origin.cell)}"
         return f"write {declared}, if that is its type{change}"
+    number = _number_in_list(clash)
+    if number:
+        return f"write the number without brackets: `{number}`"
     if origin.how != "value":
         return f"let {_owner(origin.cell)} write {value}{change}"
     return f"write {value}{change}"
+
+
+def _number_in_list(clash: Clash) -> str:
+    """The number that is the only item of a list in place of a number; empty for other values."""
+    value = clash.flow.value
+    if clash.misfit.wanted.name not in ("float", "int") or not isinstance(value, (tuple, Struct)):
+        return ""
+    data = part_at(value, steps_to_misfit(value, clash.cell.declared))
+    is_one = isinstance(data, tuple) and len(data) == 1 and is_number(data[0])
+    return f"{data[0]}" if isinstance(data, tuple) and is_one else ""
 
 
 def _other_change(clash: Clash) -> str:

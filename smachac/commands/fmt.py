@@ -59,8 +59,10 @@ def fmt_command(arguments: Namespace) -> int:
     for path in paths:
         found: Report = []
         source = disk.read(path, found)
-        if source is None or disk.parse(source, found) is None:
-            report += found
+        tree = disk.parse(source, found) if source is not None else None
+        broken = [item for item in found if item.code == "SM001"]
+        if source is None or tree is None or broken:
+            report += broken or found
             failed += bool(found)
             continue
         new = format_script(source, arguments.spelling)

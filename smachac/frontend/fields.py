@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 from itertools import pairwise
 
-from smachac.diagnostics.diagnostic import Edit, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
@@ -382,7 +382,20 @@ def listed_keys(tree: Tree) -> Keys:
 
 def as_presets(tree: Tree, report: Report) -> tuple[Preset, ...]:
     """Userdata in the short form `key: value` or the long one `key: {type: T, value: V}`."""
-    return tuple([_preset(entry, report) for entry in as_map(tree, report)])
+    entries = as_map(tree, report)
+    for before, entry in pairwise(entries):
+        number = _decimal_comma(before, entry)
+        if number is not None:
+            report.append(_with_comma(number))
+            entries = tuple(each for each in entries if each is not entry)
+    return tuple([_preset(entry, report) for entry in entries])
+
+
+def _with_comma(number: Span) -> Diagnostic:
+    """SM004 for a number with a decimal comma in a mapping."""
+    message = f"`{number.text}` has a decimal comma: YAML reads two entries"
+    help = f"write `{number.text.replace(',', '.')}`"
+    return wrong_shape(number, message, help, arguments=("decimal comma", number.text))
 
 
 def _preset(entry: Entry, report: Report) -> Preset:
@@ -415,10 +428,7 @@ def _check_decimal_commas(value: Seq | Map, report: Report) -> None:
             for before, entry in pairwise(tree.entries):
                 number = _decimal_comma(before, entry)
                 if number is not None:
-                    message = f"`{number.text}` has a decimal comma: YAML reads two entries"
-                    help = f"write `{number.text.replace(',', '.')}`"
-                    arguments = ("decimal comma", number.text)
-                    report.append(wrong_shape(number, message, help, arguments=arguments))
+                    report.append(_with_comma(number))
 
 
 def _decimal_comma(before: Entry, entry: Entry) -> Span | None:

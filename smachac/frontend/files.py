@@ -24,7 +24,8 @@ from smachac.frontend.config import (
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import SUFFIXES, Library, Ros
-from smachac.frontend.yaml_tree import Tree, parse
+from smachac.frontend.yaml_mends import parse_mended
+from smachac.frontend.yaml_tree import Tree
 
 PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
@@ -187,10 +188,10 @@ class Disk:
         return source
 
     def parse(self, source: Source, report: Report) -> Tree | None:
-        """As `yaml_tree.parse`."""
+        """As `yaml_mends.parse_mended`."""
         if source not in self._trees:
             found: Report = []
-            self._trees[source] = (parse(source, found), found)
+            self._trees[source] = (parse_mended(source, found), found)
         tree, problems_found = self._trees[source]
         report.extend(problems_found)
         return tree

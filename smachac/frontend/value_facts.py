@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Mapping
 
 from smachac.diagnostics.diagnostic import Report, Severity, did_you_mean
@@ -170,9 +171,21 @@ def _bound(tree: Map, name: str, type_: Type, report: Report) -> float | None:
         return float(value)
     else:
         message = f"expected a number, found {kind_of(entry.value)}"
-        help = "write the number alone; its unit is `unit: m/s`"
+        meant = _number_in(entry.value)
+        help = f"write `{name}: {meant}`" if meant else "write a number, such as `0`"
     report.append(wrong_shape(entry.value.span, message, help, arguments=(name, str(value))))
     return None
+
+
+_DIGITS = re.compile(r"[-+]?\d*\.?\d+")
+
+
+def _number_in(tree: Tree) -> str:
+    """The number that begins a text, or is the only item of a list; empty without one."""
+    if isinstance(tree, Seq) and len(tree.items) == 1:
+        tree = tree.items[0]
+    found = _DIGITS.match(str(tree.value).replace(",", ".")) if isinstance(tree, Scalar) else None
+    return found[0] if found is not None else ""
 
 
 def _number(type_: Type) -> Type | None:

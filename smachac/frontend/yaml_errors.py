@@ -72,6 +72,14 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
     )
 
 
+def stopped_at(text: str, error: Any) -> list[int]:
+    """Indexes of the lines in which the fault of an exception of the parser can be."""
+    stop = _stop(text, error)
+    above = [start for start, _ in _lines_above(stop, 1)]
+    first = [] if stop.first is None else [stop.first]
+    return list(dict.fromkeys([stop.at, *above, *first]))
+
+
 def _stop(text: str, error: Any) -> _Stop:
     first, mark = (getattr(error, name, None) for name in ("context_mark", "problem_mark"))
     problem, context = (_one_line(getattr(error, name, None)) for name in ("problem", "context"))
@@ -221,7 +229,10 @@ def _colon(stop: _Stop) -> _Fault | None:
         joined = JOINED.match(stop.text, stop.first)
         if joined is not None:
             return _Fault(SPACE_MISSING, spaced(joined[0]), *joined.span())
+        word = _WORD.match(stop.text, stop.first)
         help = "write `key: value`, with a space after `:`"
+        if word is not None and stop.text[word.end() : word.end() + 1] in ("", "\n", "\r"):
+            return _Fault("a `:` is missing after this key", f"write `{word[0]}:`", *word.span())
         return _Fault("a `:` is missing after this key", help, stop.first)
     if not stop.problem.startswith("mapping values are not allowed"):
         return None
@@ -262,7 +273,8 @@ def _colon_above(stop: _Stop) -> _Fault | None:
     valued, key = _VALUED.fullmatch(written), stop.before.lstrip()
     if valued is not None and len(stop.before) - len(key) > column and not key.startswith("- "):
         message = f"this key is indented more than `{valued[1]}` above it, which has a value"
-        help = f"indent it like `{valued[1]}`, or remove the value of `{valued[1]}`"
+        spaces = _of_spaces(column)
+        help = f"indent it by {spaces}, like `{valued[1]}`, or remove the value of `{valued[1]}`"
         return _Fault(message, help, stop.at - len(key), stop.at)
     return None
 
@@ -280,11 +292,113 @@ def _lines_above(stop: _Stop, most: int) -> list[tuple[int, str]]:
     return found
 
 
+_ITEM = re.compile(r"([ ]*)- +([^\W\d][\w.-]*):")
+"""The line of an item with a name, such as a state."""
+
+
+class _Item(NamedTuple):
+    """An item of a list that is open: its column, name and index in the text."""
+
+    column: int
+    name: str
+    start: int
+
+
+def _open_items(stop: _Stop) -> list[_Item]:
+    """The last item of each list that is open above a line, the innermost first."""
+    found: list[_Item] = []
+    least: int | None = None
+    for start, line in _lines_above(stop, len(stop.text)):
+        indent = _indent(line)
+        if least is not None and indent >= least:
+            continue
+        least = indent
+        item = _ITEM.match(line)
+        if item is not None:
+            found.append(_Item(indent, item[2], start + indent))
+    return found
+
+
+def _column_below(stop: _Stop, column: int) -> int | None:
+    """The column of the next item below one at `column` that is not inside it."""
+    for line in stop.text[_line_end(stop.text, stop.at) :].split("\n"):
+        if line.strip() and _indent(line) <= column:
+            return _indent(line) if line.lstrip().startswith("- ") else None
+    return None
+
+
+def _line_end(text: str, index: int) -> int:
+    end = text.find("\n", index)
+    return len(text) if end < 0 else end
+
+
+def _misindented(stop: _Stop) -> _Fault | None:
+    """The fault of an item with a name that is not indented like those of an open list."""
+    here = _ITEM.match(stop.text, stop.at - len(stop.before))
+    opened = _open_items(stop)
+    if here is None or stop.before.strip() or not opened:
+        return None
+    column, name = len(here[1]), here[2]
+    columns = [item.column for item in opened]
+    if column in columns:
+        return None
+    below = _column_below(stop, column)
+    first = opened[0]
+    if first.column != column == below and _is_alone(stop, first):
+        message = f"`- {first.name}:` is indented by {_of_spaces(first.column)}, the items after it"
+        end = first.start + len(first.name) + 3
+        return _Fault(f"{message} by {column}", _shift(column, name), first.start, end)
+    due = min(
+        opened, key=lambda item: (abs(item.column - column), item.column != below, -item.column)
+    )
+    around = next((item.name for item in opened if item.column < due.column), "")
+    owner = f"of `{around}`" if around else "of the script"
+    message = f"`- {name}:` is indented by {_of_spaces(column)}, the items {owner} by {due.column}"
+    return _Fault(message, _shift(due.column, due.name), stop.at, stop.at + len(name) + 3)
+
+
+def _shift(column: int, like: str) -> str:
+    """The help for an item at a wrong column. `like` is the name of an item at the right one."""
+    if not column:
+        return f"write it and the lines below it without indentation, like `- {like}:`"
+    return f"indent it and the lines below it by {_of_spaces(column)}, like `- {like}:`"
+
+
+def _of_spaces(number: int) -> str:
+    return f"{number} space{'s' * (number != 1)}"
+
+
+def _is_alone(stop: _Stop, item: _Item) -> bool:
+    """Whether an item is the first of its list."""
+    above = stop._replace(at=item.start, before=" " * item.column)
+    lines = _lines_above(above, 1)
+    return bool(lines) and _indent(lines[0][1]) < item.column and lines[0][1].rstrip().endswith(":")
+
+
+def _key_above(stop: _Stop) -> tuple[int, str] | None:
+    """The column and the name of the open key above a line with the nearest column."""
+    column, found = len(stop.before), []
+    least: int | None = None
+    for _, line in _lines_above(stop, len(stop.text)):
+        dashes = re.match(r"[ ]*(?:-[ ]+)*", line)
+        assert dashes is not None
+        word = _WORD.match(line, dashes.end())
+        if least is None or _indent(line) < least:
+            least = _indent(line)
+            if word is not None:
+                found.append((dashes.end(), word[0]))
+    return min(found, key=lambda key: (abs(key[0] - column), -key[0])) if found else None
+
+
 _EQUALLY = "indent the items of one list equally, below the key of the list"
 
 
 def _indentation(stop: _Stop) -> _Fault | None:
     """A line whose indentation is that of no other."""
+    if stop.problem.startswith(("expected <block end>", "sequence entries are not allowed")):
+        misindented = _misindented(stop)
+        if misindented is not None:
+            return misindented
     if stop.problem == "expected <block end>, but found '-'":
         return _Fault("a list item cannot follow the keys of a mapping", _EQUALLY, stop.at)
     if stop.problem.startswith("sequence entries are not allowed"):
@@ -307,7 +421,11 @@ def _indentation(stop: _Stop) -> _Fault | None:
         help = "indent it like the key of the list, or begin it with `- ` as an item"
         return _Fault("a key cannot follow the items of a list", help, stop.at)
     message = "the indentation of this line is that of no mapping or list above it"
-    return _Fault(message, "indent the keys of one mapping equally", stop.at)
+    like = _key_above(stop)
+    help = "indent the keys of one mapping equally"
+    if like is not None and _WORD.match(stop.text, stop.at) is not None:
+        help = f"indent it by {_of_spaces(like[0])}, like `{like[1]}`"
+    return _Fault(message, help, stop.at)
 
 
 def _item(stop: _Stop) -> _Fault:

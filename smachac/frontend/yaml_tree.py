@@ -15,12 +15,12 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import accumulate
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Edit, Report
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
-from smachac.frontend.yaml_errors import JOINED, SPACE_MISSING, spaced, syntax_error
+from smachac.frontend.yaml_errors import JOINED, SPACE_MISSING, spaced, stopped_at, syntax_error
 
 MAX_CHARACTERS = 10_000_000
 MAX_DEPTH = 3_500
@@ -142,11 +142,39 @@ def _resolve(text: str) -> bool | int | float | str | None:
     return text
 
 
-def parse(source: Source, report: Report) -> Tree | None:
+class Doubts(NamedTuple):
+    """The places of a text where a sign is probably missing or wrong, as indexes: `stops` are those
+    that a syntax error names, at `places` the text is YAML with an unusual meaning."""
+
+    stops: list[int]
+    places: list[int]
+
+
+class Mended(NamedTuple):
+    """A repaired text. `changes`: the index, the number of characters that are removed there, and
+    of those written, each in the text with the changes before it."""
+
+    text: str
+    changes: tuple[tuple[int, int, int], ...]
+
+    def back(self, index: int) -> int:
+        """The index in the text as the user wrote it."""
+        for at, removed, written in reversed(self.changes):
+            if index >= at + written:
+                index += removed - written
+            elif index > at:
+                index = at
+        return index
+
+
+def parse(
+    source: Source, report: Report, doubts: Doubts | None = None, mended: Mended | None = None
+) -> Tree | None:
     """The tree of a source; None if the text is empty or not YAML.
 
     Reported are syntax errors (SM001), duplicate keys (SM002), keys that are no scalars (SM004) and
-    limits that are exceeded (SM006).
+    limits that are exceeded (SM006). With `mended`, the tree is that of the repaired text, with
+    places in the source.
     """
     if len(source.text) >= MAX_CHARACTERS:
         span = Span(source, 0, 0)
@@ -172,7 +200,7 @@ def parse(source: Source, report: Report) -> Tree | None:
             )
         )
         return None
-    return _build(source, report)
+    return _build(source, report, doubts, mended)
 
 
 # The characters that are not printable: YAML 1.2.2, section 5.1.
@@ -241,8 +269,27 @@ def syntax_error_line(text: str) -> int | None:
     return None
 
 
-def _build(source: Source, report: Report) -> Tree | None:
+@dataclass(slots=True)
+class _Mark:
+    """A place in the text as the user wrote it."""
+
+    index: int
+
+
+def _moved_back(events: Iterator[Any], mended: Mended) -> Iterator[Any]:
+    """The events of a repaired text with the places of the text before."""
+    for event in events:
+        event.start_mark = _Mark(mended.back(event.start_mark.index))
+        event.end_mark = _Mark(mended.back(event.end_mark.index))
+        yield event
+
+
+def _build(
+    source: Source, report: Report, doubts: Doubts | None = None, mended: Mended | None = None
+) -> Tree | None:
     from ruamel.yaml.error import YAMLError
+
+    text = source.text if mended is None else mended.text
 
     collecting = gc.isenabled()
     gc.disable()  # or it runs many times over the growing tree
@@ -253,16 +300,21 @@ def _build(source: Source, report: Report) -> Tree | None:
             try:
                 if events is _pure_events:
                     builder.check_brackets()
-                builder.drive(events(source.text))
+                found_events = events(text)
+                builder.drive(found_events if mended is None else _moved_back(found_events, mended))
             except (YAMLError, ValueError) as error:
                 if events is _c_events and _is_reread(source.text, builder.deepest):
                     continue  # the message is always that of the pure parser
                 builder.items = []
                 found.append(syntax_error(source, error))
+                if doubts is not None:
+                    doubts.stops.extend(stopped_at(source.text, error))
             except _BeyondLimitError:
                 builder.items = []
             if builder.seen or events is _pure_events:
                 report.extend(found)
+                if doubts is not None:
+                    doubts.places.extend(builder.doubtful)
                 return next(iter(builder.items), None)
     finally:
         if collecting:
@@ -329,6 +381,22 @@ class _BeyondLimitError(Exception):
     """A limit is exceeded and reported; parsing ends."""
 
 
+_LAST_SIGNS = frozenset("]}\"'")
+_TWO_WORDS = re.compile(r"[\w.-]+ [\w.-]+")
+_NO_KEY = re.compile(r"[\[{= \"']")
+"""A character that no usual key has."""
+
+
+def _is_torn(text: str) -> bool:
+    """Whether the bracket or quote at the end of a text without quotes has no counterpart in it. A
+    text with spaces can end with an apostrophe, a number with the sign of inches."""
+    last, before = text[-1], text[-2:-1]
+    if last in "]}":
+        opening = "[" if last == "]" else "{"
+        return text.count(opening) < text.count(last) and (before.isalnum() or before in "_)]}\"'")
+    return text.count(last) % 2 == 1 and " " not in text and not before.isdigit()
+
+
 class _Builder:
     """Builds one tree from events, with a stack in place of recursion."""
 
@@ -339,6 +407,7 @@ class _Builder:
         self.items: list[Tree] = []
         self.nodes = 0
         self.anchors: dict[str, tuple[Tree, int]] = {}
+        self.doubtful: list[int] = []
         self.seen = False
         self.deepest = 0
         self.aliased = 0
@@ -398,6 +467,8 @@ class _Builder:
             self._check_tag(event)
         elif plain:
             value = _resolve(text)
+            if " " in text or text[-1:] in _LAST_SIGNS:
+                self._doubt(text, start)
         node = Scalar(value, plain, self.source, start, end)
         self.items.append(node)
         self.nodes += 1  # as `_count`, without a call for each value
@@ -405,6 +476,16 @@ class _Builder:
             self._too_many(start)
         if event.anchor is not None:
             self.anchors[event.anchor] = (node, 1)
+
+    def _doubt(self, text: str, start: int) -> None:
+        """Notes a text without quotes that is probably two, or a part of one: `done READY`."""
+        if text[-1] in _LAST_SIGNS:
+            if _is_torn(text):
+                self.doubtful.append(start)
+        elif " = " in text or (
+            self.stack and self.stack[-1].flow and _TWO_WORDS.fullmatch(text) is not None
+        ):
+            self.doubtful.append(start)
 
     def _check_tag(self, event: Any) -> None:
         """Reports a tag of a scalar that is not for text."""
@@ -517,6 +598,8 @@ class _Builder:
             if key.value == "<<" and key.plain:
                 merged.extend(self._merge(value))
                 continue
+            if key.plain and isinstance(key.value, str) and _NO_KEY.search(key.value) is not None:
+                self.doubtful.append(key.start)
             if flow and isinstance(value, Scalar) and value.value is None:
                 key, value = self._separated(key, value)
             name = key.value

@@ -48,6 +48,7 @@ def yaml_syntax(
     *,
     arguments: tuple[str, ...] = (),
     related: tuple[Related, ...] = (),
+    effect: str | None = None,
 ) -> Finding:
     """The text is not YAML.
 
@@ -74,6 +75,7 @@ def yaml_syntax(
         arguments=arguments,
         help=help or "check the brackets, quotes and indentation before this place",
         related=related,
+        effect=effect,
     )
 
 

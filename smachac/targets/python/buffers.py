@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity, identity
-from smachac.diagnostics.source import Span
+from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Ros
@@ -176,11 +177,30 @@ class ModuleParts:
             number = getattr(tree, "lineno", None) or 1
             lines = text.splitlines() or [""]
             line = lines[min(number, len(lines)) - 1]
+            unquoted = self._unquoted(page, text, line)
+            if unquoted is not None:
+                self.fault(BlockError(unquoted), node)
+                return text
             span = self._place(page, block, line) or node.span
             message = f"the block `{block}` does not print valid Python: {words}"
             help = printed_line_help(words, line.strip())
             self.fault(BlockError(template_error(span, message, help, (block, line.strip()))), node)
         return text
+
+    def _unquoted(self, page: Page, text: str, line: str) -> Diagnostic | None:
+        """SM605 for a look-up `{{ x }}` of a template without quotes, if the printed text is Python
+        with them. `line` is the first line of `text` that is no Python."""
+        for each in walk_pages(page):
+            source = self.blocks.source(each.file)
+            if source is None:
+                continue
+            for start, end, value, quoted in _printed_look_ups(source, line):
+                if not isinstance(modern(text.replace(line, quoted, 1))[2], ast.Module):
+                    continue
+                span = Span(source, start, end)
+                message = f"the template prints `{value}` without quotes, which is not valid Python"
+                return template_error(span, message, f"write `'{span.text}'`", (span.text,))
+        return None
 
     def _other_version(
         self, tree: ast.Module, text: str, page: Page, block: str, node: Node
@@ -199,6 +219,30 @@ class ModuleParts:
             if found is not None:
                 return found
         return self.blocks.block_span(page.file, block)
+
+
+_TAG = re.compile(r"\{\{-?\s*\w+\s*-?\}\}|\{%.*")
+
+
+def _printed_look_ups(source: Source, line: str) -> Iterator[tuple[int, int, str, str]]:
+    """The look-ups in the lines of a template that can have printed a line: their places, the text
+    of each in the line, and the line with this text in quotes."""
+    printed, start = line.strip(), 0
+    for written in source.text.splitlines(keepends=True):
+        pattern, at, tags = "", len(written) - len(written.lstrip()), []
+        for tag in _TAG.finditer(written):
+            pattern += re.escape(written[at : tag.start()])
+            at = tag.end()
+            pattern += ".*" if tag[0].startswith("{%") else "(.*?)"
+            tags += [] if tag[0].startswith("{%") else [tag]
+        found = re.fullmatch(pattern + re.escape(written[at:].rstrip()), printed) if tags else None
+        for number, tag in enumerate(tags if found is not None else (), 1):
+            assert found is not None
+            first, last = found.span(number)
+            quoted = f"{printed[:first]}{found[number]!r}{printed[last:]}"
+            indent = line[: len(line) - len(line.lstrip())]
+            yield start + tag.start(), start + tag.end(), found[number], indent + quoted
+        start += len(written)
 
 
 def printed_line_help(words: str, line: str) -> str:
