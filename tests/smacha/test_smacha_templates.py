@@ -485,6 +485,10 @@ outcomes:
     assert [key.name for key in found.output_keys] == []
     assert {"input_keys", "output_keys"} <= found.given
     assert [outcome.name for outcome in found.outcomes] == ["succeeded", "aborted"]
+    types = {name: str(each.type) for name, each in found.variables.items()}
+    # A template prints a number as a text; a type in words is none.
+    assert types == {"speed": "float", "slow": "any", "goal": "any", "goal_cb": "any"}
+    assert [str(key.type) for key in found.input_keys] == ["list[float]", "str", "str"]
 
 
 @pytest.mark.parametrize(
