@@ -12,9 +12,8 @@ from smachac.analysis.type_lattice import fits, is_open, widened
 from smachac.analysis.unset_reads import Reader
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import words_of
-from smachac.ir.nodes import Leaf
 from smachac.ir.traversal import remapping
-from smachac.ir.types import ANY
+from smachac.ir.types import ANY, Type
 
 
 class UnreadOutput(NamedTuple):
@@ -46,12 +45,11 @@ def unread_output(scope: UserdataScope, missing: str) -> UnreadOutput | None:
     return found[0] if len(found) == 1 else None
 
 
-def fitting_key(types: Types, scope: UserdataScope, reader: Reader) -> str | None:
-    """The only key in the container of a state that has the type of one of its inputs and that the
-    state does not read; None where the type of the input is not known."""
-    wanted = types.inputs.get((reader.path, reader.key), ANY)
+def fitting_key(types: Types, scope: UserdataScope, reader: Reader, wanted: Type) -> str | None:
+    """The only key in the container of a state that has the type of one of its inputs, `wanted`,
+    and that the state does not read; None where the type of the input is not known."""
     names = remapping(reader.node)
-    if is_open(wanted) or reader.key in names or not isinstance(reader.node, Leaf):
+    if is_open(wanted) or reader.key in names or reader.node is scope.container:
         return None
     own = {names.get(each.name, each.name) for each in reader.node.inputs}
     keys = {key: type_ for (path, key), type_ in types.keys.items() if path == scope.path}

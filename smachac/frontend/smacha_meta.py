@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
+from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.jinja_tags import meta_block, tags
 from smachac.frontend.type_annotations import read_type
@@ -285,7 +286,8 @@ def _types(tree: Tree) -> Iterator[tuple[str, Type]]:
             if found is None or not isinstance(found.value, Scalar):
                 continue
             text = str(found.value.value)
-            type_ = read_type(text, Word(text, found.value.span), report := [])
+            report: Report = []
+            type_ = read_type(text, Word(text, found.value.span), report)
             if type_ is None or report:
                 continue
             default = entry.value.get("default") if isinstance(entry.value, Map) else None
