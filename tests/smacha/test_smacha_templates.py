@@ -784,7 +784,6 @@ smach.{{ parent_type }}.add('{{ name }}', Go()PARTS)
         (", transitions={{ transitions }}", ["remapping"]),
         (", transitions={{ transitions }}, remapping={{ remapping }}", []),
         (", transitions={'ok': 'done'}, remapping={'pose': 'at'}", []),
-        ("{{ super() }}", []),
     ],
 )
 def test_a_template_that_does_not_print_what_the_script_has(
