@@ -12,6 +12,7 @@ from smachac.analysis.unset_reads import MOST_LEVELS, MOST_STEPS, Missing, Reade
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node
+from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import remapping
 
 
@@ -49,8 +50,8 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
         outer = around(flow, scope.path)
         if outer is None or scope.path not in flow.entered or scope.container.sugar:
             continue
-        kept: tuple[tuple[Node, Key, str], ...] = fact_of(_kept, scope.path, scope)
-        for writer, written, own in kept:
+        kept: tuple[_Kept, ...] = fact_of(_kept, scope.path, scope)
+        for writer, written, own, is_named in kept:
             if left <= 0 or (scope.path, own) in reported:
                 continue
             levels = [
@@ -59,11 +60,26 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
                 if level.key in fact_of(_read, level.scope.path, level.scope)
             ]
             left -= sum(len(each.scope.steps) + len(each.scope.reads) for each in levels)
+            if not is_named and levels:
+                left -= len(scope.steps) + len(scope.reads)
+                if not _is_dead(scope, writer, own):
+                    continue
             for level, vertex in chain(_after(levels), _again(scope, own, writer, levels)):
                 reader = reader_at(level.scope, vertex, level.key)
                 reported.add((scope.path, own))
                 yield Lost(scope, own, writer, written, reader, level.key, False)
                 break
+
+
+class _Kept(NamedTuple):
+    """A key that a state of a container writes, and the name of the key in the container, of which
+    it is no output. `is_named`: the script lists or renames it; if not, it is an input of the
+    container, and only the interface of the state type lists it."""
+
+    writer: Node
+    written: Key
+    own: str
+    is_named: bool
 
 
 class _Level(NamedTuple):
@@ -168,7 +184,7 @@ def _read(scope: UserdataScope) -> frozenset[str]:
     return frozenset(chain(*scope.reads.values()))
 
 
-def _kept(scope: UserdataScope) -> tuple[tuple[Node, Key, str], ...]:
+def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
     """The keys that leaves of a container write and that are no outputs of it. A key that is also
     read in the container counts only if it is an input, because then it has one name outside."""
     container = scope.container
@@ -178,16 +194,23 @@ def _kept(scope: UserdataScope) -> tuple[tuple[Node, Key, str], ...]:
         for names in [remapping(child)]
         for key in child.inputs
     }
-    found: list[tuple[Node, Key, str]] = []
+    found: list[_Kept] = []
     for child in container.children:
         renamed = {remap.key for remap in child.remaps} - {key.name for key in child.inputs}
-        for key in child.outputs if isinstance(child, Leaf) else ():
+        for key in child.outputs if _is_leaf(child) else ():
             own = remapping(child).get(key.name, key.name)
             is_local = own in read and own not in scope.inputs
             is_named = key.span.source is child.span.source or key.name in renamed
-            if is_named and own not in scope.outputs and not is_local:
-                found.append((child, key, own))
+            if own not in scope.outputs and not is_local and (is_named or own in scope.inputs):
+                found.append(_Kept(child, key, own, is_named))
     return tuple(found)
+
+
+def _is_leaf(node: Node) -> bool:
+    """Whether a node is a leaf in the script: it can have containers made of sugar around it."""
+    while not isinstance(node, Leaf) and (inside := sugared_child(node)) is not None:
+        node = inside
+    return isinstance(node, Leaf)
 
 
 def _read_after(

@@ -12,9 +12,8 @@ from smachac.analysis.type_lattice import fits, is_open, widened
 from smachac.analysis.unset_reads import Reader
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import words_of
-from smachac.ir.nodes import Leaf
 from smachac.ir.traversal import remapping
-from smachac.ir.types import ANY
+from smachac.ir.types import ANY, Type
 
 
 class UnreadOutput(NamedTuple):
@@ -50,13 +49,12 @@ MOST_FITTING = 3
 """More keys of one type are no help."""
 
 
-def fitting_keys(types: Types, scope: UserdataScope, reader: Reader) -> list[str]:
-    """The keys in the container of a state that have the type of one of its inputs and that the
-    state does not read, first those that nothing reads, and those that a state sets before the
-    initial values; none where the type of the input is not known, or if there are too many."""
-    wanted = types.inputs.get((reader.path, reader.key), ANY)
+def fitting_keys(types: Types, scope: UserdataScope, reader: Reader, wanted: Type) -> list[str]:
+    """The keys in the container of a state that have the type of one of its inputs, `wanted`, and
+    that the state does not read, first those that nothing reads, and those that a state sets before
+    the initial values; none where the type of the input is not known, or if there are too many."""
     names = remapping(reader.node)
-    if is_open(wanted) or reader.key in names or not isinstance(reader.node, Leaf):
+    if is_open(wanted) or reader.key in names or reader.node is scope.container:
         return []
     own = {names.get(each.name, each.name) for each in reader.node.inputs}
     keys = {key: type_ for (path, key), type_ in types.keys.items() if path == scope.path}

@@ -328,7 +328,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     The caller of a container must provide a key without need, or expects a result that is never
     set. An unused param has no effect, so the robot does not do what the caller intended.
 
-    Exactly: params are not checked where a template without an interface can read them.
+    Exactly: params are not checked where a template without an interface reads `params`.
 
     Wrong:
         name: sm

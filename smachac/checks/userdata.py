@@ -12,6 +12,7 @@ from smachac.analysis.def_use import Use, place_of, uses_by_key
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import unknown_remaps
 from smachac.analysis.type_inference import Types
+from smachac.analysis.type_lattice import is_open, misfit
 from smachac.analysis.unset_reads import (
     Missing,
     Searches,
@@ -42,6 +43,7 @@ from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import remapping
+from smachac.ir.types import ANY, Type
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -121,6 +123,10 @@ def read_before_write(context: Context) -> Iterator[Finding]:
         for witness in searches.witnesses(missing):
             if witness.reader.path in moved:
                 continue  # SM101: the state is in a wrong container
+            node = witness.reader.node
+            misplaced = node.misplaced_keys if isinstance(node, nodes.Leaf) else ()
+            if witness.reader.key in misplaced and not witness.also:
+                continue  # SM003 reports the cause
             users = used(missing.scope.path).get(missing.key, [])
             finding = _unset(missing, witness, users, guesses, context.types)
             if wrong is not None:
@@ -299,12 +305,23 @@ def _unset(
         own = {names.get(key.name, key.name) for key in node.inputs}
         if node is not scope.container and guess in own:
             guess = guesses.of(scope).sure(missing.key)  # the state reads that key too
-        help = did_you_mean(guess) or _item_help(scope.container, node, missing.key) or help
+        wanted, inside = types.inputs.get((reader.path, reader.key), ANY), witness.inner
+        if inside is not None and is_open(wanted):
+            wanted = types.inputs.get((inside.path, inside.key), ANY)
+        if guess is not None and not _may_be(types, scope, guess, wanted):
+            guess = None
+        of_item = _item_help(scope.container, node, missing.key)
+        help = did_you_mean(guess) or of_item or help
         unread = unread_output(scope, missing.key) if guess is None else None
-        fitting = fitting_keys(types, scope, reader) if guess is None else []
+        fitting = []
+        if guess is None and (of_item is None or isinstance(node, nodes.Leaf)):
+            fitting = fitting_keys(types, scope, reader, wanted)
         if len(fitting) == 1:
-            help = f"write `remapping: {{{reader.key}: {fitting[0]}}}` in `{node.name}`, if it must"
-            help += f" read `{fitting[0]}`, which has this type"
+            pair = f"{reader.key}: {fitting[0]}"
+            help = f"write `remapping: {{{pair}}}` in `{node.name}`"
+            if node.remaps:
+                help = f"add `{pair}` to the `remapping` of `{node.name}`"
+            help += f", if it must read `{fitting[0]}`, which has this type"
         elif fitting and reader.key == missing.key:
             ways = " or ".join(f"`remapping: {{{reader.key}: {key}}}`" for key in fitting)
             help = f"write {ways} in `{node.name}`: these keys have its type"
@@ -331,6 +348,12 @@ def _unset(
         severity=None if witness.always else Severity.WARNING,
         node=reader.path,
     )
+
+
+def _may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:
+    """Whether the type of a key of a container, as far as it is known, is not a wrong one."""
+    given = types.keys.get((scope.path, key), ANY)
+    return is_open(given) or is_open(wanted) or misfit(given, wanted) is None
 
 
 def _keys_of(scope: UserdataScope) -> set[str]:

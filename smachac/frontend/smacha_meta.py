@@ -9,11 +9,14 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
+from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.jinja_tags import meta_block, tags
+from smachac.frontend.type_annotations import read_type
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Key, Outcome, StateKind, Value
+from smachac.ir.types import ANY, Type
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _BODY_TEXT = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)
@@ -33,9 +36,15 @@ _FILES = re.compile(r"[\"']([^\"']+)[\"']")
 _QUOTED = re.compile(r"([\"'])(\w+)\1")
 
 
+PRINTED_TYPES = frozenset(["int", "float", "bool", "one_of"])
+"""The types of variables that are checked: a template prints a number as a text, too, and a list
+can be a string construct."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Meta:
-    """A meta block. Its keys are those that every such state has; scripts may add others."""
+    """A meta block. Its keys are those that every such state has; scripts may add others. `types`
+    are those of its variables and keys, by field and name; types in words are left out."""
 
     kind: StateKind
     doc: str
@@ -45,6 +54,11 @@ class Meta:
     output_keys: tuple[Word, ...]
     outcomes: tuple[Outcome, ...]
     simulation: bool
+    types: Mapping[str, Mapping[str, Type]]
+
+    def type_of(self, part: str, name: str) -> Type:
+        """The type of a variable or key."""
+        return self.types.get(part, {}).get(name, ANY)
 
 
 def has_body(template: Source) -> bool:
@@ -74,7 +88,9 @@ def read_meta(template: Source) -> Meta | None:
     """The meta block of a template; None if there is none or it is no YAML."""
     found = meta_block(template.text)
     text = template.text[found[1] : found[2]] if found is not None else ""
-    tree = parse(Source(template.name, text), []) if found is not None else None
+    # Empty lines before the block give its parts the lines that they have in the template.
+    above = "\n" * template.text.count("\n", 0, found[1]) if found is not None else ""
+    tree = parse(Source(template.name, above + text), []) if found is not None else None
     if not isinstance(tree, Map):
         return None
 
@@ -97,6 +113,15 @@ def read_meta(template: Source) -> Meta | None:
             if re.fullmatch(r"\w+", word.text)  # some have a sentence in place of the names
         ),
         simulation=_text(tree, "simulation") == "True",
+        types={
+            part: {
+                name: type_
+                for name, type_ in _types(entry.value)
+                if part != "variables" or type_.name in PRINTED_TYPES
+            }
+            for part in ("variables", "input_keys", "output_keys")
+            if (entry := tree.get(part)) is not None
+        },
     )
 
 
@@ -245,3 +270,26 @@ def _defaults(tree: Tree) -> Iterator[tuple[str, Value]]:
                 yield str(entry.key.value), as_value(default.value)
             elif isinstance(entry.value, Seq):
                 yield from _defaults(entry.value)
+
+
+def _types(tree: Tree) -> Iterator[tuple[str, Type]]:
+    """The types of the names in a meta list, without those whose default is `null`."""
+    if isinstance(tree, Seq):
+        for item in tree.items:
+            yield from _types(item)
+    elif isinstance(tree, Map):
+        for entry in tree.entries:
+            if isinstance(entry.value, Seq):
+                yield from _types(entry.value)
+                continue
+            found = entry.value.get("type") if isinstance(entry.value, Map) else None
+            if found is None or not isinstance(found.value, Scalar):
+                continue
+            text = str(found.value.value)
+            report: Report = []
+            type_ = read_type(text, Word(text, found.value.span), report)
+            if type_ is None or report:
+                continue
+            default = entry.value.get("default") if isinstance(entry.value, Map) else None
+            if default is None or as_value(default.value).data is not None:
+                yield str(entry.key.value), type_

@@ -308,7 +308,11 @@ def _as_key(word: Word, entry: Entry, entries: Entries, type_: StateType) -> str
         return None
     text = entry.value.span.text
     given = text if "\n" not in text and len(text) <= LONGEST_VALUE else "..."
-    help = f"write `userdata: {{{word.text}: {given}}}`"
+    held = next((key.type.name for key in type_.input_keys if key.name == word.text), "any")
+    field = "userdata"
+    if held not in ("any", "str", "one_of", "optional") and _is_plain_word(entry.value):
+        field = "remapping"  # a name cannot be the value: it is that of another key
+    help = f"write `{field}: {{{word.text}: {given}}}`"
     keys = entries.get("input_keys")
     if keys is None and word.text not in type_.listed_inputs:
         return help
@@ -316,6 +320,16 @@ def _as_key(word: Word, entry: Entry, entries: Entries, type_: StateType) -> str
         [] if keys is None else keys.value.span.text.replace(",", " ").strip("[]{}").split()
     )
     return help if word.text in listed_here else f"{help} and add `{word.text}` to its `input_keys`"
+
+
+def _is_plain_word(tree: Tree) -> bool:
+    """Whether a value is one name without quotes."""
+    return (
+        isinstance(tree, Scalar)
+        and tree.plain
+        and isinstance(tree.value, str)
+        and tree.value.isidentifier()
+    )
 
 
 LONGEST_VALUE = 60

@@ -673,11 +673,22 @@ def _read_template(
         kind=found.kind,
         doc=found.doc,
         variables={
-            key: VariableType(name=key, required=False, default=found.defaults.get(key))
+            key: VariableType(
+                name=key,
+                type=found.type_of("variables", key),
+                required=False,
+                default=found.defaults.get(key),
+            )
             for key in found.variables
         },
-        input_keys=tuple(Key(name=word.text, span=word.span) for word in found.input_keys),
-        output_keys=tuple(Key(name=word.text, span=word.span) for word in found.output_keys),
+        input_keys=tuple(
+            Key(name=word.text, type=found.type_of("input_keys", word.text), span=word.span)
+            for word in found.input_keys
+        ),
+        output_keys=tuple(
+            Key(name=word.text, type=found.type_of("output_keys", word.text), span=word.span)
+            for word in found.output_keys
+        ),
         outcomes=outcomes,
         given=ALL_GIVEN,
         code={"python": file},

@@ -54,8 +54,9 @@ class Uses:
         self.trees |= inner.trees
 
     def type(self, type_: StateType) -> None:
-        """Count a state whose type may use any param."""
-        self.unknown += type_.any_variable
+        """Count a state whose type may use any param. The template of one without an interface sees
+        them as `params`."""
+        self.unknown += type_.any_variable and (type_.used is None or "params" in type_.used)
 
     def mark(self, report: Report) -> Mark:
         """The current position: a state begins."""
@@ -84,11 +85,13 @@ class Uses:
 
     def replaced(self, inner: Mapping[str, Entry], call: Mapping[str, Entry]) -> None:
         """Count the params of a sub-script that its own fields use, of which the call replaces
-        some."""
+        some, and those that the params of the call use."""
         params = inner.get("params")
         if params is None or not isinstance(params.value, Map):
             return
         fields = [entry.value for key, entry in inner.items() if key in call]
+        given = call.get("params")
+        fields += [given.value] if given is not None else []
         names = {word.text for value in fields for word in look_ups(value)}
         keys = (entry.key for entry in params.value.entries if entry.key.value in names)
         self.defaults.update(key.span for key in keys)

@@ -86,8 +86,8 @@ def _parts(
         found += [one for one in _unpacked(text, each, names, userdata)
                   if each not in tried and one.key not in written]  # fmt: skip
         way = _way(each, names, userdata)
-        if way is None or each in tried or not isinstance(each, ast.expr):
-            continue
+        if way is None or each in tried or not isinstance(each, ast.Attribute | ast.Subscript):
+            continue  # a local name has its value from a part that was read before
         key, steps = way
         if not steps or steps[-1] in known or key in written:
             continue

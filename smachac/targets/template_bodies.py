@@ -48,10 +48,46 @@ def body_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
         if type_ is None or template is None or body is None:
             continue
         yield from _tests(template, body, type_, leaf)
+        yield from _not_printed(template, body, leaf)
         fault = _call_fault(template, body, leaf, _names(machine, library))
         if fault is not None:
             used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")
             yield bad_class(fault[0], "python", leaf.type, fault[1], (used,))
+
+
+def _not_printed(template: Source, body: re.Match[str], leaf: Leaf) -> Iterator[Diagnostic]:
+    """The remapping and the transitions of a state that its template does not print."""
+    inside = body[1]
+    printed = [template.text[start:end] for start, end in tags(template.text, "%{")]
+    in_body = [inside[start:end] for start, end in tags(inside, "%{")]
+    # Code that another template prints can use the names of this one.
+    hidden = any(re.search(r"\bsuper\b|\bself\b|\*\*", each) for each in in_body)
+    hidden = hidden or any(re.search(r"\binclude\b|with context", each) for each in printed)
+    if f"{leaf.type}(" not in inside or hidden:
+        return
+    words = {word for each in (*printed, inside) for word in _WORD.findall(each)}
+    if "name" not in words:
+        return  # the template adds one state of its own
+    leads = [each for each in leaf.transitions
+             if each.origin == "written" and each.target != each.outcome]  # fmt: skip
+    for name, used, effect in (
+        ("remapping", bool(leaf.remaps), "uses its keys under its own names"),
+        ("transitions", bool(leads), "leads to no other state"),
+    ):
+        if not used or name in words:
+            continue
+        start = body.start(1) + inside.index(f"{leaf.type}(")
+        place = Span(template, start, start + len(leaf.type))
+        code = f"{{% if {name} is defined %}}, {{{{ render_{name}({name}) }}}}{{% endif %}}"
+        help = f"add `{code}` behind `{leaf.type}(...)`"
+        if f"render_{name}" not in words:
+            help += f', and import it: `{{% from "Utils.tpl.py" import render_{name} %}}`'
+        message = f"the template does not print the `{name}` that `{leaf.name}` has in the script"
+        fault = template_error(place, message, help, (name, leaf.type))
+        related = (Related(span=leaf.span, message=f"`{leaf.name}` has the `{name}`"),)
+        finding = replace(fault.finding, related=related,
+                          effect=f"the program ignores it: `{leaf.name}` {effect}")  # fmt: skip
+        yield replace(fault, severity=Severity.WARNING, finding=finding)
 
 
 def _tests(

@@ -141,9 +141,64 @@ def test_a_result_that_nobody_wants_has_any_other_name() -> None:
     assert shots(f"{second}images", f"{second}unused") == []
 
 
-def test_a_key_that_a_state_takes_in_and_gives_out_is_not_meant_as_a_result() -> None:
+def test_a_state_sets_a_key_that_it_also_takes_in() -> None:
     both = TAKE.replace("list_in", "list_").replace("list_out", "list_")
     text = SHOTS.replace("list_in: images, list_out: images", "list_: images")
+    assert reported({"main.yml": text, "templates/TakeShot.yml": both}) == []
     text = text.replace("            output_keys: [images]\n", "")
-    files = {"main.yml": text, "templates/TakeShot.yml": both}
-    assert [each for each in reported(files) if each[0] in ("SM305", "SM307")] == []
+    found = reported({"main.yml": text, "templates/TakeShot.yml": both})
+    assert found == [("SM307", "SHOTS", "add `images` to the `output_keys` of `SHOTS`")]
+
+
+COUNT = """\
+name: sm
+outcomes: [done]
+userdata: {n: 0}
+states:
+  - INNER:
+      template: StateMachine
+      outcomes: [done]
+      input_keys: [n]
+      states:
+        - ADD: {template: Add, LIMITtransitions: {ok: NEXT, timeout: done}}
+        - SHOW_IT: {template: PrintUserdataState, input_keys: [n], transitions: {succeeded: done}}
+      transitions: {done: SHOW}
+  - SHOW: {template: PrintUserdataState, input_keys: [n], transitions: {succeeded: done}}
+"""
+ADD_ONE = """\
+name: Add
+input_keys: {n: int}
+output_keys: {n: int}
+outcomes: [ok]
+"""
+
+
+def added(text: str) -> list[tuple[str, str, str | None]]:
+    files = {"main.yml": text, "templates/Add.yml": ADD_ONE}
+    return [each for each in reported(files) if each[0] in ("SM305", "SM307")]
+
+
+def test_only_the_interface_lists_the_key_that_is_lost() -> None:
+    text = COUNT.replace(COUNT[COUNT.index("        - SHOW_IT") : COUNT.index("      trans")], "")
+    text = text.replace("NEXT", "done")
+    help = "add `n` to the `output_keys` of `INNER`"
+    plain = text.replace("LIMIT", "").replace(", timeout: done", "")
+    assert added(plain) == [("SM307", "INNER", help)]
+    assert added(text.replace("LIMIT", "timeout: 9s, ")) == [("SM307", "INNER", help)]
+    whole = plain.replace(
+        "input_keys: [n]\n      states", "input_keys: [n]\n      output_keys: [n]\n      states"
+    )
+    assert added(whole) == []
+
+
+def test_a_key_of_an_interface_that_a_state_inside_reads_is_not_lost() -> None:
+    plain = COUNT.replace("LIMIT", "").replace(", timeout: done", "").replace("NEXT", "SHOW_IT")
+    assert added(plain) == []
+
+
+def test_a_key_of_an_interface_that_is_no_input_is_not_lost() -> None:
+    only = COUNT.replace(
+        "      input_keys: [n]\n      states", "      userdata: {n: 1}\n      states"
+    )
+    only = only.replace("LIMIT", "").replace(", timeout: done", "").replace("NEXT", "SHOW_IT")
+    assert added(only) == []

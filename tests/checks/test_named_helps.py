@@ -394,3 +394,19 @@ def test_a_transition_of_a_sub_script_that_one_call_needs() -> None:
     assert helps(CALLS, "SM101", **{"part.yml": PART}) == []
     alone = CALLS.replace("  - ONE: {script: part, transitions: {done: BOTH}}\n", "")
     assert helps(alone, "SM101", **{"part.yml": PART})
+
+
+def test_a_key_in_place_of_the_value_of_an_input_key() -> None:
+    text = """
+name: sm
+template: PyBulletBase
+robot: panda
+outcomes: [succeeded, aborted, preempted]
+userdata: {home: [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785]}
+states:
+  - GO: {template: MoveToJointPositionsState, positions: home}
+"""
+    found = [(each.code, each.help) for each in analysed({"main.yml": text}).report
+             if each.severity.value != "info"]  # fmt: skip
+    help = "`positions` is an input key: write `remapping: {positions: home}`"
+    assert found == [("SM003", help)]

@@ -238,3 +238,32 @@ def test_a_field_of_a_record_in_another_unit(unit: str) -> None:
     messages = [each.finding.message for each in report if each.code == "SM504"]
     message = "`torque` of `screw` is in `N*m` in the type `Screw`, but `DRIVE` reads it in `N*mm`"
     assert messages == ([message] if unit == "N*mm" else [])
+
+
+def test_a_part_in_a_local_variable_is_reported_once() -> None:
+    code = """
+import smach
+class Open(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["open"], input_keys=["entry"])
+    def execute(self, userdata):
+        number = userdata.entry.drawer
+        print(number, number + 1)
+        return "open"
+"""
+    interface = """
+name: Open
+input_keys: {entry: {type: {code: str, drawer: int}}}
+outcomes: [open]
+code: {python: "lab:Open"}
+"""
+    main = """
+name: sm
+outcomes: [done]
+userdata: {entry: {code: a, drawer: 2}}
+states:
+  - OPEN: {template: Open, transitions: {open: done}}
+"""
+    files = {"main.yml": main, "templates/Open.yml": interface, "lab.py": code}
+    found = [(each.code, each.span.text, each.help) for each in analysed(files).report]
+    assert found == [("SM311", "userdata.entry.drawer", 'write `userdata.entry["drawer"]`')]

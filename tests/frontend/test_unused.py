@@ -84,3 +84,37 @@ def test_params_of_a_call_follow_those_of_the_sub_script() -> None:
     assert found("params: {more: b}", "more: a, text: [params, more]") == []
     (wrong,) = found("params: {more: b}", "text: [params, more]")
     assert wrong == "SM015 ask.yml more"
+
+
+TEMPLATE = """\
+{% block meta %}
+name: Speak
+type: State
+outcomes: [good, bad]
+{% endblock meta %}
+{% extends "State.tpl.py" %}
+{% block body %}
+smach.{{ parent_type }}.add('{{ name }}', Speak('{{ text }}' PARAMS))
+{% endblock body %}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "unused"), [("", ["txt"]), (", {{ params.txt }}", []), (", {{ params }}", [])]
+)
+def test_a_template_uses_only_params_that_it_can_read(code: str, unused: list[str]) -> None:
+    ask = ASK.replace("ScriptedState", "Speak").replace("PARAMS", "text: hello")
+    ask = ask[: ask.index("    output_keys")] + "    text: [params, text]\n"
+    files = {
+        "main.yml": MAIN.replace("FIELDS", "params: {txt: bye}"),
+        "ask.yml": ask,
+        "templates/Speak.tpl.py": TEMPLATE.replace("PARAMS", code),
+    }
+    found = [item for item in analysed(files).report if item.code == "SM306"]
+    assert [item.span.text for item in found] == unused
+
+
+def test_a_param_that_the_params_of_a_call_use_is_used() -> None:
+    call = "params: {who: you, text: [hello_, [params, who]]}"
+    assert found(call, "who: me, text: hello") == []
+    assert found("params: {text: bye}", "who: me, text: hello") == ["SM306 ask.yml who"]

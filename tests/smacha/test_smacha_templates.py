@@ -485,6 +485,10 @@ outcomes:
     assert [key.name for key in found.output_keys] == []
     assert {"input_keys", "output_keys"} <= found.given
     assert [outcome.name for outcome in found.outcomes] == ["succeeded", "aborted"]
+    types = {name: str(each.type) for name, each in found.variables.items()}
+    # A template prints a number as a text; a type in words is none.
+    assert types == {"speed": "float", "slow": "any", "goal": "any", "goal_cb": "any"}
+    assert [str(key.type) for key in found.input_keys] == ["list[float]", "str", "str"]
 
 
 @pytest.mark.parametrize(
@@ -735,7 +739,7 @@ class T(smach.State):
         return 'preempted' if self.preempt_requested() else 'succeeded'
 {% endblock %}
 {% block body %}
-smach.{{ parent_type }}.add('{{ name }}', T({% if input_keys is defined %}input_keys={{ input_keys }}{% endif %}))
+smach.{{ parent_type }}.add('{{ name }}', T({% if input_keys is defined %}input_keys={{ input_keys }}{% endif %}), transitions={{ transitions }})
 {% endblock %}
 """
 
@@ -756,3 +760,41 @@ def test_a_class_is_believed_where_its_meta_block_differs(tmp_path: Path) -> Non
     type_ = find_state_type("T", disk_library(path, []), [])
     assert type_ is not None
     assert [each.name for each in type_.outcomes] == ["succeeded", "preempted"]
+
+
+PLAIN = """\
+{% block class_defs %}
+class Go(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=['ok'], input_keys=['pose'])
+
+    def execute(self, userdata):
+        return 'ok' if userdata.pose else 'ok'
+{% endblock class_defs %}
+{% block body %}
+smach.{{ parent_type }}.add('{{ name }}', Go()PARTS)
+{% endblock body %}
+"""
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        ("", ["remapping", "transitions"]),
+        (", transitions={{ transitions }}", ["remapping"]),
+        (", transitions={{ transitions }}, remapping={{ remapping }}", []),
+        (", transitions={'ok': 'done'}, remapping={'pose': 'at'}", []),
+    ],
+)
+def test_a_template_that_does_not_print_what_the_script_has(
+    tmp_path: Path, parts: str, words: list[str]
+) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "Go.tpl.py").write_text(PLAIN.replace("PARTS", parts))
+    path = tmp_path / "main.yml"
+    path.write_text(
+        "name: SM\ntemplate: Base\noutcomes: [done]\nuserdata: {at: 1}\nstates:\n"
+        "  - A: {template: Go, remapping: {pose: at}, transitions: {ok: done}}\n"
+    )
+    found = [item.finding.arguments[0] for item in smachac.check(path) if item.code == "SM605"]
+    assert found == words

@@ -477,7 +477,8 @@ def template_error(
     A state whose template fails would be missing in the generated program.
 
     Exactly: a warning for a misspelt block, whose text no program contains, and for a misspelt
-    variable in a test `is defined`, whose part no program contains.
+    variable in a test `is defined`, whose part no program contains; also for a template that does
+    not print the remapping or the transitions of a state.
 
     Wrong:
         name: sm
