@@ -21,7 +21,7 @@ from smachac.checks.rule import rule
 from smachac.checks.timeouts import missing_joins
 from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Condition, Leaf, Node, OutcomeRule
@@ -114,12 +114,17 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                     node=path,
                 )
         if not entry.when:
+            name = written_name(entry.outcome)
+            what = " beside `any`, which stands for every outcome" if entry.ignored else ""
+            help = f"write conditions, as in `{name}: {{{_example(container)}}}`, or"
+            help += " remove the rule"
+            if entry.ignored and container.default_outcome in ("", entry.outcome):
+                help = f"write `default_outcome: {name}` in place of the rule"
             yield Finding(
                 span=entry.span,
-                message=f"the rule for `{entry.outcome}` has no conditions",
+                message=f"the rule for `{entry.outcome}` has no conditions{what}",
                 arguments=(entry.outcome,),
-                help=f"write conditions, as in `{entry.outcome}: {{{_example(container)}}}`, or"
-                " remove the rule",
+                help=help,
                 effect="with such a rule the outcome depends on the version of SMACH",
                 related=calls(container, entry.span),
                 node=path,

@@ -23,6 +23,7 @@ from smachac.checks.candidate_keys import fitting_key, unread_output
 from smachac.checks.declarations import MeantKey, meant_keys, swapped_loop
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.races import raced_keys
 from smachac.checks.rule import rule
 from smachac.checks.type_words import placeholder
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
@@ -99,11 +100,12 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     presets = meant_keys(context)
     moved = {each.path for each in context.misplaced}
     unwritten = set(read_unwritten(context, unwritten_keys(context)).values())
+    unwritten |= raced_keys(context)
     for missing in context.missing_keys("unset", "nowhere"):
         if missing.cause == "nowhere" and _is_dropped(missing):
             continue  # SM308 reports the cause
         if (missing.scope.path, missing.key) in unwritten:
-            continue  # SM306 reports the cause
+            continue  # SM306 or SM405 reports the cause
         swapped = swapped_loop(missing)
         if swapped is not None:
             yield _swapped(missing, swapped)
@@ -372,6 +374,14 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
         yield from _remapped(missing, guesses)
 
 
+def _ignored(node: Node, meant: str | None) -> str:
+    """What happens without the entry of an unknown key in a remapping."""
+    optional = any(key.name == meant and key.type.name == "optional" for key in node.inputs)
+    if optional:
+        return f"SMACH ignores the entry: the optional key `{meant}` stays unset"
+    return "SMACH ignores the entry: the state uses the keys under its own names"
+
+
 def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
     if not node.remaps or path == node.name:  # the machine has no userdata around it
         return
@@ -392,7 +402,7 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
             " keys",
             arguments=(remap.key, remap.to),
             help=known if remap in turned else did_you_mean(meant) or known,
-            effect="SMACH ignores the entry: the state uses the keys under its own names",
+            effect=_ignored(node, meant),
             related=calls(node, remap.span),
             node=path,
             edits=() if remap in turned else respelt(Word(remap.key, remap.span), certain),
