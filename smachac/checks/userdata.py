@@ -20,7 +20,7 @@ from smachac.analysis.unset_reads import (
     reader_at,
 )
 from smachac.checks.candidate_keys import fitting_key, unread_output
-from smachac.checks.declarations import MeantKey, meant_keys, swapped_loop
+from smachac.checks.declarations import MeantKey, loop_in_a_body, meant_keys, swapped_loop
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.races import raced_keys
@@ -491,6 +491,11 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
         held = name_in_script(holder)
         why = f"which is a key of `{held}` but not an input of {listed(between)}"
         help = f"add `{key}` to the `input_keys` of {listed(between)}"
+        loop = loop_in_a_body(missing)
+        if loop is not None:
+            help = f"write `{key}` in place of `{loop.item_key}` in the `input_keys` of"
+            help += f" {listed(between)}: the `for_each` of `{loop.name}` sets `{loop.item_key}`;"
+            help += f" or move the `for_each` to {listed(between)}"
         if isinstance(holder, nodes.Iterator) and holder.item_key == key:
             why = f"which the loop `{held}` provides, but which is not an input of"
             why += " its state" if list(between) == [held] else f" {listed(between)}"
