@@ -21,7 +21,7 @@ from smachac.checks.rule import rule
 from smachac.checks.timeouts import missing_joins
 from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Condition, Leaf, Node, OutcomeRule
@@ -92,6 +92,24 @@ def dead_rule(context: Context) -> Iterator[Finding]:
 UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
 
 
+def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -> Finding:
+    """The finding on a rule that is empty, or lists states with `any` only."""
+    name = written_name(entry.outcome)
+    what = " beside `any`, which stands for every outcome" if entry.ignored else ""
+    help = f"write conditions, as in `{name}: {{{_example(container)}}}`, or remove the rule"
+    if entry.ignored and container.default_outcome in ("", entry.outcome):
+        help = f"write `default_outcome: {name}` in place of the rule"
+    return Finding(
+        span=entry.span,
+        message=f"the rule for `{entry.outcome}` has no conditions{what}",
+        arguments=(entry.outcome,),
+        help=help,
+        effect="with such a rule the outcome depends on the version of SMACH",
+        related=calls(container, entry.span),
+        node=path,
+    )
+
+
 def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     children = {child.name: child for child in container.children}
     if len(children) < len(container.children):
@@ -114,16 +132,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                     node=path,
                 )
         if not entry.when:
-            yield Finding(
-                span=entry.span,
-                message=f"the rule for `{entry.outcome}` has no conditions",
-                arguments=(entry.outcome,),
-                help=f"write conditions, as in `{entry.outcome}: {{{_example(container)}}}`, or"
-                " remove the rule",
-                effect="with such a rule the outcome depends on the version of SMACH",
-                related=calls(container, entry.span),
-                node=path,
-            )
+            yield _without_conditions(path, container, entry)
         swapped = _swapped_outcomes(entry, children)
         if swapped:
             first, second = swapped

@@ -202,6 +202,23 @@ def swapped_loop(missing: Missing) -> nodes.Iterator | None:
     return None
 
 
+def loop_in_a_body(missing: Missing) -> nodes.Iterator | None:
+    """The `for_each` of a state in a container that has the item as an input in place of the list,
+    where nothing else in it reads an input of that name: the loop was meant around the container,
+    or the list as its input."""
+    scope = missing.scope
+    inputs = {each.name for each in scope.container.inputs}
+    for vertex in missing.vertices if missing.cause == "outside" else ():
+        node = scope.children.get(str(vertex)) if vertex != START else None
+        if not isinstance(node, nodes.Iterator) or node.sugar != "for_each":
+            continue
+        others = (each for each in scope.container.children if each is not node)
+        read = {remapping(each).get(key.name, key.name) for each in others for key in each.inputs}
+        if node.item_key in inputs - read and missing.key not in inputs:
+            return node
+    return None
+
+
 def _swapped_lists(context: Context) -> set[tuple[str, str]]:
     """The lists of loops whose items and item have changed places, with their containers."""
     loops = [(each, swapped_loop(each)) for each in context.missing_keys("nowhere", "remapped")]
@@ -368,6 +385,8 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     kept = {(each.other, each.key) for each in context.missing_keys("outside")}
     kept |= _swapped_lists(context)
+    loops = [(each.scope.path, loop_in_a_body(each)) for each in context.missing_keys("outside")]
+    kept |= {(path, loop.item_key) for path, loop in loops if loop is not None}  # SM303
     kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
     misnamed = {each.word.span: each for each in misnamed_keys(context).values()}

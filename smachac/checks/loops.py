@@ -400,11 +400,15 @@ def _spin(
 
 def _spins(path: str, container: Linear, spin: list[PathStep]) -> Finding:
     child = next(child for child in container.children if child.name == spin[0].label)
+    states = {step.label for step in spin[::2]}
     names = listed(step.label for step in spin[::2])
+    left = any(step.target not in states for each in container.children if each.name in states
+               for step in each.transitions if step.outcome != PREEMPTED)  # fmt: skip
+    ends = "" if left else "has no end and "
     return Finding(
         span=child.span,
-        message=f"the loop of {names} has no end and contains no state that waits",
-        arguments=tuple(sorted({step.label for step in spin[::2]})),
+        message=f"the loop of {names} {ends}contains no state that waits",
+        arguments=tuple(sorted(states)),
         help="add a state that waits to the loop, such as a SleepState",
         effect="the loop uses all the time of a processor core",
         related=calls(child, child.span),

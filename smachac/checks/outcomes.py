@@ -16,6 +16,7 @@ from smachac.analysis.control_flow import (
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.spelling import written_name
 from smachac.diagnostics.wording import both
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
@@ -504,15 +505,15 @@ def _implicit(
         if step.outcome in misspelt:
             continue
         forgotten = beside and fails(child, step.outcome)
+        entry = f"`{written_name(step.outcome)}: {written_name(step.target)}`"
         yield Finding(
             span=step.span,
             message=f"outcome `{step.outcome}` of `{child.name}` has no transition, so"
             f" `{container.name}` ends with `{step.target}`",
             arguments=(own_name(child, step.span), step.outcome),
-            help=f"write `{step.outcome}: {step.target}` if this is intended, or a transition to a"
-            " state that recovers"
+            help=f"write {entry} if this is intended, or a transition to a state that recovers"
             if forgotten
-            else f"add `{step.outcome}: {step.target}` to the `transitions` of `{child.name}` to"
+            else f"add {entry} to the `transitions` of `{child.name}` to"
             " show that this is intended",
             related=calls(child, step.span),
             severity=Severity.WARNING if forgotten else None,

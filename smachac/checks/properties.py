@@ -16,7 +16,7 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
 from smachac.diagnostics.negation import are_opposite
 from smachac.diagnostics.source import Span, Word, assert_never
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import guesser, respelt, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import reachable
 from smachac.ir.nodes import Concurrence, Data, Leaf, Node
@@ -342,7 +342,8 @@ def _named_states(states: Sequence[Node]) -> str:
 def _cure(form: Form, example: Counterexample, turn: Turn | None) -> str:
     """What to do about a property that fails."""
     if turn is not None and turn.missed:
-        way = f"write `{turn.step.outcome}: {turn.missed[0].name}` in `{turn.node.name}`"
+        outcome = written_name(turn.step.outcome)
+        way = f"write `{outcome}: {turn.missed[0].name}` in `{turn.node.name}`"
         if len(turn.missed) > 1:
             states = _named_states(turn.missed)
             way = f"lead `{turn.step.outcome}` of `{turn.node.name}` to {states}"

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from smachac.analysis.accesses import Accesses, callback_names
 from smachac.analysis.context import Context
+from smachac.analysis.raced_outputs import RacedOutput, raced_output
 from smachac.analysis.resource_claims import Held, prefixes
 from smachac.analysis.type_lattice import present
 from smachac.checks.messages import calls, other_place
@@ -87,6 +88,7 @@ def data_race(context: Context) -> Iterator[Finding]:
 def _races(
     path: str, container: Concurrence, branches: list[Node], known: Mapping[str, Accesses]
 ) -> Iterator[Finding]:
+    raced = raced_output(path, container, known)
     writers: dict[str, list[tuple[Node, Node]]] = {}
     readers: dict[str, list[tuple[Node, Node]]] = {}
     for child in branches:
@@ -102,7 +104,24 @@ def _races(
         # A branch that only reads its own values does not race with itself.
         reading = [one for one in readers.get(key, ()) if one[0].name not in names]
         if len(names) > 1 or reading:
-            yield _race(path, container, key, writing, reading)
+            meant = raced if raced is not None and raced.key == key else None
+            yield _race(path, container, key, writing, reading, meant)
+
+
+def raced_keys(context: Context) -> set[tuple[str, str]]:
+    """The keys that are unset because a branch of a concurrence writes the key of another branch
+    (SM405), each with the path of the container that has it."""
+    found = set[tuple[str, str]]()
+    for path, container in context.containers if not context.misplaced else ():
+        raced = None
+        if isinstance(container, Concurrence):
+            raced = raced_output(path, container, context.accesses)
+        if raced is not None and not any(
+            _is_never_set(child, raced.key) for child in container.children
+        ):
+            outer = remapping(container).get(raced.meant, raced.meant)
+            found.add((path.rpartition("/")[0], outer))
+    return found
 
 
 def _is_never_set(writer: Node, key: str) -> bool:
@@ -126,6 +145,7 @@ def _race(
     key: str,
     writing: list[tuple[Node, Node]],
     reading: list[tuple[Node, Node]],
+    raced: RacedOutput | None,
 ) -> Finding:
     writers = both(child.name for child, _ in writing)
     readers = both(child.name for child, _ in reading)
@@ -137,14 +157,22 @@ def _race(
         message += f", and {readers} {'reads' if len(reading) == 1 else 'read'} it"
         message += " at the same time" if len(writing) == 1 else ""
     here = writing[:2][-1]
-    span = here[0].span
+    if raced is not None:
+        here = next(each for each in writing if each[0] is raced.child)
+    own, span = _own_key(here[0], key), here[0].span
+    help = f"write `remapping: {{{own}: {key}_2}}` at `{here[0].name}`, for a key of its own, or"
+    help += " run one branch after the other"
+    if raced is not None:
+        written = [each for each in here[0].remaps if each.to == key]
+        span = written[0].to_span if written and written[0].to_span.source is span.source else span
+        help = f"write `{own}: {raced.meant}` in the `remapping` of `{here[0].name}`: nothing sets"
+        help += f" `{raced.meant}`, which is an output of `{container.name}`"
     names = (*sorted(child.name for child, _ in writing), *sorted(one.name for one, _ in reading))
     return Finding(
         span=span,
         message=f"{message}: they are branches of `{container.name}`",
         arguments=(key, *names),
-        help=f"write `remapping: {{{_own_key(here[0], key)}: {key}_2}}` at `{here[0].name}`, for a"
-        " key of its own, or run one branch after the other",
+        help=help,
         related=(
             *_places("writes", key, [one for one in writing if one is not here]),
             *_places("reads", key, reading),

@@ -20,7 +20,7 @@ from smachac.checks.rule import rule
 from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import guesser, respelt, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
@@ -198,8 +198,8 @@ def _passed(path: str, container: Linear, child: Node, past: _LedPast) -> Findin
         message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial state of"
         f" `{container.name}`",
         arguments=(child.name,),
-        help=f"write `{step.outcome}: {child.name}` in `{before.name}`, or remove `{child.name}`"
-        " if its work is not needed",
+        help=f"write `{written_name(step.outcome)}: {child.name}` in `{before.name}`, or remove"
+        f" `{child.name}` if its work is not needed",
         related=(
             *other_place(step.target_span, f"`{before.name}`, the state before, leads past it"),
             *calls(child, child.span),

@@ -120,6 +120,11 @@ def is_plain(name: str) -> bool:
     return _PLAIN.fullmatch(name) is not None and name.casefold() not in _NOT_PLAIN
 
 
+def written_name(name: str) -> str:
+    """A name as YAML needs it in a script: `"no"` for a word that YAML 1.1 reads as a boolean."""
+    return f'"{name}"' if name.casefold() in _NOT_PLAIN else name
+
+
 def respelt(word: Word, name: str | None) -> tuple[Edit, ...]:
     """The edit that replaces a word of a script with another name; empty if the word is not in the
     text."""

@@ -41,7 +41,7 @@ from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
 from smachac.frontend.lost_outcomes import lost_outcomes
 from smachac.frontend.module_members import module_slips
-from smachac.frontend.own_objects import missing_members
+from smachac.frontend.own_objects import missing_members, uncalled_members
 from smachac.frontend.python_flow import Flow, Flows
 from smachac.frontend.python_functions import is_plain
 from smachac.frontend.python_imports import missing_imports
@@ -248,6 +248,7 @@ def _undefined(
     yield from lost_results(own)
     yield from lost_outcomes(own, library)
     yield from missing_members(own, library)
+    yield from uncalled_members(own, library)
     yield from missing_constants(own, library)
     yield from module_slips(own, library)
     yield from texts_as_lists(own)

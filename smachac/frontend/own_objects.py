@@ -1,4 +1,5 @@
-"""Objects of plain classes of the project that a state keeps: attributes that they do not have."""
+"""Objects of plain classes of the project that a state keeps: attributes that they do not have, and
+methods that are not called."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from collections.abc import Iterator
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
+from smachac.frontend.class_slips import operands
 from smachac.frontend.loader import Library
 from smachac.frontend.python_modules import (
     Module,
@@ -16,7 +18,7 @@ from smachac.frontend.python_modules import (
     find_class,
     of_other_objects,
 )
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 
 LATE = frozenset(["__getattr__", "__getattribute__", "__slots__", "__new__", "__class__"])
 """Names by which a class can have attributes that its text does not show."""
@@ -62,6 +64,57 @@ def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
                 near = next((one for one in methods if _is_part(one, member)), None)
             yield ClassFault(kind="no member", name=place, near=near, file=where,
                              more=_help(methods), owner=found[1].name)  # fmt: skip
+
+
+def uncalled_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
+    """The methods of objects of plain classes without `()`, in a condition or alone in a line."""
+    kept = {name: entries[0] for name, entries in own.assigned().items() if len(entries) == 1}
+    classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
+    for module, node in own.classes:
+        others = of_other_objects(node) | caught(node)
+        set_here = {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)
+                    and not isinstance(each.ctx, ast.Load)}  # fmt: skip
+        for kind, each in _conditions_and_lines(node):
+            match each:
+                case ast.Attribute(
+                    value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=member
+                ) if name in kept and member not in set_here and each not in others:  # fmt: skip
+                    pass
+                case _:
+                    continue
+            if name not in classes:
+                classes[name] = _plain_class(kept[name], library)
+            found = classes[name]
+            span = module.text.span(each)
+            if found is None or module.text.is_filled(span) or not _is_method(found[1], member):
+                continue
+            yield ClassFault(kind=kind, name=Word(span.text, span), near=f"{span.text}()")
+
+
+def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.expr]]:
+    """The expressions of which code uses the truth alone, and those alone in a line."""
+    for each in ast.walk(node):
+        match each:
+            case (
+                ast.If(test=test)
+                | ast.While(test=test)
+                | ast.IfExp(test=test)
+                | ast.Assert(test=test)
+            ):
+                yield from (("not called", part) for part in operands(test))
+            case ast.Expr(value=value):
+                yield "no effect", value
+
+
+def _is_method(node: ast.ClassDef, name: str) -> bool:
+    """Whether a name of a class is a method without decorators, and nothing else."""
+    methods = [
+        each for each in node.body if isinstance(each, ast.FunctionDef) and each.name == name
+    ]
+    set_ = any(isinstance(each, ast.Attribute | ast.Name) and isinstance(each.ctx, ast.Store)
+               and name in (getattr(each, "attr", ""), getattr(each, "id", ""))
+               for each in ast.walk(node))  # fmt: skip
+    return len(methods) == 1 and not methods[0].decorator_list and not set_
 
 
 def _is_part(name: str, member: str) -> bool:

@@ -45,9 +45,15 @@ FaultKind = Literal[
     "wrong parameters",
     "wrong constructor",
     "no first argument",
+    "not in with",
+    "no constructor parameter",
+    "extra parameter",
+    "parameter type",
     "parameter order",
+    "refused order",
     "no number",
     "unused outcome",
+    "unused call",
     "no answer to stops",
     "other answer",
     "unset output",
@@ -99,7 +105,8 @@ class ClassFault:
     For `syntax`, the text of `name` is the message of the parser. `near` is the name that was
     probably meant. `file` is the module that lacks the name,
     `owner` the class that lacks it, and `more` another part of the words. `outcomes` are those that
-    `execute` does not return because of the fault.
+    `execute` does not return because of the fault. `also` is another place that the fault is about,
+    with the words for it.
     """
 
     kind: FaultKind
@@ -109,6 +116,7 @@ class ClassFault:
     more: str = ""
     owner: str = ""
     outcomes: tuple[str, ...] = ()
+    also: Word | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

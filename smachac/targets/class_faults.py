@@ -226,13 +226,33 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "write `{near}`",
     ),
     "no first argument": (
-        "the constructor of `{name}` takes `{word}` first, which the interface `{type}` does not"
+        "the constructor of `{name}` takes {word} first, which the interface `{type}` does not"
         " provide",
         'add `with: "{near}"` to `cpp` in the `code` of `{type}.yml`',
     ),
+    "not in with": (
+        "the constructor of `{name}` takes {word}, which is neither in `with` nor a variable of"
+        " `{type}.yml`",
+        'write `with: "{near}"` in `{type}.yml`, or remove the parameter from the class',
+    ),
+    "no constructor parameter": (
+        "the constructor of `{name}` lacks {word} {more}",
+        "write `{near}`",
+    ),
+    "extra parameter": (
+        "the constructor of `{name}` takes `{word}`, which is not a variable of `{type}.yml`",
+        "write `{near}`, or add `{more}` to the `variables` of `{type}.yml`",
+    ),
+    "parameter type": (
+        "the constructor of `{name}` takes `{word}`, but the program passes a `{more}`",
+        "write `{near}`",
+    ),
     "parameter order": (
-        "the constructor of `{name}` takes its parameters in another order than the interface"
-        " `{type}` has its variables",
+        "the constructor of `{name}` takes its parameters in another order than {owner}",
+        "write `{near}`",
+    ),
+    "refused order": (
+        "the constructor of `{name}` takes its parameters in another order than {owner}",
         "write `{near}`",
     ),
     "no number": (
@@ -243,6 +263,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`execute` of `{name}` never returns `Outcome::{word}`",
         "return it where it is meant, or remove it from `Outcome`, from the interface, and from the"
         " transitions of the script",
+    ),
+    "unused call": (
+        "`execute` of `{name}` never returns `Outcome::{more}`: the result of `{word}` is not used",
+        "write `{near}`",
     ),
     "no answer to stops": (
         "`execute` of `{name}` never returns `Outcome::{word}`: a time limit or a stop cannot end"
@@ -336,6 +360,7 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
 CHECKED_ONLY = frozenset[FaultKind](
     [
         "unused outcome",
+        "unused call",
         "no answer to stops",
         "other answer",
         "unset output",
@@ -389,6 +414,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     " taken",
     "no value": "the code raises UnboundLocalError when it runs: the machine stops",
     "no member": "the code raises AttributeError when it runs: the machine stops",
+    "unused call": "the state ends with the same outcome whatever the call returns",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
     "early return": "a state that reads the key afterwards gets an old value, or fails",
@@ -443,7 +469,13 @@ WRITTEN = frozenset[FaultKind](
         "wrong parameters",
         "wrong constructor",
         "no first argument",
+        "not in with",
+        "no constructor parameter",
+        "extra parameter",
+        "unused call",
+        "parameter type",
         "parameter order",
+        "refused order",
         "no number",
         "skipped output",
         "early return",
@@ -496,6 +528,8 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         for text in WORDS[fault.kind]
     )
     near = fault.near
+    if fault.kind in ("skipped output", "early return") and fault.more:
+        return message, f"move `{fault.more}` before this `return`"
     if near is None or fault.kind in WRITTEN:
         return message, help
     if fault.kind == "no execute":

@@ -90,11 +90,13 @@ def no_code_for_target(
 
 
 class Difference(NamedTuple):
-    """A difference between a class and its interface, at its place, and what to do."""
+    """A difference between a class and its interface, at its place, and what to do; `change` is
+    what to do where the interface is right."""
 
     word: Word
     help: str
     effect: str | None = None
+    change: str = ""
 
 
 @problem(
@@ -235,8 +237,14 @@ def stale_code(
         + (f": {cause.text}" if cause is not None else ""),
         arguments=(state_type, name),
         related=(*_places(differences[1:]), *([known] if cause is not None else []), used),
-        help=f"adapt the class to the interface, then set `smachac_interface` to {number.text}",
+        help=f"{_changes(differences)}, then set `smachac_interface` to {number.text}",
     )
+
+
+def _changes(differences: Sequence[Difference]) -> str:
+    """What to change in a class that was written for another version of its interface."""
+    changes = dict.fromkeys(each.change for each in differences[:3] if each.change)
+    return "; ".join(changes) or "adapt the class to the interface"
 
 
 def _places(differences: Sequence[Difference]) -> tuple[Related, ...]:

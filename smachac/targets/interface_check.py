@@ -216,6 +216,8 @@ def type_faults(
         used: tuple[Related, ...] = (
             Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`"),
         )
+        if fault.also is not None:
+            used = (Related(span=fault.also.span, message=fault.also.text), *used)
         if fault.kind == "early return":
             reader = _reader(machine, type_, fault) if machine is not None else None
             if reader is None:
@@ -354,14 +356,17 @@ def _unlike(
     more = [word for word in words if word.text not in {*wanted}]
     if len(missing) == len(more) == 1:  # probably two names of the same thing
         text = f"it has the {what} `{more[0].text}`, the interface has `{missing[0]}`"
-        help = f"write `{missing[0]}` in place of `{more[0].text}`, or correct {file}"
-        yield Difference(Word(text, more[0].span), help)
+        change = f"write `{missing[0]}` in place of `{more[0].text}`"
+        help = f"{change}, or correct {file}"
+        yield Difference(Word(text, more[0].span), help, change=change)
         return
     for name in missing:
-        help = f"add `{name}` to the {what}s of the class, or remove it from {file}"
-        place = words[0].span if words else span
-        yield Difference(Word(f"the {what} `{name}` is missing", place), help, _LACKED[what])
+        change = f"add `{name}` to the {what}s of the class"
+        place = Word(f"the {what} `{name}` is missing", words[0].span if words else span)
+        help = f"{change}, or remove it from {file}"
+        yield Difference(place, help, _LACKED[what], change)
     for word in more:
+        change = f"remove `{word.text}` from the {what}s of the class"
         help = f"add `{word.text}` to the {what}s in {file}, or remove it from the class"
         text = f"the {what} `{word.text}` is not in the interface"
-        yield Difference(Word(text, word.span), help)
+        yield Difference(Word(text, word.span), help, change=change)

@@ -83,7 +83,7 @@ class Grasp {
             "cell/grasp.hpp", "  Outcome execute", "  explicit Grasp(Arm &arm);\n  Outcome execute",
             (
                 "SM609", '"cell::Grasp"',
-                'add `with: "cell::Arm &arm"` to `cpp` in the `code` of `Grasp.yml`',
+                'add `with: "cell::Arm& arm"` to `cpp` in the `code` of `Grasp.yml`',
             ),
         ),
         (

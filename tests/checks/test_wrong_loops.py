@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.project_text import analysed
 
 SCRIPT = """
 name: rounds
@@ -61,3 +62,43 @@ def test_a_number_of_tries_in_quotes() -> None:
     text = text.replace("FIELD", 'retry: {on: [lost], max: "3"}')
     help = "quotes make it a text: write the number `3`"
     assert reported({"main.yml": text}) == [("SM004", '"3"', help)]
+
+
+NESTED = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {holes: [1, 2]}
+states:
+  - ALL:
+      template: StateMachine
+      outcomes: [ok]
+      input_keys: [hole]
+      transitions: {ok: done}
+      states:
+        - SCREW:
+            template: ScriptedState
+            outcomes: [ok]
+            input_keys: [hole]
+            for_each: {item: hole, in: holes, on: [ok]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "codes"),
+    [
+        ("", "", ["SM303"]),
+        ("input_keys: [hole]\n      tr", "input_keys: [holes]\n      tr", []),
+        ("input_keys: [hole]\n      tr", "input_keys: [holes, hole]\n      tr", ["SM306"]),
+    ],
+)
+def test_a_loop_in_a_body_with_the_item_as_input(old: str, new: str, codes: list[str]) -> None:
+    assert old in NESTED
+    report = analysed({"main.yml": NESTED.replace(old, new)}).report
+    found = [each for each in report if each.code in ("SM303", "SM306")]
+    assert [each.code for each in found] == codes
+    if codes == ["SM303"]:
+        assert found[0].help == (
+            "write `holes` in place of `hole` in the `input_keys` of `ALL`: the `for_each` of"
+            " `SCREW` sets `hole`; or move the `for_each` to `ALL`"
+        )

@@ -8,7 +8,7 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source
-from smachac.driver import analyse, build
+from smachac.driver import analyse, analyse_script, build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.targets import load_target
@@ -196,7 +196,7 @@ def push_findings(*pairs: tuple[str, str]) -> list[str]:
         ((", smachac::Stop &stop", ""), f"11 execute: write `{SIGNATURE}`"),
         (("In in, ", ""), f"11 execute: write `{SIGNATURE}`"),
         (("Arm &arm, double speed, ", "Arm &arm, "),
-         "9 Push: write `Push(arm::Arm &arm, double speed, const std::string &name_)`"),
+         "9 Push: write `Push(Arm &arm, double speed, const std::string &name)`"),
         (("return give_up()", "return Outcome::done"), None),
         (("  Outcome give_up() { return Outcome::stuck; }\n", ""), None),
         ((STOP, ""), "5 preempted: add where it waits: `if (stop.requested()) { stop.service();"
@@ -218,7 +218,7 @@ def test_an_outcome_that_no_code_names() -> None:
     (line,) = push_findings(
         ("return give_up()", "return Outcome::done"), (" return Outcome::stuck;", " throw 1;")
     )
-    assert line.startswith("SM609 5 stuck: return it where it is meant, or remove it from")
+    assert line.startswith("SM609 11 execute: return it where it is meant, or remove it from")
 
 
 def test_a_build_accepts_an_outcome_that_no_code_names() -> None:
@@ -272,7 +272,7 @@ def test_parameters_of_a_constructor_in_another_order() -> None:
         ("Arm &arm, double speed, const std::string &name)",
          "Arm &arm, const std::string &name, double speed)")
     )  # fmt: skip
-    wanted = "Push(arm::Arm &arm, double speed, const std::string &name_)"
+    wanted = "Push(Arm &arm, double speed, const std::string &name)"
     assert line == f"SM609 9 Push: write `{wanted}`"
 
 
@@ -308,7 +308,7 @@ def test_an_output_that_a_path_skips(code: str, marked: list[int]) -> None:
 def test_the_declaration_of_a_field_is_in_the_help() -> None:
     (line,) = push_findings(("struct In { double depth", "struct In { float depth"))
     help = "write `double depth`, or correct the interface in `Push.yml`"
-    assert line == f"SM603 6 depth: {help}"
+    assert line == f"SM603 6 float: {help}"
 
 
 def test_a_misspelt_type_of_the_interface_is_one_finding() -> None:
@@ -382,3 +382,53 @@ def test_a_return_before_an_output_that_is_read(
         assert (
             "returns `Outcome::outside` here before its output key `worst` is set" in each.message
         )
+
+
+def test_the_outcome_that_nothing_returns_is_meant() -> None:
+    (line,) = found(grasp=CLASS.replace(": Outcome::missed", ": Outcome::empty"))
+    assert line.endswith("did you mean `missed`?")
+
+
+@pytest.mark.parametrize(
+    ("place", "help"),
+    [
+        ("include/arm", "did you mean `arm/grasp.hpp`?"),
+        ("lib", None),
+    ],
+)
+def test_a_header_whose_folder_is_missing(tmp_path: Path, place: str, help: str | None) -> None:
+    interface = INTERFACE.replace("arm/grasp.hpp", "grasp.hpp")
+    for name, text in (
+        ("main.yml", SCRIPT),
+        ("templates/Grasp.yml", interface),
+        (f"{place}/grasp.hpp", CLASS),
+    ):
+        file = tmp_path / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    report = analyse_script(tmp_path / "main.yml").report
+    assert [(each.code, each.help) for each in report] == ([("SM608", help)] if help else [])
+
+
+@pytest.mark.parametrize(
+    ("value", "help"),
+    [
+        ("measured()", "write `out.force = ...` before this `return`, or remove"),
+        ("force", "move `out.force = force;` before this `return`"),
+        ("inner", "write `out.force = ...` before this `return`, or remove"),
+    ],
+)
+def test_an_assignment_that_is_too_late(value: str, help: str) -> None:
+    code = (
+        "    const double force = arm_.now();\n"
+        "    if (force > 0) { const double inner = force; }\n"
+        "    if (arm_.full()) return Outcome::done;\n"
+        f"    out.force = {value};\n"
+    )
+    text = PUSH_CLASS.replace(IN_LOOP, "").replace(SETS, code)
+    interface = PUSH.replace("code:", "writes: {done: [force]}\ncode:")
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": text}
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    (found,) = [each for each in report if "without setting its output key" in each.message]
+    assert found.help is not None
+    assert found.help.startswith(help)

@@ -277,7 +277,8 @@ def test_the_number_of_another_interface() -> None:
         " the outcome `lost` is missing"
     )
     assert (
-        finding.help == f"adapt the class to the interface, then set `smachac_interface` to {right}"
+        finding.help
+        == f"add `lost` to the outcomes of the class, then set `smachac_interface` to {right}"
     )
     assert str(finding.span) == "arm/grasp.hpp:12:24"
     assert [str(each.span) for each in finding.related] == ["arm/grasp.hpp:16:54", "main.yml:11:5"]

@@ -18,7 +18,7 @@ from smachac.ir.nodes import Key, StateType
 from smachac.ir.types import unknown_words
 from smachac.targets.cpp.header_text import Part, without_literals
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.member_faults import member_faults
+from smachac.targets.cpp.member_faults import member_faults, signature_faults
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import ClassCode, class_code, field_type, interface_hash
 from smachac.targets.errors import Difference
@@ -50,10 +50,10 @@ KNOWN = {"bool", "double", "float", "int", "std::int64_t", "std::string"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Field:
-    """A field of `In` or `Out`: its name and the text of its type."""
+    """A field of `In` or `Out`: its name and its type."""
 
     word: Word
-    type: str
+    type: Word
 
 
 def declared(type_: StateType, library: Library) -> Declared | None:
@@ -85,7 +85,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     # A misspelt type is reported in the interface; the class can fit the type that is meant.
     unsure = _has_unknown_type(type_)
     stale = _stale(body, interface_hash(type_)) if not unsure else None
-    others = () if derived or stale or unsure else member_faults(code, whole, body, outcomes)
+    judged = not derived and not unsure
+    others = member_faults(code, whole, body, outcomes, library) if judged and not stale else ()
     return Declared(
         name=code.name.removeprefix("::"),
         span=place.span,
@@ -95,6 +96,7 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         others=(
             *_other_fields(type_.name, "In", inputs, type_.input_keys),
             *_other_fields(type_.name, "Out", outputs, type_.output_keys),
+            *(_outdated(code, body) if judged and stale else ()),
         ),
         stale=stale,
         faults=(
@@ -135,15 +137,18 @@ def absent_header(header: Word, library: Library) -> ClassFault | None:
 
 def _header_elsewhere(header: Word, code: ClassCode, library: Library) -> ClassFault | None:
     """The fault that a header is in no searched folder, where the project has a file of its name in
-    one other folder, and that defines the class in its namespace."""
+    one other folder, and that defines the class in its namespace. Without a folder in the name,
+    each folder of the project can be one in which the compiler searches, except those in
+    `include/`."""
     folder, _, file = header.text.rpartition("/")
-    if not folder:
-        return None  # each folder of the project can be one in which the compiler searches
     found = []
     for other in ("", *library.code_names("")):
         path = f"{other}/{file}" if other else file
         source = library.code(path) if other != folder else None
-        if source is not None and len(source.text) <= LONGEST and _defines(source.text, code):
+        if source is None or len(source.text) > LONGEST or not _defines(source.text, code):
+            continue
+        included = library.code(f"include/{path}")
+        if folder or (included is not None and included.name == source.name):
             found.append(path)
     return ClassFault(kind="no module", name=header, near=found[0]) if len(found) == 1 else None
 
@@ -177,11 +182,14 @@ def _faults(
         return
     known = [identifier(each.text) for each in outcomes]
     guess = guesser(known)
+    used = {found[1] for found in _USED_OUTCOME.finditer(body.text)}
+    unused = [each for each in known if each not in used]
+    only = unused[0] if len(unused) == len(used.difference(known)) == 1 else None
     for found in _USED_OUTCOME.finditer(body.text):
         if found[1] not in known:
             word = body.word(found[1], *found.span(1))
             listed = ", ".join(f"`{each}`" for each in known)
-            near = guess(found[1])
+            near = guess(found[1]) or only
             yield ClassFault(kind="no outcome", name=word, near=near, file="" if near else listed)
 
 
@@ -192,6 +200,25 @@ def _without_number(
     if derived or "smachac_interface" in whole.text or _MACRO.search(body.text):
         return
     yield ClassFault(kind="no number", name=name, near=number)
+
+
+def _outdated(code: ClassCode, body: Part) -> Iterator[Difference]:
+    """The parameters that a class lacks, or has in vain, in another version of its interface."""
+    for fault in signature_faults(code, body):
+        word = fault.name
+        match fault.kind:
+            case "no constructor parameter":
+                text = f"its constructor lacks {word.text}"
+            case "extra parameter":
+                text = f"its constructor takes `{word.text}`, which is no variable now"
+            case "wrong constructor":
+                text = "its constructor has other parameters"
+            case "wrong parameters":
+                text = "`execute` has other parameters"
+            case _:
+                continue
+        help = f"write `{fault.near}`"
+        yield Difference(Word(text, word.span), help, change=help)
 
 
 def _stale(body: Part, wanted: str) -> Word | None:
@@ -244,7 +271,8 @@ def _fields(body: Part, name: str, *, derived: bool) -> list[_Field] | None:
         if found is None or not type_ or "," in _without_arguments(type_):
             return None
         word = part.word(found.group(), at + found.start(), at + found.end())
-        fields.append(_Field(word=word, type=type_))
+        first = at + piece.index(type_)
+        fields.append(_Field(word=word, type=part.word(type_, first, first + len(type_))))
     return fields
 
 
@@ -278,19 +306,20 @@ def _other_fields(
             right = field_type(part, wanted[name].type) if name in wanted else ""
         except UnportableError:
             continue
-        if right and _surely_other(each.type, right):
+        if right and _surely_other(each.type.text, right):
             text = f"`{part}::{name}` must be `{right}`"
-            declaration = f"{right} {name}".replace("& ", "&")
-            help = f"write `{declaration}`, or correct the interface in `{type_name}.yml`"
-            yield Difference(Word(text, each.word.span), help)
+            change = f"write `{right} {name}`".replace("& ", "&")
+            help = f"{change}, or correct the interface in `{type_name}.yml`"
+            yield Difference(Word(text, each.type.span), help, change=change)
     have = [each.word.text for each in fields]
     if have != [*wanted] and sorted(have) == sorted(wanted):
         order = ", ".join(f"`{name}`" for name in wanted)
         text = f"the fields of `{part}` must be in the order {order}"
-        types = {each.word.text: each.type for each in fields}
+        types = {each.word.text: each.type.text for each in fields}
         right = "; ".join(f"{types[name]} {name}".replace("& ", "&") for name in wanted)
-        help = f"write `struct {part} {{ {right}; }};`, or correct the interface in"
-        yield Difference(Word(text, fields[0].word.span), f"{help} `{type_name}.yml`")
+        change = f"write `struct {part} {{ {right}; }};`"
+        help = f"{change}, or correct the interface in `{type_name}.yml`"
+        yield Difference(Word(text, fields[0].word.span), help, change=change)
 
 
 def _surely_other(text: str, wanted: str) -> bool:

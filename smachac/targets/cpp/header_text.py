@@ -38,6 +38,16 @@ class Part:
         before = self.text[: found.start()] if found is not None else ""
         return found if before.count("{") == before.count("}") else None
 
+    def members(self, pattern: re.Pattern[str]) -> Iterator[re.Match[str]]:
+        """The matches of a pattern outside the braces in this part."""
+        at = depth = 0
+        for found in pattern.finditer(self.text):
+            depth += self.text.count("{", at, found.start())
+            depth -= self.text.count("}", at, found.start())
+            at = found.start()
+            if depth == 0:
+                yield found
+
     def inside(self, head: re.Match[str] | None) -> Part | None:
         """The part between the brace at the end of a head and the matching closing brace."""
         depth = 1

@@ -9,13 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from smachac.diagnostics.source import NOWHERE, Word
+from smachac.diagnostics.source import Word
+from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
+from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import PREEMPTED
+from smachac.targets.cpp.constructors import constructor_faults
 from smachac.targets.cpp.header_text import Part
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.types import UnportableError
-from smachac.targets.cpp.user_classes import ClassCode, left_to_scripts, parameter_type, stops
+from smachac.targets.cpp.unused_calls import UnusedCall, unused_call
+from smachac.targets.cpp.user_classes import ClassCode, left_to_scripts, stops
 
 _EXECUTE = re.compile(r"\bexecute\s*\(([^()]*)\)")
 _ACCESS = re.compile(r"\b(?:public|private|protected)\s*:(?!:)")
@@ -32,7 +35,6 @@ _RETURN = re.compile(r"\breturn\b([^;]*);")
 _JUMP = re.compile(r"\b(?:for|while|do|goto|try|switch)\b|#|\[[&=\w, ]*\]\s*[({]")
 """Code whose paths are not read: loops, jumps, exceptions, and functions inside."""
 _BRANCH = re.compile(r"\b(?:if|else)\b")
-_NUMBER = re.compile(r"(?:const\s+)?(?:double|float|bool|int|(?:std::)?u?int\d+_t)\b")
 _ANSWER = re.compile(r"\.\s*service\s*\(\s*\)\s*;\s*(return\s+Outcome\s*::\s*(\w+))\s*;")
 """A stop request that is answered, and the outcome that is returned then."""
 _IF = re.compile(r"\bif\s*\([^{};]*\)\s*$")
@@ -41,43 +43,48 @@ Words = tuple[Word, ...]
 
 
 def member_faults(
-    code: ClassCode, whole: Part, body: Part, outcomes: Words | None
+    code: ClassCode, whole: Part, body: Part, outcomes: Words | None, library: Library
 ) -> Iterator[ClassFault]:
     """The faults of a class that is not derived from another one."""
+    found = [*signature_faults(code, body)]
+    yield from found
+    head = _execute(code, body)
+    if head is None or any(each.kind in ("wrong result", "wrong parameters") for each in found):
+        return
+    run = _body_of(body, head.end())
+    if run is not None and outcomes is not None:
+        for fault in _unused(whole, body, run, outcomes):
+            yield _at_execute(code, body, run, fault, head, library)
+        yield from _unset(code, body, run, head[1])
+        yield from _skipped(code, run, head[1])
+
+
+def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
+    """The faults in the parameters of the constructors and of `execute`, and in its result."""
     if "template" in body.text or left_to_scripts(code.type):
         return
-    yield from _constructor_faults(code, body)
-    found = list(_members(body, _EXECUTE))
-    if len(found) != 1:
+    yield from constructor_faults(code, body)
+    head = _execute(code, body)
+    if head is None:
         return
-    (head,) = found
     before = re.split(r"[;{}]", body.text[: head.start()])[-1]
     result = _RESULTS.fullmatch(_ACCESS.sub(" ", before).strip())
-    place = (head.start(), head.start() + len("execute"))
     wanted = f"Outcome execute({', '.join(_arguments(code))})"
     if result is not None:
         at = body.text.rfind(result["type"], 0, head.start())
         word = body.word(result["type"], at, at + len(result["type"]))
         yield ClassFault(kind="wrong result", name=word, near=wanted)
-        return
-    if _count(head[1]) not in (None, len(_arguments(code))):
-        yield ClassFault(kind="wrong parameters", name=body.word("execute", *place), near=wanted)
-        return
-    run = _body_of(body, head.end())
-    if run is not None and outcomes is not None:
-        yield from _unused(whole, body, run, outcomes)
-        yield from _unset(code, body, run, head[1])
-        yield from _skipped(code, run, head[1])
+    elif _count(head[1]) not in (None, len(_arguments(code))):
+        place = body.word("execute", head.start(), head.start() + len("execute"))
+        yield ClassFault(kind="wrong parameters", name=place, near=wanted)
 
 
-def _members(body: Part, pattern: re.Pattern[str]) -> Iterator[re.Match[str]]:
-    """The matches of a pattern outside the braces in a class."""
-    at = depth = 0
-    for found in pattern.finditer(body.text):
-        depth += body.text.count("{", at, found.start()) - body.text.count("}", at, found.start())
-        at = found.start()
-        if depth == 0:
-            yield found
+def _execute(code: ClassCode, body: Part) -> re.Match[str] | None:
+    """The head of `execute`, from its name to the end of its parameters."""
+    if "template" in body.text or left_to_scripts(code.type):
+        return None
+    found = [*body.members(_EXECUTE)]
+    return found[0] if len(found) == 1 else None
 
 
 def _arguments(code: ClassCode) -> list[str]:
@@ -106,90 +113,6 @@ def _body_of(body: Part, at: int) -> Part | None:
     """The body of a function whose list of parameters ends at a place; None if it is elsewhere."""
     head = re.compile(r"\s*(?:const\s*)?(?:noexcept\s*)?\{").match(body.text, at)
     return body.inside(head)
-
-
-def _constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
-    """Constructors none of which takes the variables of the interface."""
-    name = code.name.rpartition("::")[2]
-    made = re.compile(rf"(?<![~\w:]){re.escape(name)}\s*\(")
-    heads = list(_members(body, made))
-    try:
-        variables = [
-            f"{parameter_type(each.type)} {identifier(key)}".replace("& ", "&")
-            for key, each in code.type.variables.items()
-        ]
-    except UnportableError:
-        return
-    wanted = [*code.parameters, *variables]
-    if not heads or "using" in body.text or any(not _is_plain(each) for each in wanted):
-        return
-    for head in heads:
-        found = re.compile(r"([^()]*)\)").match(body.text, head.end())
-        count = _count(found[1]) if found is not None else None
-        if found is None or count is None:
-            return
-        if count == len(wanted):
-            names = [_parameter_name(each) for each in found[1].split(",")]
-            own = [_parameter_name(each) for each in wanted]
-            if len(heads) == 1 and names != own and sorted(names) == sorted(own):
-                word = body.word(name, head.start(), head.start() + len(name))
-                near = f"{name}({', '.join(wanted)})"
-                more = _exchanged(names, wanted)
-                yield ClassFault(kind="parameter order", name=word, near=near, more=more)
-            return
-    first = _first_argument(code, heads, body, len(wanted)) if not code.parameters else None
-    if first is not None:
-        place = code.type.class_spans.get(("cpp", "class"), NOWHERE)
-        near = _qualified(first, code.name)
-        yield ClassFault(kind="no first argument", name=Word(first, place), near=near)
-        return
-    word = body.word(name, heads[0].start(), heads[0].start() + len(name))
-    near = f"{name}({', '.join(wanted)})"
-    yield ClassFault(kind="wrong constructor", name=word, near=near)
-
-
-def _exchanged(names: list[str], wanted: list[str]) -> str:
-    """What happens with parameters of these names, to which a program passes the wanted ones."""
-    pairs = [(name, each) for name, each in zip(names, wanted, strict=True)
-             if name != _parameter_name(each)]  # fmt: skip
-    gets = " and ".join(
-        f"`{name}` gets the value of `{_parameter_name(each)}`" for name, each in pairs
-    )
-    if all(_NUMBER.match(each) for _, each in pairs):
-        return f"it compiles, but {gets}"
-    return f"the program passes the variables in the order of the interface: {gets}"
-
-
-def _first_argument(
-    code: ClassCode, heads: list[re.Match[str]], body: Part, wanted: int
-) -> str | None:
-    """The reference or pointer that the only constructor takes before the variables, which have
-    the names of the interface."""
-    found = re.compile(r"([^()]*)\)").match(body.text, heads[0].end()) if len(heads) == 1 else None
-    if found is None:
-        return None
-    first, *others = (" ".join(each.split()) for each in found[1].split(","))
-    names = [each.split()[-1].lstrip("&*") for each in others if each]
-    if len(names) != wanted or names != [identifier(key) for key in code.type.variables]:
-        return None
-    return first if re.fullmatch(r"[\w:]+(?: const)? ?[&*] ?\w+", first) else None
-
-
-def _qualified(parameter: str, name: str) -> str:
-    """A parameter whose type is written with the namespace of a class."""
-    space = name.removeprefix("::").rpartition("::")[0]
-    plain = "::" not in parameter and bool(space)
-    return f"{space}::{parameter}" if plain else parameter
-
-
-def _parameter_name(parameter: str) -> str:
-    """The last word of a parameter, without the underscore that keeps it apart from a member."""
-    words: list[str] = re.findall(r"\w+", parameter)
-    return words[-1].rstrip("_") if words else ""
-
-
-def _is_plain(parameter: str) -> bool:
-    return "std::any" not in parameter
 
 
 def _unused(whole: Part, body: Part, run: Part, outcomes: Words) -> Iterator[ClassFault]:
@@ -221,6 +144,46 @@ def _unused(whole: Part, body: Part, run: Part, outcomes: Words) -> Iterator[Cla
                 yield ClassFault(kind="other answer", name=place, near=identifier(word.text))
                 continue
             yield ClassFault(kind="no answer to stops" if stop else "unused outcome", name=word)
+
+
+def _at_execute(
+    code: ClassCode,
+    body: Part,
+    run: Part,
+    fault: ClassFault,
+    head: re.Match[str],
+    library: Library,
+) -> ClassFault:
+    """The fault that an outcome is never returned, at the call whose result decides it, or at
+    `execute`."""
+    if fault.kind != "unused outcome":
+        return fault
+    name = fault.name.text
+    declared = fault.name._replace(text=f"`{name}` is declared here")
+    call = unused_call(body, run, library)
+    if call is not None:
+        written = _with_outcome(code, call, name)
+        if written:
+            return ClassFault(kind="unused call", name=call.word, near=written, more=name)
+    place = body.word(name, head.start(), head.start() + len("execute"))
+    return ClassFault(kind="unused outcome", name=place, also=declared)
+
+
+def _with_outcome(code: ClassCode, call: UnusedCall, outcome: str) -> str:
+    """The statement that returns an outcome by the result of a call; empty if it is not known for
+    which result: a failure is meant for false, unless it has the name of the method."""
+    failures = {each.name for each in code.type.outcomes
+                if each.failure or (each.failure is None and is_failure(each.name))}  # fmt: skip
+    named = call.method in (outcome, f"is_{outcome}", f"has_{outcome}")
+    other = next((each.name for each in code.type.outcomes
+                  if identifier(each.name) == call.outcome), "")  # fmt: skip
+    if not named and (outcome not in failures or other in failures):
+        return ""
+    wanted, text = f"Outcome::{identifier(outcome)}", call.word.text
+    if not call.outcome:
+        return f"if ({'' if named else '!'}{text}) return {wanted};"
+    first, second = (wanted, f"Outcome::{call.outcome}")[:: 1 if named else -1]
+    return f"return {text} ? {first} : {second};"
 
 
 def _outcome_functions(body: Part) -> set[str] | None:
@@ -295,7 +258,10 @@ def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault
                 before = [at for at in set_ if at < end.start()]
                 if set_ and (not before or (len(before) == 1 and _only_if(run, before[0], end))):
                     place = run.word(key, end.start(), end.end() - 1)
-                    yield ClassFault(kind="skipped output", name=place, near=outcome)
+                    later = _later(run, out, key, end.start()) if not before else None
+                    more = later.text if later is not None else ""
+                    yield ClassFault(kind="skipped output", name=place, near=outcome, more=more,
+                                     also=_set_here(later))  # fmt: skip
 
 
 def _early(code: ClassCode, run: Part, out: str) -> Iterator[ClassFault]:
@@ -311,7 +277,32 @@ def _early(code: ClassCode, run: Part, out: str) -> Iterator[ClassFault]:
             end = re.search(rf"\breturn\s+Outcome\s*::\s*{name}\s*;", run.text)
             if outcome.name != PREEMPTED and end is not None and end.start() < set_.start():
                 place = run.word(key.name, end.start(), end.end() - 1)
-                yield ClassFault(kind="early return", name=place, near=outcome.name)
+                later = _later(run, out, key.name, end.start())
+                more = later.text if later is not None else ""
+                yield ClassFault(kind="early return", name=place, near=outcome.name, more=more,
+                                 also=_set_here(later))  # fmt: skip
+
+
+def _later(run: Part, out: str, key: str, at: int) -> Word | None:
+    """The only assignment of an output key, if it is after a place and could be before it: all that
+    its value needs is known there."""
+    name = re.escape(identifier(key))
+    found = [*re.finditer(rf"\b{out}\s*\.\s*{name}\s*=(?!=)([^;{{}}]*);", run.text)]
+    if len(found) != 1 or found[0].start() < at:
+        return None
+    before, opened = run.text[:at], ""
+    while before != opened:
+        before, opened = re.sub(r"\{[^{}]*\}", " ", before), before
+    words = re.findall(r"(?<![\w.>])[A-Za-z_]\w*", found[0][1])
+    if not words or any(re.search(rf"\b{each}\b", before) is None for each in words):
+        return None
+    start = run.start + found[0].start()
+    text = " ".join(run.source.text[start : run.start + found[0].end()].split())
+    return run.word(text, *found[0].span())
+
+
+def _set_here(later: Word | None) -> Word | None:
+    return later._replace(text="the key is set here") if later is not None else None
 
 
 def _only_if(run: Part, at: int, end: re.Match[str]) -> bool:

@@ -1,0 +1,188 @@
+"""The finding about a key that a state reads where it may be unset (SM301): its help, its path, and
+the places that belong to it."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from smachac.analysis.def_use import Use
+from smachac.analysis.definite_assignment import UserdataScope
+from smachac.analysis.type_inference import Types
+from smachac.analysis.type_lattice import is_open, misfit
+from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
+from smachac.checks.candidate_keys import fitting_keys, unread_output
+from smachac.checks.initial_presets import counts, initial_value
+from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.spelling import Guesser, guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
+from smachac.ir.code_places import python_tree
+from smachac.ir.nodes import Container, Node
+from smachac.ir.traversal import remapping
+from smachac.ir.types import ANY, Type
+
+MOST_RELATED = 3
+"""Limit on the related places of one kind in a finding."""
+
+
+def _item_help(container: Container, reader: Node, key: str) -> str | None:
+    """The help for a key that nothing sets in a loop, whose item has another name."""
+    if not isinstance(container, nodes.Iterator) or reader is container:
+        return None
+    read = f"read `{container.item_key}` in place of `{key}`"
+    match container.sugar:
+        case "":
+            return f"write `it_label: {key}`, or {read}: the loop calls its item so"
+        case "for_each":
+            return f"write `item: {key}` in `for_each`, or {read}: the loop calls its item so"
+    return None
+
+
+def _item_name_help(loop: nodes.Iterator, key: str) -> str | None:
+    """The help for a state of `for_each` that does not read its item, and a key in place of it."""
+    names = {name.name for child in loop.children for name in child.inputs}
+    if loop.item_key in names or key not in names:
+        return None
+    item = loop.item_key
+    return f"write `item: {key}` in `for_each`, or read `{item}`, as the loop calls its item"
+
+
+def _item_place(container: Container, reader: Node) -> tuple[Related, ...]:
+    """The place of the name of the item, where the loop around the reader or the reader itself has
+    one that the script names."""
+    loop = reader if isinstance(reader, nodes.Iterator) else container
+    if not isinstance(loop, nodes.Iterator) or loop.sugar == "retry" or not loop.item_key:
+        return ()
+    if loop is reader and loop.sugar != "for_each":
+        return ()
+    return other_place(loop.item_span, f"the loop calls its item `{loop.item_key}`")
+
+
+class Guesses:
+    """The guessers for the keys of containers, by the path of the container."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Guesser] = {}
+
+    def of(self, scope: UserdataScope) -> Guesser:
+        if scope.path not in self._known:
+            self._known[scope.path] = guesser(sorted(keys_of(scope)))
+        return self._known[scope.path]
+
+
+def unset_read(
+    missing: Missing,
+    witness: Witness,
+    users: list[Use],
+    guesses: Guesses,
+    types: Types,
+) -> Finding:
+    scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
+    why = f"which is unset on {'every path' if witness.always else 'some paths'}"
+    value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
+    where = "on every path" if witness.always else "on this path too,"
+    help = (
+        f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
+    )
+    help += f" `{name}`: {value}"
+    is_counter = missing.cause == "unset" and counts(users)
+    if is_counter:
+        help = f"give `{missing.key}` an initial value in `{name}`: {value}"
+    related: tuple[Related, ...] = ()
+    if not (is_counter or witness.always) and len(witness.path) > 2 and witness.path[-2].is_outcome:
+        before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
+        if any(use.path == before.node for use in users if use.kind not in ("reads", "copies in")):
+            help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
+    if missing.cause == "nowhere":
+        why = f"which nothing in {container_name(scope, reader.span)} sets"
+        guess = guesses.of(scope)(missing.key)
+        node = reader.node
+        if isinstance(node, nodes.Iterator) and guess == node.item_key:
+            # The item of an iterator is no list of items, although `item` resembles `items`.
+            guess = guesser(sorted(keys_of(scope) - {node.item_key}))(missing.key)
+        names = remapping(node)
+        own = {names.get(key.name, key.name) for key in node.inputs}
+        if node is not scope.container and guess in own:
+            guess = guesses.of(scope).sure(missing.key)  # the state reads that key too
+        wanted, inside = types.inputs.get((reader.path, reader.key), ANY), witness.inner
+        if inside is not None and is_open(wanted):
+            wanted = types.inputs.get((inside.path, inside.key), ANY)
+        if guess is not None and not _may_be(types, scope, guess, wanted):
+            guess = None
+        of_item = _item_help(scope.container, node, missing.key)
+        help = did_you_mean(guess) or of_item or help
+        unread = unread_output(scope, missing.key) if guess is None else None
+        fitting = []
+        if guess is None and (of_item is None or isinstance(node, nodes.Leaf)):
+            fitting = fitting_keys(types, scope, reader, wanted)
+        if len(fitting) == 1:
+            pair = f"{reader.key}: {fitting[0]}"
+            help = f"write `remapping: {{{pair}}}` in `{node.name}`"
+            if node.remaps:
+                help = f"add `{pair}` to the `remapping` of `{node.name}`"
+            help += f", if it must read `{fitting[0]}`, which has this type"
+        elif fitting and reader.key == missing.key:
+            ways = " or ".join(f"`remapping: {{{reader.key}: {key}}}`" for key in fitting)
+            help = f"write {ways} in `{node.name}`: these keys have its type"
+        if unread is not None:
+            help = unread.help
+            related = other_place(unread.place, f"nothing reads `{unread.key}`")
+        if isinstance(node, nodes.Iterator) and node.sugar == "for_each":
+            help = _item_name_help(node, missing.key) or help
+        if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
+            help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
+        related = (*related, *_item_place(scope.container, node))
+    return Finding(
+        span=reader.span,
+        message=f"{reader.words}, {why}",
+        arguments=(reader.key,),
+        help=help,
+        related=(
+            *_readers(missing, witness),
+            *_writers(users),
+            *related,
+            *calls(reader.node, reader.span),
+        ),
+        path=witness.path if len(witness.path) > 1 else (),
+        severity=None if witness.always else Severity.WARNING,
+        node=reader.path,
+    )
+
+
+def _may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:
+    """Whether the type of a key of a container, as far as it is known, is not a wrong one."""
+    given = types.keys.get((scope.path, key), ANY)
+    return is_open(given) or is_open(wanted) or misfit(given, wanted) is None
+
+
+def keys_of(scope: UserdataScope) -> set[str]:
+    """The keys of a container: the candidates for a misspelt name."""
+    keys = {*scope.held, *scope.inputs}
+    for steps in scope.steps.values():
+        for step in steps:
+            keys |= step.writes.perhaps
+    return keys
+
+
+def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
+    """The state inside a container that reads the key, and the other readers of the unset key."""
+    if witness.inner is not None:
+        yield from other_place(witness.inner.span, f"{witness.inner.words} here")
+    for vertex in witness.also[:MOST_RELATED]:
+        reader = reader_at(missing.scope, vertex, missing.key)
+        yield from other_place(reader.span, f"{reader.words} as well")
+
+
+def _writers(users: list[Use]) -> Iterator[Related]:
+    """The states that set the key, on other paths or on some outcomes only."""
+    writers = [use for use in users if use.kind not in ("reads", "copies in")]
+    for use in writers[:MOST_RELATED]:
+        name = use.path.rpartition("/")[2]
+        text = f"`{name}` sets it here"
+        if not use.always and use.outcomes:
+            text = f"`{name}` sets it only on {listed(use.outcomes)}"
+        elif not use.always:
+            text = f"`{name}` can set it, but this is not guaranteed on any outcome"
+        yield from other_place(use.span, text)
