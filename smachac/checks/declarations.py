@@ -19,6 +19,7 @@ from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.meant_keys import (
+    loop_in_a_body,
     meant_keys,
     misnamed_finding,
     misnamed_keys,
@@ -198,23 +199,6 @@ def swapped_loop(missing: Missing) -> nodes.Iterator | None:
         for steps in scope.steps.values() if vertex != START else ():
             held.update(*(step.writes.perhaps for step in steps))
         if node.item_key in held and missing.key in read and node.item_key not in read:
-            return node
-    return None
-
-
-def loop_in_a_body(missing: Missing) -> nodes.Iterator | None:
-    """The `for_each` of a state in a container that has the item as an input in place of the list,
-    where nothing else in it reads an input of that name: the loop was meant around the container,
-    or the list as its input."""
-    scope = missing.scope
-    inputs = {each.name for each in scope.container.inputs}
-    for vertex in missing.vertices if missing.cause == "outside" else ():
-        node = scope.children.get(str(vertex)) if vertex != START else None
-        if not isinstance(node, nodes.Iterator) or node.sugar != "for_each":
-            continue
-        others = (each for each in scope.container.children if each is not node)
-        read = {remapping(each).get(key.name, key.name) for each in others for key in each.inputs}
-        if node.item_key in inputs - read and missing.key not in inputs:
             return node
     return None
 

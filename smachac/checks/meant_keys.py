@@ -94,6 +94,8 @@ def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
         scope = each.scope
         if context.of_container(sees_everything, scope.path, scope) or scope.container.sugar:
             continue
+        if loop_in_a_body(each) is not None:
+            continue  # SM303
         read = context.of_container(used_in, scope.path, scope)
         words = {Word(preset.key, preset.span): preset.value.data
                  for preset in scope.container.userdata if preset.key not in read}  # fmt: skip
@@ -112,6 +114,23 @@ def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
                 alike[0], each.key, reader, bool(turned), declared
             )
     return found
+
+
+def loop_in_a_body(missing: Missing) -> nodes.Iterator | None:
+    """The `for_each` of a state in a container that has the item as an input in place of the list,
+    where nothing else in it reads an input of that name: the loop was meant around the container,
+    or the list as its input."""
+    scope = missing.scope
+    inputs = {each.name for each in scope.container.inputs}
+    for vertex in missing.vertices if missing.cause == "outside" else ():
+        node = scope.children.get(str(vertex)) if vertex != START else None
+        if not isinstance(node, nodes.Iterator) or node.sugar != "for_each":
+            continue
+        others = (each for each in scope.container.children if each is not node)
+        read = {remapping(each).get(key.name, key.name) for each in others for key in each.inputs}
+        if node.item_key in inputs - read and missing.key not in inputs:
+            return node
+    return None
 
 
 def _uses_in_text(scope: UserdataScope, key: str) -> int:

@@ -18,14 +18,14 @@ from smachac.analysis.unset_reads import (
     reader_at,
 )
 from smachac.checks.candidate_keys import unread_output
-from smachac.checks.declarations import loop_in_a_body, swapped_loop
+from smachac.checks.declarations import swapped_loop
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.empty_remaps import empty_remap_findings
 from smachac.checks.initial_presets import (
     missing_together,
     together_finding,
 )
-from smachac.checks.meant_keys import MeantKey, meant_keys, misnamed_keys
+from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.races import raced_keys
 from smachac.checks.rule import rule

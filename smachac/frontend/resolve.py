@@ -57,7 +57,7 @@ from smachac.frontend.params import (
 from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
 from smachac.frontend.schema import FieldOwner
-from smachac.frontend.script import TIMER, Pairs, Script, State, Sugar
+from smachac.frontend.script import TIMER, Script, State, Sugar, no_states, unknown_state
 from smachac.frontend.script_functions import functions_of
 from smachac.frontend.state_fields import (
     FIELDS_OF_STATES,
@@ -301,23 +301,23 @@ class _Resolver:
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
         if owner == "state" and has_wrong_transitions(entries, fields):
-            return _unknown(name, (), around)
+            return unknown_state(name, (), around.via)
         if owner == "state" and has_unknown_outcomes(entries):
-            return _unknown(name, fields.get("transitions", ()), around)
+            return unknown_state(name, fields.get("transitions", ()), around.via)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:
             message = f"containers are nested deeper than {MAX_NESTED:,} levels"
             span = entries["states"].key.span
             help = "use fewer levels of containers"
             self.report.append(too_big(span, message, help, arguments=("containers",)))
-            return _unknown(name, fields.get("transitions", ()), around)
+            return unknown_state(name, fields.get("transitions", ()), around.via)
         if "states" in entries and owner != "state":
             inside = _Environment(around.source, scope, around.calls, around.depth + 1)
             children = self.children(name, entries["states"].value, owner, inside)
             if not children and fields.get("initial") is None:
                 fields["initial"] = Word("", entries["states"].value.span)
         elif owner != "state":
-            children = (_no_states(name, around),)  # SM005 or SM003 was reported
+            children = (no_states(name, around.via),)  # SM005 or SM003 was reported
         self.uses.params(params, begin, self.report, around.via)
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
@@ -395,11 +395,11 @@ class _Resolver:
             help = "write the states here, or call a sub-script: `- NAME: {script: ...}`"
             message, arguments = "`states` cannot be a look-up", ("states", "look-up")
             self.report.append(wrong_shape(tree.span, message, help, arguments=arguments))
-            return (_no_states(name, around),)
+            return (no_states(name, around.via),)
         if not isinstance(tree, Seq):
             wrong(tree, "states", self.report)
             if not isinstance(tree, Map) or not tree.entries:
-                return (_no_states(name, around),)
+                return (no_states(name, around.via),)
         if isinstance(tree, Map):
             items = tuple(Map((each,), each.key.span) for each in tree.entries)
         found: list[State] = []
@@ -427,7 +427,7 @@ class _Resolver:
         if not isinstance(tree, Map) or not tree.entries:
             wrong(tree, "state", self.report)
             word = name_of(tree)
-            return _unknown(word, (), around) if word is not None and word.text else None
+            return unknown_state(word, (), around.via) if word is not None and word.text else None
         first, rest = tree.entries[0], tree.entries[1:]
         name = as_name(first.key, self.report)
         if name is None:
@@ -442,7 +442,7 @@ class _Resolver:
             help = f"write `- {name.text}: {{template: ...}}`"
             arguments = ("variables", name.text, found)
             self.report.append(wrong_shape(name.span, message, help, arguments=arguments))
-            return _unknown(name, (), around)
+            return unknown_state(name, (), around.via)
         if rest:
             self.report.append(second_key(name, first.value, rest[0]))
         own = [entry for entry in rest if is_field(entry)]
@@ -523,7 +523,7 @@ class _Resolver:
                 child_scope(around.scope, params, self.report)
                 transitions = own.get("transitions")
                 pairs = pairs_of(transitions.value) if transitions is not None else ()
-                return _unknown(name, pairs, around)
+                return unknown_state(name, pairs, around.via)
             source, inner, entries = found
             call = Span(around.source, entry.key.span.start, entry.value.span.end)
             calls = (*around.calls, (source.name, call))
@@ -696,15 +696,3 @@ def _remapping_in_iterator(span: Span) -> Diagnostic:
     message = "the state of an Iterator cannot have a remapping: it uses the Iterator's keys"
     help = "rename the keys, or put the state into a StateMachine and remap there"
     return wrong_shape(span, message, help, arguments=("remapping",))
-
-
-def _unknown(name: Word, transitions: Pairs, around: _Environment) -> State:
-    """A state that cannot be read: only its name and its transitions are known."""
-    type_ = StateType(name="", open=True)
-    return State(name=name, owner="state", type=type_, transitions=transitions, via=around.via)
-
-
-def _no_states(container: Word, around: _Environment) -> State:
-    """An unknown state in place of the states of a container, which were reported as missing or
-    wrong: then no consequence of it is reported."""
-    return _unknown(Word("STATES", container.span), (), around)

@@ -166,3 +166,15 @@ class Script:
     functions: Mapping[str, FunctionFacts] = field(default_factory=dict)
     state_types: Mapping[str, StateType] = field(default_factory=dict)
     aliases: Mapping[str, str] = field(default_factory=dict)
+
+
+def unknown_state(name: Word, transitions: Pairs, via: tuple[Span, ...]) -> State:
+    """A state that cannot be read: only its name and its transitions are known."""
+    type_ = StateType(name="", open=True)
+    return State(name=name, owner="state", type=type_, transitions=transitions, via=via)
+
+
+def no_states(container: Word, via: tuple[Span, ...]) -> State:
+    """An unknown state in place of the states of a container, which were reported as missing or
+    wrong: then no consequence of it is reported."""
+    return unknown_state(Word("STATES", container.span), (), via)

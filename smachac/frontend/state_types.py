@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TypeAlias, TypeVar, get_args
+from typing import TypeVar, get_args
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, did_you_mean
 from smachac.diagnostics.source import Source, Span, Word
@@ -17,6 +17,14 @@ from smachac.frontend import smacha_meta
 from smachac.frontend.class_reader import PARAMETERS
 from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
+from smachac.frontend.interface_code import (
+    Section,
+    class_spans,
+    classes_by_language,
+    code_by_language,
+    declared_in,
+    python_code,
+)
 from smachac.frontend.loader import Library
 from smachac.frontend.schema import INTERFACE_FIELDS, KEY_FACTS, VARIABLE_FACTS
 from smachac.frontend.turned_entries import with_turned, with_turned_types
@@ -27,10 +35,9 @@ from smachac.frontend.type_classes import (
     facts_without_interface,
     prints_itself,
 )
-from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name, check_unquoted, is_name
+from smachac.frontend.unquoted import VARIABLE_SHAPES, check_name
 from smachac.frontend.value_facts import (
     check_fields,
-    check_language,
     described,
     limits_of,
     named,
@@ -52,9 +59,6 @@ from smachac.ir.types import ANY, Type, optional
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
 """The file names that the Python template of a state type may have."""
 
-CLASS_FIELDS = ("header", "class", "with")
-"""The fields of code that is a class: its file, its name, the parameter of its constructor."""
-
 
 _OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
     "inputs": ("input_keys",),
@@ -66,8 +70,6 @@ _OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
 }
 """Fields that other tools have, with those of interfaces that they are meant for."""
 
-TEMPLATE_ENDINGS = frozenset(["py", "tpl", "j2", "jinja", "jinja2"])
-"""The endings of files of templates: a dotted text with another ending names a class."""
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""
@@ -80,8 +82,6 @@ _KEY_ROLES: tuple[KeyRole, ...] = get_args(KeyRole)
 _RESULTS: tuple[FunctionResult, ...] = get_args(FunctionResult)
 _CALLED_WITH_USERDATA = ("callbacks", "conditions", "function", "duration")
 """The roles whose functions a state calls with its userdata alone."""
-
-Section: TypeAlias = tuple[Entry, ...]
 
 
 def find_state_type(name: str, library: Library, report: Report) -> StateType | None:
@@ -131,7 +131,7 @@ def _read_interface(
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
     sections = {key: _section(key, fields.get(key), report) for key in _SECTIONS}
-    code = _code(sections["code"], report)
+    code = code_by_language(sections["code"], report)
     if "python" not in code and library.template(f"{name}.tpl.py") is not None:
         code["python"] = f"{name}.tpl.py"
     parts = ("variables", "input_keys", "output_keys", "outcomes")
@@ -166,13 +166,13 @@ def _read_interface(
         listed_inputs=_listed_roles(sections["input_keys"], report),
         listed_outputs=_listed_roles(sections["output_keys"], report),
         code=code,
-        classes=_classes(sections["code"], report),
-        class_spans=_class_spans(sections["code"]),
+        classes=classes_by_language(sections["code"], report),
+        class_spans=class_spans(sections["code"]),
         class_facts=None
         if built_in or unclear
         else class_facts(
             name,
-            _python_code(sections["code"], code, source),
+            python_code(sections["code"], code, source),
             given | ({"optional"} if optional else set()),
             library,
         ),
@@ -240,7 +240,7 @@ def _check_own_name(tree: Tree, name: str, report: Report) -> None:
 
 def _optional_outcomes(section: Section) -> frozenset[str]:
     """Outcomes with `optional: true`."""
-    return frozenset(key for key, value in _declared(section) if _is_set(value, "optional"))
+    return frozenset(key for key, value in declared_in(section) if _is_set(value, "optional"))
 
 
 def _frame_variables(
@@ -299,87 +299,6 @@ def _role(tree: Tree, roles: tuple[_Role, ...], report: Report) -> _Role:
     return roles[0]
 
 
-def _python_code(section: Section, code: Mapping[str, str], source: Source) -> Word | None:
-    """The Python code of an interface with its place; that of the template beside it has none."""
-    for language, value in _declared(section):
-        if language == "python" and isinstance(value, Scalar):
-            return Word(str(value.value), value.span)
-    return Word(code["python"], Span(source, 0, 0)) if "python" in code else None
-
-
-def _code(section: Section, report: Report) -> dict[str, str]:
-    """The code by language; a reference to a class of Python must be importable."""
-    found = {}
-    for entry in section:
-        check_language(Word(str(entry.key.value), entry.key.span), report)
-    for language, value in _declared(section):
-        if isinstance(value, Scalar):
-            found[language] = str(value.value)
-            help = _class_meant(found[language]) if language == "python" else None
-            if help is not None:
-                message = f"`{value.value}` is not the name of a class in a Python module"
-                arguments = ("class", str(value.value))
-                report.append(wrong_shape(value.span, message, help, arguments=arguments))
-    return found
-
-
-def _class_meant(text: str) -> str | None:
-    """The help for a text that is neither `module:Class` nor the name of a template; None for one
-    of these."""
-    names = text.replace(":", ".", 1).split(".")
-    importable = all(map(is_name, names))
-    if ":" in text:
-        form = "write it as `my_robot.states:Grasp`, or give the file name of a template"
-        return None if importable else form
-    if not importable or len(names) < 2 or names[-1] in TEMPLATE_ENDINGS:
-        return None
-    return f"write a colon before the class: `{'.'.join(names[:-1])}:{names[-1]}`"
-
-
-def _classes(section: Section, report: Report) -> dict[str, dict[str, str]]:
-    """The classes by language, for code that is a mapping."""
-    found = {}
-    for language, value in _declared(section):
-        if not isinstance(value, Map):
-            continue
-        given: dict[str, str] = {}
-        for entry in value.entries:
-            name = str(entry.key.value)
-            if name not in CLASS_FIELDS:
-                word = Word(name, entry.key.span)
-                owner = Owner("code", "the code of a state type")
-                report.append(unknown_variable(word, owner, CLASS_FIELDS))
-            elif isinstance(entry.value, Scalar):
-                given[name] = str(entry.value.value)
-                if language == "cpp":
-                    check_unquoted(entry.value, name, report)
-        missing = [name for name in CLASS_FIELDS[:2] if name not in given]
-        if missing:
-            message = f"the code for `{language}` has no `{missing[0]}`"
-            help = "write it as `{header: my_robot/grasp.hpp, class: my_robot::Grasp}`"
-            arguments = ("code", language, missing[0])
-            report.append(wrong_shape(value.span, message, help, arguments=arguments))
-        else:
-            found[language] = given
-    return found
-
-
-def _class_spans(section: Section) -> dict[tuple[str, str], Span]:
-    """The places of the texts of `_classes`, by language and field; those of `_code` have no
-    field."""
-    found = {
-        (language, ""): value.span
-        for language, value in _declared(section)
-        if isinstance(value, Scalar)
-    }
-    return found | {
-        (language, str(entry.key.value)): entry.value.span
-        for language, value in _declared(section)
-        if isinstance(value, Map)
-        for entry in value.entries
-    }
-
-
 def _kind(tree: Tree | None, report: Report) -> StateKind:
     word = as_name(tree, report) if tree is not None else None
     match word.text if word is not None else "state":
@@ -394,11 +313,6 @@ def _kind(tree: Tree | None, report: Report) -> StateKind:
     help = "use `state`, `container` or `base`"
     report.append(wrong_shape(word.span, message, help, arguments=("kind", word.text)))
     return "state"
-
-
-def _declared(section: Section) -> list[tuple[str, Tree]]:
-    """The named entries of a section, without `"*"`."""
-    return [(str(entry.key.value), entry.value) for entry in section if entry.key.value != "*"]
 
 
 def _declared_words(section: Section) -> list[tuple[Word, Tree]]:
@@ -462,7 +376,7 @@ def _variables(section: Section, report: Report) -> dict[str, VariableType]:
     for entry in section:
         if entry.key.value != "*":
             check_name(str(entry.key.value), entry.key.span, report)
-    return {key: _variable(key, value, report) for key, value in _declared(section)}
+    return {key: _variable(key, value, report) for key, value in declared_in(section)}
 
 
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
@@ -601,8 +515,8 @@ def _writes(
 def _turned_writes(sections: Mapping[str, Section]) -> dict[str, list[str]]:
     """The outputs of each outcome, where `writes` has the outcomes of each output; empty if it has
     not."""
-    outcomes = [name for name, _ in _declared(sections["outcomes"])]
-    outputs = [name for name, _ in _declared(sections["output_keys"])]
+    outcomes = [name for name, _ in declared_in(sections["outcomes"])]
+    outputs = [name for name, _ in declared_in(sections["output_keys"])]
     found: dict[str, list[str]] = {}
     for entry in sections["writes"]:
         key, named = str(entry.key.value), as_names(entry.value, [])
@@ -630,7 +544,7 @@ def _check_declared(
 ) -> str | None:
     """Reports a name that a part of the interface does not declare. The declared name that is meant
     for certain; None if there is none."""
-    names = [name for name, _ in _declared(sections[part])]
+    names = [name for name, _ in declared_in(sections[part])]
     if word.text in names or _is_starred(sections[part]):
         return word.text
     message = f"`{word.text}` is not in the `{part}` of the interface"

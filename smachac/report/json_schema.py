@@ -13,8 +13,8 @@ from typing import Any, TypeAlias, get_args
 from smachac.diagnostics.diagnostic import Code
 from smachac.frontend import schema
 from smachac.frontend.config import LEVELS, SETTINGS
+from smachac.frontend.interface_code import CLASS_FIELDS
 from smachac.frontend.schema import CONTAINERS, REQUIRED, VARIABLES, FieldOwner
-from smachac.frontend.state_types import CLASS_FIELDS
 from smachac.frontend.unquoted import VARIABLE_SHAPES
 from smachac.frontend.value_facts import NAMES
 from smachac.interpreter.scenario import STEP_FIELDS
