@@ -13,7 +13,7 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -182,9 +182,7 @@ def _wrong_returns(
             )
 
 
-def _without_return(
-    path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]
-) -> Finding:
+def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]) -> Finding:
     """The finding for an `execute` that can end without `return`."""
     assert facts.execute is not None
     does = "never returns" if facts.always_silent else "can end without returning"

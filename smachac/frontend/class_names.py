@@ -170,9 +170,9 @@ class _Near:
             near: str | None = f'"{node.id}"'
         elif node.id in CONSTANTS and not bound:
             near = CONSTANTS[node.id]
-        elif node in self.called and self._is_inherited(node.id, scope):
-            near = f"self.{node.id}"
-        elif node.id in self.attributes and node not in self.kept:
+        elif self._is_inherited(node, scope) or (
+            node.id in self.attributes and node not in self.kept
+        ):
             near = f"self.{node.id}"
         elif node.id in SMACH_CLASSES and "smach" in self.module.names:
             near = f"smach.{node.id}"
@@ -195,11 +195,12 @@ class _Near:
         used = node in self.owners or node in self.called
         return not bound and not used and node.id in self.texts
 
-    def _is_inherited(self, name: str, scope: _Scope) -> bool:
+    def _is_inherited(self, node: ast.Name, scope: _Scope) -> bool:
         """Whether a function that a method calls is a method of `smach.State`."""
         method = scope.method
         first = method.args.args[0].arg if method is not None and method.args.args else ""
-        return self.is_state and first == "self" and name in STATE_METHODS
+        called = self.is_state and first == "self" and node in self.called
+        return called and node.id in STATE_METHODS
 
     def _early(self, node: ast.Name, word: Word, method: str) -> ClassFault:
         """The fault of the userdata in a method that runs before the state."""
