@@ -41,6 +41,9 @@ ANYWHERE = ("SM201", "SM301", "SM305", "SM306")
 IN_CODE = ("SM002", "SM004", "SM308", "SM309", "SM310", "SM314", "SM315", "SM603", "SM604", "SM609")
 """Those in the interface and in the class."""
 
+OF_PARAMETERS = ("no parameter", "required parameter", "other parameter", "renamed parameter")
+"""The kinds of faults of a class (SM609) that a wrong variable of its interface causes."""
+
 
 class _Part(NamedTuple):
     """A part of an interface: its field, what a name of it is, the names that the interface has,
@@ -178,17 +181,19 @@ def _parts(type_: StateType, code: _Code, used: Sequence[_Use], report: Report) 
     if not type_.optional and "outcomes" not in type_.given:
         ends = {each.outcome for one in used for each in one.transitions}
         names = [each.name for each in type_.outcomes]
-        has = _texts(code.outcomes or ()) | _texts(code.returns)
+        has = _texts(code.returns if code.outcomes is None else code.outcomes)
         whole = code.outcomes is not None or (code.complete and bool(code.returns))
         yield _Part("outcomes", "outcome", names, has, ends, whole)
     inputs = [each.name for each in type_.input_keys]
     outputs = [each.name for each in type_.output_keys]
     if "input_keys" not in type_.given:
-        has = _texts(code.inputs or ()) | (_texts(code.reads) - {*outputs})
+        has = _texts(code.inputs or ())
+        has |= set() if code.inputs is not None else _texts(code.reads) - {*outputs}
         known = remapped | {name for one in used for name in _keys(one.around)}
         yield _Part("input_keys", "input key", inputs, has, known, code.inputs is not None)
     if "output_keys" not in type_.given:
-        has = _texts(code.outputs or ()) | (_texts(code.writes) - {*inputs})
+        has = _texts(code.outputs or ())
+        has |= set() if code.outputs is not None else _texts(code.writes) - {*inputs}
         known = remapped | _unset(type_, report) | _read(used)
         yield _Part("output_keys", "output key", outputs, has, known, code.outputs is not None)
     if code.parameters is not None and "variables" not in type_.given:
@@ -250,6 +255,8 @@ def _follows(
     arguments = {*item.finding.arguments}
     if item.code in ("SM603", "SM604"):
         return type_.name in arguments
+    if item.code == "SM609" and arguments.isdisjoint(OF_PARAMETERS):
+        return False
     if arguments.isdisjoint(names) or item.code not in (*IN_SCRIPT, *IN_CODE):
         return False
     here = paths.get(item.finding.node or "") == type_.name or item.code in ANYWHERE
