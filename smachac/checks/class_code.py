@@ -13,11 +13,11 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.class_facts import ClassFacts, Ending
+from smachac.ir.class_facts import ANY, ClassFacts, Ending
 from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf, StateType
@@ -146,19 +146,21 @@ def undeclared_return(context: Context) -> Iterator[Finding]:
         {% endblock %}
     """
     names = _names_by_type(context)
+    silent: set[Span] = set()
     for path, leaf, facts in leaves_by_type(context, declared=False):
         outcomes = names.get(leaf.type, _own_names(leaf)).outcomes
         yield from _wrong_returns(path, leaf, facts, outcomes)
+        lost = not facts.always_silent and any(each.outcomes for each in facts.faults)  # SM609
+        if facts.silent and not lost and facts.execute and facts.execute not in silent:
+            silent.add(facts.execute)  # several types can share the code of their base class
+            yield _without_return(path, leaf, facts, outcomes)
 
 
 def _wrong_returns(
     path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]
 ) -> Iterator[Finding]:
     guess = guesser(outcomes)
-    own = [name for name in outcomes if name != leaf.catches]
-    known = f"return one of its outcomes: {listed(own)}"
-    if not outcomes:
-        known = f"add outcomes to the interface `{leaf.type}`"
+    known = _known(leaf, outcomes)
     for ending in facts.endings:
         word = ending.outcome
         if word.text not in outcomes:
@@ -178,20 +180,58 @@ def _wrong_returns(
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
-    if facts.silent and facts.execute is not None:
-        does = "never returns" if facts.always_silent else "can end without returning"
-        alone = _text_alone(facts, outcomes)
-        yield Finding(
-            span=facts.open_end.span if alone and facts.open_end else facts.execute,
-            message=f"`execute` of `{leaf.type}` {does} an outcome",
-            arguments=(leaf.type,),
-            help=f"write `return {' '.join(facts.open_end.span.text.split())}`"
-            if alone and facts.open_end
-            else f"{_after_loop(facts)}end each path with a `return`; {known}{_hooks(facts)}",
-            related=(*_open_end(facts), *used_here(leaf)),
-            severity=None if facts.always_silent else Severity.WARNING,
-            node=path,
-        )
+
+
+def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]) -> Finding:
+    """The finding for an `execute` that can end without `return`."""
+    assert facts.execute is not None
+    does = "never returns" if facts.always_silent else "can end without returning"
+    alone = _alone(facts, outcomes)
+    known = _known(leaf, outcomes)
+    return Finding(
+        span=alone or facts.execute,
+        message=f"`execute` of `{leaf.type}` {does} an outcome",
+        arguments=(leaf.type,),
+        help=f"write `return {' '.join(alone.text.split())}`"
+        if alone
+        else f"{_after_loop(facts)}{_missing_return(leaf, facts, known)}{_hooks(facts)}",
+        related=(*_open_end(facts), *used_here(leaf)),
+        severity=None if facts.always_silent else Severity.WARNING,
+        node=path,
+    )
+
+
+def _known(leaf: Leaf, outcomes: tuple[str, ...]) -> str:
+    """The help that names the outcomes which `execute` can return."""
+    if not outcomes:
+        return f"add outcomes to the interface `{leaf.type}`"
+    return f"return one of its outcomes: {listed([n for n in outcomes if n != leaf.catches])}"
+
+
+def _alone(facts: ClassFacts, outcomes: Collection[str]) -> Span | None:
+    """The place of a value that is the last line of `execute` without `return`."""
+    end = facts.open_end
+    if end is None or not (end.text == "value" or _text_alone(facts, outcomes)):
+        return None
+    return end.span
+
+
+def _missing_return(leaf: Leaf, facts: ClassFacts, known: str) -> str:
+    """The part of a help about a path without `return`, with the outcomes that no path returns."""
+    never = [] if facts.always_silent or not facts.complete else lost_with_return(leaf, facts)
+    if len(never) == 1:
+        return f'end this path with `return "{never[0]}"`, which no other path returns'
+    if never:
+        return f"end each path with a `return`; no path returns {listed(never)}"
+    return f"end each path with a `return`; {known}"
+
+
+def lost_with_return(leaf: Leaf, facts: ClassFacts) -> list[str]:
+    """The outcomes but `preempted` that `execute` does not return where it can end without one."""
+    returned = {PREEMPTED, leaf.catches, *(word.text for word in facts.returns)}
+    lost = {name for each in facts.faults for name in each.outcomes}
+    names = outcome_names(leaf) if facts.silent and ANY not in lost else ()
+    return [name for name in names if name not in returned | lost]
 
 
 def _hooks(facts: ClassFacts) -> str:
@@ -489,11 +529,12 @@ def never_returned(context: Context) -> Iterator[Finding]:
     """
     for path, leaf, type_, facts in own_types(context, declared=False):
         known = facts.complete and facts.returns and facts.execute is not None
+        known = known and not any(ANY in each.outcomes for each in facts.faults)  # SM609
         if not known or facts.stub or type_.optional:
             continue
         returned = {word.text for word in facts.returns}
-        alone = _text_alone(facts, outcome_names(leaf))  # SM309
-        returned.update(alone)
+        alone = _text_alone(facts, outcome_names(leaf))
+        returned.update(alone, lost_with_return(leaf, facts))  # SM309
         returned.update(name for each in facts.faults for name in each.outcomes)  # SM609
         names = [each.name for each in type_.outcomes]
         declared = names if facts.outcomes is None else [word.text for word in facts.outcomes]

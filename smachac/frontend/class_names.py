@@ -46,6 +46,12 @@ SMACH_CLASSES = frozenset([
 ])  # fmt: skip
 """The classes that the package `smach` exports."""
 
+CONSTANTS = {"null": "None", "nil": "None", "true": "True", "false": "False"}
+"""Constants of YAML and of other languages, with those of Python."""
+
+USUAL_OUTCOMES = frozenset(["succeeded", "aborted", "preempted"])
+"""The outcomes of the states of SMACH."""
+
 LATE = frozenset(["__getattr__", "__getattribute__", "__dict__", "__slots__"])
 """Names in a class that can have attributes without a definition."""
 
@@ -70,7 +76,7 @@ def undefined_names(
     `lists` are the outcomes and keys of the class, by parameter of `smach.State.__init__`. Each
     name is found once in a class."""
     text = module.text
-    if module.dynamic or not module.name or "NameError" in text.source.text:
+    if module.dynamic or "NameError" in text.source.text:
         return []
     every = [*ast.walk(text.tree)]
     if not DYNAMIC.isdisjoint(each.id for each in every if isinstance(each, ast.Name)):
@@ -80,6 +86,10 @@ def undefined_names(
     shared = anywhere if inner else {*module.names, *BUILT_IN, *_declared_global(every)}
     near = _Near(own, module, every, anywhere, lists)
     found, done = [], set[str]()
+    if not module.name:  # a template: other templates of the program can define names too
+        visible = anywhere | {each.id for each in every if isinstance(each, ast.Name)}
+        outcomes = USUAL_OUTCOMES.union(lists.get("outcomes", ()))
+        shared = visible - CONSTANTS.keys() - STATE_METHODS - outcomes | anywhere
     for scope in _scopes(node):
         visible = shared | scope.bound
         for each in scope.nodes:
@@ -136,6 +146,14 @@ class _Near:
         positional = execute[1].args.args[1:] if execute is not None else []
         self.userdata = positional[0].arg if len(positional) == 1 else None
         self.owners = {each.value for each in every if isinstance(each, ast.Attribute)}
+        self.called = {each.func for each in every if isinstance(each, ast.Call)}
+        self.texts = USUAL_OUTCOMES.union(
+            each.value
+            for module, _ in own.classes
+            for each in ast.walk(module.text.tree)
+            if isinstance(each, ast.Constant) and isinstance(each.value, str)
+        )
+        self.is_state = own.root == "state"
 
     def fault(self, node: ast.Name, scope: _Scope) -> ClassFault | None:
         """The fault of a name; None if it may be one of a sketch."""
@@ -150,7 +168,11 @@ class _Near:
         runs = scope.method is not None and scope.method.name == "execute"
         if node.id in self.outcomes:
             near: str | None = f'"{node.id}"'
-        elif node.id in self.attributes and node not in self.kept:
+        elif node.id in CONSTANTS and not bound:
+            near = CONSTANTS[node.id]
+        elif self._is_inherited(node, scope) or (
+            node.id in self.attributes and node not in self.kept
+        ):
             near = f"self.{node.id}"
         elif node.id in SMACH_CLASSES and "smach" in self.module.names:
             near = f"smach.{node.id}"
@@ -158,12 +180,27 @@ class _Near:
             return ClassFault(kind="lost argument", name=word)
         elif node.id in self.inputs and self.userdata is not None and runs:
             near = f"{self.userdata}.{node.id}"
+        elif self._is_text(node, bound):
+            near = f'"{node.id}"'
         else:
             known = {*self.module.names, *scope.bound} if bound else self.anywhere - BUILT_IN
             near = guesser(sorted(known)).sure(node.id)
         if near is None:
             return ClassFault(kind="other scope", name=word) if bound else None
         return ClassFault(kind="undefined name", name=word, near=near)
+
+    def _is_text(self, node: ast.Name, bound: bool) -> bool:
+        """Whether a name that nothing binds is probably a text without its quotes: the code has the
+        same text at another place."""
+        used = node in self.owners or node in self.called
+        return not bound and not used and node.id in self.texts
+
+    def _is_inherited(self, node: ast.Name, scope: _Scope) -> bool:
+        """Whether a function that a method calls is a method of `smach.State`."""
+        method = scope.method
+        first = method.args.args[0].arg if method is not None and method.args.args else ""
+        called = self.is_state and first == "self" and node in self.called
+        return called and node.id in STATE_METHODS
 
     def _early(self, node: ast.Name, word: Word, method: str) -> ClassFault:
         """The fault of the userdata in a method that runs before the state."""

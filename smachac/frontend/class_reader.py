@@ -109,8 +109,12 @@ def read_module(word: Word, library: Library) -> ClassFacts | None:
         if module is None:
             module = absent_module(place, library)
         if not isinstance(module, Module):
+            if module is not None and module.kind == "syntax":
+                module = replace(module, file="")
             return ClassFacts(faults=(module,)) if module is not None else None
         found = find_class(module, name, library)
+        if isinstance(found, ClassFault) and found.kind == "syntax":
+            return ClassFacts(faults=(found,))
         if isinstance(found, ClassFault):
             fault = replace(found, file=file_of(module))
             return ClassFacts(faults=(_at_the_name(fault, word),))

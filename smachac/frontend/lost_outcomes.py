@@ -12,7 +12,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_functions import is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, find_function
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ANY, ClassFault
 from smachac.ir.code_slips import texts_of
 
 PREEMPTED = "preempted"
@@ -27,11 +27,11 @@ def lost_outcomes(own: OwnClass, library: Library) -> list[ClassFault]:
     value after an `except`."""
     found = own.method("execute")
     outcomes = [*_listed_outcomes(own)]
-    if found is None or not is_plain(found[1]) or not outcomes:
+    if found is None or not is_plain(found[1]):
         return []
     module, execute = found
     faults = [*_alone(own, module, execute, outcomes)]
-    if not any(each.kind == "lost text" for each in faults):
+    if outcomes and not any(each.kind == "lost text" for each in faults):
         faults += _unbound(own, module, execute, outcomes, library)
     return faults
 
@@ -61,6 +61,8 @@ def _alone(
     returned = {each.value.value for each in returns_of(execute.body)
                 if isinstance(each.value, ast.Constant)}  # fmt: skip
     ends = {id(each) for each in _last_lines(execute.body)}  # SM309
+    local = {each.id for each in ast.walk(execute)
+             if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}  # fmt: skip
     for each in _statements(execute.body):
         span = module.text.span(each)
         if not isinstance(each, ast.Expr) or id(each) in ends or module.text.is_filled(span):
@@ -68,9 +70,12 @@ def _alone(
         match each.value:
             case ast.Constant() | ast.IfExp() as value if each is not execute.body[0]:
                 words = texts_of(value)
-                if words and {*words} <= {*outcomes}:
+                known = {*words} <= {*outcomes} if outcomes else all(map(str.isidentifier, words))
+                if words and known:
                     word = Word(" ".join(span.text.split()), span)
                     yield ClassFault(kind="lost text", name=word, outcomes=words)
+            case ast.Name(id=name) if name in local:
+                yield ClassFault(kind="lost text", name=Word(name, span), outcomes=(ANY,))
             case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=name)):
                 names, whole, answers = _results(own, name)
                 if not names or not names <= {*outcomes}:

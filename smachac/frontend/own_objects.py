@@ -101,7 +101,8 @@ def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.e
                 | ast.IfExp(test=test)
                 | ast.Assert(test=test)
             ):
-                yield from (("not called", part) for part in operands(test))
+                for part in operands(test):
+                    yield "not called", part
             case ast.Expr(value=value):
                 yield "no effect", value
 

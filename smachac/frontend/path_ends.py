@@ -66,8 +66,8 @@ class PathEnds:
 
     def open_end(self, body: list[ast.stmt]) -> tuple[str, ast.AST]:
         """Where control comes from at the end of statements that do not end: the kind of place
-        (`if`, `match`, `except`, `loop`, `text` alone, or none of these), and its statement or
-        handler."""
+        (`if`, `match`, `except`, `loop`; `text`, `value` or `call` alone in the last line; or none
+        of these), and its statement or handler."""
         last = body[-1]
         match last:
             case ast.If(orelse=[]):
@@ -83,10 +83,16 @@ class PathEnds:
                 handler = next((each for each in handlers if not self.block(each.body)), None)
                 if self.block(inner) and handler is not None:
                     return "except", handler
+                if handler is None:
+                    return self.open_end(last.orelse or inner)
             case ast.For() | ast.While():
                 return "loop", last
             case ast.Expr(value=value) if texts_of(value):
                 return "text", last
+            case ast.Expr(value=ast.Name() | ast.Subscript() | ast.IfExp()):
+                return "value", last
+            case ast.Expr(value=ast.Call()):
+                return "call", last
         return "", last
 
     def is_endless(self, loop: ast.For | ast.While) -> bool:

@@ -138,8 +138,14 @@ class _Reader:
     def _open_end(self) -> Word | None:
         """The kind of place from which control gets to the end, and its first line."""
         kind, node = self.path_ends.open_end(self.function.body)
-        if kind == "text" and isinstance(node, ast.stmt):
-            return Word(kind, self.text.span(node))
+        match node:
+            case ast.Expr(value=ast.Call(func=called)):
+                found = self._target(called)
+                flow = self.flows.of(found[0], found[1], "") if found is not None else None
+                makes_one = flow is not None and not flow.silent
+                return Word("value", self.text.span(node)) if makes_one else None
+            case ast.Expr() if kind:
+                return Word(kind, self.text.span(node))
         return self._first_line(kind, node) if kind else None
 
     def _in_loop(self) -> Word | None:

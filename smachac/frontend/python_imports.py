@@ -109,13 +109,18 @@ def _placed(name: str, span: Span, after: int) -> Word:
 
 
 def _faults(one: Import, library: Library) -> Iterator[ClassFault]:
+    """The faults of an import: of the module or a name, or of the text of the module."""
     head, path = one.module.partition(".")[0], one.module.replace(".", "/")
     if not one.module or head in sys.stdlib_module_names:
         return
     files = (f"{path}/__init__.py", f"{path}.py")
     file = next((each for each in files if library.code(each) is not None), None)
     if file is not None:
-        yield from _no_names(one, file, library)
+        other = load_module(one.module, library)
+        if isinstance(other, ClassFault):
+            yield other
+        elif other is not None:
+            yield from _no_names(one, file, other, library)
         return
     folder = library.code_names(path)
     if not folder:
@@ -123,21 +128,19 @@ def _faults(one: Import, library: Library) -> Iterator[ClassFault]:
     elif any(is_module(each) for each in folder):
         for word in one.names:
             inner = f"{one.module}.{word.text}"
-            if load_module(inner, library) is None and not library.code_names(
-                f"{path}/{word.text}"
-            ):
+            other = load_module(inner, library)
+            if isinstance(other, ClassFault):
+                yield other
+            elif other is None and not library.code_names(f"{path}/{word.text}"):
                 yield from _no_module(inner, word, library)
 
 
-def _no_names(one: Import, file: str, library: Library) -> Iterator[ClassFault]:
-    """The names that a module does not define. It is parsed only if its text does not contain one
-    of them."""
-    source = library.code(file)
-    words = set(_WORD.findall(source.text)) if source is not None else set[str]()
+def _no_names(one: Import, file: str, other: Module, library: Library) -> Iterator[ClassFault]:
+    """The names that a module does not define."""
+    words = set(_WORD.findall(other.text.source.text))
     if all(word.text in words for word in one.names):
         return
-    other = load_module(one.module, library)
-    if not isinstance(other, Module) or other.dynamic or makes_names(other.text.tree):
+    if other.dynamic or makes_names(other.text.tree):
         return
     inside = library.code_names(file.rpartition("/")[0]) if other.package else ()
     known = {*other.names, *(each.partition(".")[0] for each in inside)}

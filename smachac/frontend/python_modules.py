@@ -124,7 +124,7 @@ def load_module(name: str, library: Library) -> Module | ClassFault | None:
         if text is not None:
             return _module(text, name, package=package)
         error = syntax_error(source)
-        return ClassFault(kind="syntax", name=error) if error is not None else None
+        return ClassFault(kind="syntax", name=error, file=file) if error is not None else None
     return None
 
 
@@ -238,13 +238,17 @@ def module_name(module: Module, written: str) -> str | None:
 
 def _imported(
     module: Module, node: ast.ImportFrom, name: str, library: Library, steps: int
-) -> tuple[Module, ast.ClassDef] | None:
+) -> tuple[Module, ast.ClassDef] | ClassFault | None:
     own = next(each.name for each in node.names if (each.asname or each.name) == name)
     other = load_module(source_module(module, node), library)
     if not isinstance(other, Module):
-        return None
+        return other
     found = find_class(other, own, library, steps - 1)
-    return found if isinstance(found, tuple) else None
+    return found if isinstance(found, tuple) or _is_syntax(found) else None
+
+
+def _is_syntax(found: ClassFault | None) -> bool:
+    return found is not None and found.kind == "syntax"
 
 
 def source_module(module: Module, node: ast.ImportFrom) -> str:

@@ -115,11 +115,9 @@ def _read_interface(
 ) -> StateType:
     """The state type in an interface. The classes of built-in types are not read: their interfaces
     state all that a check needs (tests/frontend/test_class_reader.py compares them)."""
-    found: Report = []
-    tree = library.parse(source, found)
-    report += found
-    if tree is None and any(item.code == "SM001" for item in found):
-        return StateType(name=name, open=True)
+    tree = library.parse(source, report)
+    if not isinstance(tree, Map) and any(item.span.source == source for item in report):
+        return StateType(name=name, open=True)  # its text is no YAML
     if not isinstance(tree, Map):
         span = tree.span if tree is not None else Span(source, 0, 0)
         message = f"the interface of `{name}` must be a mapping"

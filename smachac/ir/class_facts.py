@@ -97,6 +97,9 @@ FaultKind = Literal[
     "no member",
 ]
 
+ANY = "*"
+"""In place of outcomes that are not known."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassFault:
@@ -105,8 +108,8 @@ class ClassFault:
     For `syntax`, the text of `name` is the message of the parser. `near` is the name that was
     probably meant. `file` is the module that lacks the name,
     `owner` the class that lacks it, and `more` another part of the words. `outcomes` are those that
-    `execute` does not return because of the fault. `also` is another place that the fault is about,
-    with the words for it.
+    `execute` does not return because of the fault, or ANY. `also` is another place that the fault
+    is about, with the words for it.
     """
 
     kind: FaultKind
@@ -183,7 +186,8 @@ class ClassFacts:
     `endings` are the constants that `execute` returns; `complete`: it returns nothing else.
     `execute` is the place of its name. `silent`: some path through it returns nothing,
     `always_silent`: every path. `open_end` is the place after which it returns nothing, with its
-    kind: `if`, `match`, `except`, `loop`, or `text` for a text alone, without its `return`;
+    kind: `if`, `match`, `except`, `loop`, or `text` and `value` for a text or another value alone,
+    without its `return`;
     `in_loop` the `return` at the end of that loop.
     `reads` and `writes` are the userdata keys that it accesses, each at its name.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.

@@ -540,6 +540,8 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
     written = fault.kind in ("no list", "no return") or near.startswith('"') or "." in near
     if fault.kind == "no attribute":
         written = near.endswith(")")
+    if near in ("None", "True", "False"):
+        return message, f"write `{near}`: Python has no `{fault.name.text}`"
     return message, f"write `{near}`" if written else f"did you mean `{near}`?"
 
 

@@ -450,7 +450,8 @@ def code_not_found(
     file = "header" if target == "cpp" else "module"
     if fault.kind == "syntax":
         said = word.text.partition(". Maybe you meant")[0]
-        message = f"the code of `{state_type}` is not valid Python: {said}"
+        where = f"`{fault.file}`" if fault.file else f"the code of `{state_type}`"
+        message = f"{where} is not valid Python: {said}"
         help = _syntax_help(word.text)
     elif fault.kind == "no module":
         message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"

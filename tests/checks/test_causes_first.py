@@ -466,8 +466,8 @@ def test_a_misspelt_output_of_an_interface_is_one_finding() -> None:
         "templates/Find.yml": misspelt + 'code: {python: "sees:Find"}\n',
         "sees.py": SEEING,
     }
-    codes = [each.code for each in analysed(files).report if each.severity is Severity.ERROR]
-    assert codes == ["SM308"]
+    (item,) = [each for each in analysed(files).report if each.severity is Severity.ERROR]
+    assert (item.code, item.help) == ("SM603", "write `grasp` in place of `gasp`")
 
 
 REACHED = FIELDS.replace(

@@ -114,8 +114,14 @@ def test_a_correct_class() -> None:
          'write `return "lost" if _ else "found"`'),
         (changed(('return "preempted"', 'return "preempt"')),
          ['SM309 cell/find.py:14 "preempt"'], "did you mean `preempted`?"),
-        (changed(('        return "lost"\n', "")), ["SM309 cell/find.py:11 execute",
-                                                   "SM315 cell/find.py:11 execute"], None),
+        (changed(('        return "lost"\n', "")), ["SM309 cell/find.py:11 execute"],
+         'end this path with `return "lost"`, which no other path returns'),
+        (changed(('return "lost"', 'end = "lost"\n        end')), ["SM309 cell/find.py:20 end"],
+         "write `return end`"),
+        (changed(('return "lost"', 'self.end()')) + '\n    def end(self):\n        return "lost"\n',
+         ["SM309 cell/find.py:19 self.end()"], "write `return self.end()`"),
+        (changed(('return "found"', 'end = "found"\n                end')),
+         ["SM609 cell/find.py:19 end"], "write `return end`"),
         (changed((SET, "")), ['SM314 cell/find.py:17 "found"'], None),
         (changed((SET, "                pose = userdata.tries\n")),
          ['SM314 cell/find.py:18 "found"'], None),
@@ -690,3 +696,22 @@ def test_a_method_of_an_object_of_the_library(use: str, found: list[str]) -> Non
     kept = "self.speed = speed\n        self.done = threading.Event()"
     text = text.replace("self.speed = speed", kept)
     assert [each for each in lines(findings(text)) if each.startswith("SM609")] == found
+
+
+@pytest.mark.parametrize(
+    ("module", "line"),
+    [("def look():\n    if 1\n        return 2\n", 2), ("def look(:\n    return 2\n", 1)],
+)
+def test_an_imported_module_that_is_not_python(module: str, line: int) -> None:
+    text = changed(("import smach\n", "import smach\n\nfrom cell.camera import look\n"))
+    (item,) = findings(text, **{"cell/camera.py": module})
+    assert (item.code, item.span.source.name, item.span.line) == ("SM608", "cell/camera.py", line)
+    assert item.message.startswith("`cell/camera.py` is not valid Python: ")
+    assert findings(text, **{"cell/camera.py": "def look():\n    return 2\n"}) == []
+
+
+def test_a_package_with_a_module_that_is_not_python() -> None:
+    files = {"cell/__init__.py": "from .find import FindPart\n"}
+    interface = INTERFACE.replace("cell.find:", "cell:")
+    (item,) = findings(changed(("userdata):", "userdata)")), interface, **files)
+    assert (item.code, item.span.source.name) == ("SM608", "cell/find.py")

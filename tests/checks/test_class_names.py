@@ -74,6 +74,10 @@ def report(body: str, old: str = "", new: str = "") -> list[Diagnostic]:
         ("self.grip()", "grip", "define `grip` in the class, or correct the name"),
         ("self.loks += self.look", "look", "did you mean `looks`?"),
         ("if self.prempt_requested(): return 'nothing'", "prempt_requested", "preempt_requested"),
+        ("if preempt_requested(): return 'nothing'", "preempt_requested", "write `self.preempt"),
+        ("return null", "null", "write `None`: Python has no `null`"),
+        ("while true: break", "true", "write `True`: Python has no `true`"),
+        ("print(preempted)", "preempted", 'write `"preempted"`'),
     ],
 )
 def test_names_that_nothing_defines(body: str, name: str, help: str) -> None:
@@ -103,6 +107,9 @@ def test_names_that_nothing_defines(body: str, name: str, help: str) -> None:
         ("while not self._preempt_requested: break", "", ""),
         ("if (n := 3) > 2: print(n)", "", ""),
         ("global later; later = 1; print(later)", "", ""),
+        ("null = None; print(null)", "", ""),
+        ("service_preempt()", "import math", "from arm_tools import service_preempt"),
+        ("drill.look('drill')", "", ""),
     ],
 )
 def test_names_that_can_be_defined(body: str, old: str, new: str) -> None:
