@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -288,7 +289,8 @@ class _Judge:
             yield self.fault(expr, "divides by zero", left, help="divide by a number other than 0")
         elif fails(word, one, other):
             does = _DOES[word].format(type_text(one), type_text(other))
-            yield self.fault(expr, does, left, right, help=_cure(word, one, other))
+            help = _cure(word, one, other, left, right)
+            yield self.fault(expr, does, left, right, help=help)
         elif word in ("+", "-", "%"):
             yield from self.units(expr, one, other, left, right)
 
@@ -297,12 +299,16 @@ class _Judge:
         if fails(word, one, other):
             does = _DOES.get(word, "compares `{}` with `{}`")
             does = does.format(type_text(one), type_text(other))
-            yield self.fault(expr, does, left, right, help=_cure(word, one, other))
+            help = _cure(word, one, other, left, right)
+            yield self.fault(expr, does, left, right, help=help)
             return
         if word in ("in", "not in"):
             other = item_of(other) if kinds(other) == {"list"} else Type("any")
         if word in _EQUAL and never_equal(one, other):
-            yield self.comparison(expr, word, one, other, self.keys(left, right))
+            found = self.comparison(expr, word, one, other, self.keys(left, right))
+            mixed = {*kinds(one), *kinds(other)} == {"number", "text"}
+            bare = _without_quotes(left, right) if mixed else None
+            yield replace(found, help=bare) if bare is not None else found
         elif word not in ("in", "not in"):
             yield from self.units(expr, one, other, left, right)
 
@@ -422,9 +428,21 @@ def _size(type_: Type) -> int | None:
     return {"Point": 3, "Quaternion": 4}.get(type_.name, length_of(type_))
 
 
-def _cure(word: str, one: Type, other: Type) -> str | None:
+def _without_quotes(left: Expr, right: Expr) -> str | None:
+    """The help for a number that is written as a text: one side of an operation."""
+    for each in (left, right):
+        text = each.value if isinstance(each, Constant) else None
+        if isinstance(text, str) and re.fullmatch(r"-?\d+(\.\d+)?", text):
+            return f"write `{text}` without quotes"
+    return None
+
+
+def _cure(word: str, one: Type, other: Type, left: Expr, right: Expr) -> str | None:
     both = {*kinds(one), *kinds(other)}
     if both == {"number", "text"}:
+        bare = _without_quotes(left, right)
+        if bare is not None:
+            return bare
         if word == "+":
             return "convert the number with `str(...)`, or text that is a number with `float(...)`"
         return "convert a text that contains a number with `float(...)`"

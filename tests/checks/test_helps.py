@@ -369,3 +369,32 @@ states:
     assert [each.help for each in found] == [
         "write `item: pose` in `for_each`, or read `point`, as the loop calls its item"
     ]
+
+
+@pytest.mark.parametrize(
+    ("code", "help"),
+    [
+        ("ud.tries < '3'", "write `3` without quotes"),
+        ("ud.tries - '0.5' > 0", "write `0.5` without quotes"),
+        ("ud.tries == '3'", "write `3` without quotes"),
+        ("ud.tries < 'three'", "convert a text that contains a number with `float(...)`"),
+    ],
+)
+def test_a_number_in_quotes(code: str, help: str) -> None:
+    text = f"""
+name: sm
+template: Base
+outcomes: [done]
+userdata: {{tries: 0}}
+states:
+  - MORE:
+      template: ScriptedState
+      input_keys: [tries]
+      output_keys: [more]
+      callbacks: {{more: "lambda ud: {code}"}}
+      outcomes: [done]
+      transitions: {{done: done}}
+output_keys: [more]
+"""
+    report = analysed({"main.yml": text}).report
+    assert [each.help for each in report if each.code in ("SM311", "SM312")] == [help]
