@@ -529,7 +529,7 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
     )
     near = fault.near
     if fault.kind in ("skipped output", "early return") and fault.more:
-        return message, f"move `{fault.more}` before this `return`"
+        return message, f"write `{fault.more}` before this `return` too"
     if near is None or fault.kind in WRITTEN:
         return message, help
     if fault.kind == "no execute":

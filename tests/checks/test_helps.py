@@ -388,12 +388,11 @@ outcomes: [done]
 userdata: {{tries: 0}}
 states:
   - MORE:
-      template: ScriptedState
+      template: CallbacksState
       input_keys: [tries]
       output_keys: [more]
       callbacks: {{more: "lambda ud: {code}"}}
-      outcomes: [done]
-      transitions: {{done: done}}
+      transitions: {{succeeded: done}}
 output_keys: [more]
 """
     report = analysed({"main.yml": text}).report

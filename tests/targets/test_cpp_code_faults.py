@@ -414,7 +414,7 @@ def test_a_header_whose_folder_is_missing(tmp_path: Path, place: str, help: str 
     ("value", "help"),
     [
         ("measured()", "write `out.force = ...` before this `return`, or remove"),
-        ("force", "move `out.force = force;` before this `return`"),
+        ("force", "write `out.force = force;` before this `return` too"),
         ("inner", "write `out.force = ...` before this `return`, or remove"),
     ],
 )
