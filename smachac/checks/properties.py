@@ -99,8 +99,8 @@ def property_fails(context: Context) -> Iterator[Finding]:
 
     script = shlex.quote(context.machine.root.span.source.name)
     for number, given, example, shown, turn in _failures(context):
-        longer = _longer_list(context, given, example)
-        swapped = _swap_help(context, given) if longer is None else None
+        swapped = _swap_help(context, given)
+        longer = _longer_list(context, given, example) if swapped is None else None
         first = swapped or f"{longer[1] if longer else ''}{_cure(given.form, example, turn)}\n"
         yield Finding(
             span=given.span if longer is None else longer[0],
@@ -246,7 +246,7 @@ def _longer_list(
              if isinstance(node, Leaf) and f"/{path}".endswith(names)]  # fmt: skip
     for visit in example.visits:
         node = nodes.get(visit.path)
-        if not isinstance(node, Leaf) or not node.variables or _work(node) not in alike:
+        if not isinstance(node, Leaf) or not _own_work(context, node) or _work(node) not in alike:
             continue
         if any(f"{trigger}/" in f"/{visit.path}/" for trigger in triggers):
             continue  # the property would always hold
@@ -268,6 +268,14 @@ def _with_ends(form: Form, ends: Atoms) -> Form:
         case Before():
             return replace(form, earlier=ends)
     return form
+
+
+def _own_work(context: Context, leaf: Leaf) -> bool:
+    """Whether a state sets a variable to another value than its default."""
+    type_ = context.machine.state_types.get(leaf.type)
+    known = type_.variables if type_ is not None else {}
+    defaults = {name: each.default.data for name, each in known.items() if each.default}
+    return any(each.value.data != defaults.get(each.name) for each in leaf.variables)
 
 
 def _work(leaf: Leaf) -> tuple[str, list[tuple[str, Data]]]:

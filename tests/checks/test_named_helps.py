@@ -272,6 +272,12 @@ def test_a_state_with_the_same_work_can_be_added_to_until() -> None:
     assert "swapped" not in found
 
 
+def test_a_swap_comes_before_a_longer_list() -> None:
+    rule = "properties: [{before: {CLOSE: RELEASE}}]"
+    (found,) = helps(GRIPS.replace("PROPERTY", rule), "SM701")
+    assert found.startswith("write `before: {RELEASE: CLOSE}`: with it the property holds")
+
+
 def test_a_swap_that_forbids_nothing_is_no_help() -> None:
     """With the names swapped the property would hold only because GO never follows RELEASE."""
     rule = "properties: [{never: {after: CLOSE, until: RELEASE, enter: GO}}]"
