@@ -31,11 +31,14 @@ FARTHEST = 20.0
 
 class DataError(ValueError):
     """A mistake in a file of data: the message, its place, and a line of help. `key`: the last key
-    of the place is wrong, not its value."""
+    of the place is wrong, not its value. `unknown`: its mapping can have no such key."""
 
-    def __init__(self, message: str, place: Place, help: str, *, key: bool = False) -> None:
+    def __init__(
+        self, message: str, place: Place, help: str, *, key: bool = False, unknown: bool = False
+    ) -> None:
         super().__init__(message)
-        self.message, self.place, self.help, self.key = message, place, help, key
+        self.message, self.place, self.help = message, place, help
+        self.key, self.unknown = key, unknown
 
     def __str__(self) -> str:
         where = ".".join(map(str, self.place))
@@ -89,7 +92,8 @@ class Fields:
         for key in data:
             if key not in table:
                 message = f"the key `{key}` is unknown"
-                raise DataError(message, (*place, str(key)), guess(key, table))
+                help = self._neighbour(key) or guess(key, table)
+                raise DataError(message, (*place, str(key)), help, unknown=True)
 
     def __contains__(self, key: str) -> bool:
         return self.data.get(key) is not None
@@ -98,11 +102,50 @@ class Fields:
         """The value of a key; its default if it is absent or null."""
         field = self.table[key]
         if key in self:
-            return field.shape(self.data[key], (*self.place, key))
+            try:
+                return field.shape(self.data[key], (*self.place, key))
+            except DataError as error:
+                self._inner(key, error)
+                raise
         if field.default is REQUIRED:
+            for name, value in self.data.items():
+                inner = self._inner_keys(name)
+                if isinstance(value, Mapping) and inner and key in value and key not in inner:
+                    raise self._outer(name, key)
             help = f"add `{key}: ...` ({about(field)})"
             raise DataError(f"the key `{key}` is missing", self.place, help)
         return field.default
+
+    def _inner_keys(self, name: str) -> Collection[str]:
+        """The keys that the mapping under a key can have; empty if it is no mapping with a table."""
+        known: Collection[str] = ()
+        if name in self.table:
+            known = self.table[name].shape.schema.get("properties", ())
+        return known
+
+    def _neighbour(self, key: object) -> str | None:
+        """The help for an unknown key that is one of a mapping beside it."""
+        for name, value in self.data.items():
+            inner = self._inner_keys(name)
+            if isinstance(value, Mapping) and key in inner and key not in value:
+                moved = [each for each in self.data
+                         if each not in self.table and each in inner and each not in value]  # fmt: skip
+                them = "it" if len(moved) == 1 else "them"
+                return f"move {listed(moved)} into `{name}`: indent {them} as its other keys"
+        return None
+
+    def _outer(self, name: str, key: str) -> DataError:
+        """The mistake that a key of this mapping is in the mapping under another key."""
+        place = (*self.place, name, key)
+        help = f"move `{key}` out of `{name}`: indent it as `{name}` itself"
+        return DataError(f"the key `{key}` is unknown", place, help, unknown=True)
+
+    def _inner(self, key: str, error: DataError) -> None:
+        """Correct the help about an unknown key of a mapping inside, if this mapping lacks it."""
+        last = error.place[-1] if error.place else ""
+        inside = error.unknown and error.place[:-1] == (*self.place, key)
+        if inside and isinstance(last, str) and last in self.table and last not in self.data:
+            error.help = self._outer(key, last).help
 
     @property
     def name(self) -> str:

@@ -309,3 +309,25 @@ def test_a_value_of_another_shape_has_a_repair(
     with pytest.raises(DataError) as error:
         shape(data, ("here",))
     assert error.value.help.startswith(help)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "help"),
+    [
+        ("gripper", ("pads", "force"), "move `pads`, `force` into `gripper`: indent them as its"),
+        ("gripper", ("force",), "move `force` into `gripper`: indent it as its other keys"),
+        ("gripper", ("forces",), "did you mean"),
+        ("home", (), "move `home` out of `gripper`: indent it as `gripper` itself"),
+        ("tolerance", (), "move `tolerance` out of `gripper`: indent it as `gripper` itself"),
+    ],
+)
+def test_a_key_of_a_mapping_beside_or_around(old: str, new: tuple[str, ...], help: str) -> None:
+    data = plain(ROBOT)
+    limb = data["arms"]["left"]
+    if old == "gripper":
+        limb.update(dict.fromkeys(new, 1.0))
+    else:
+        limb["gripper"][old] = limb.pop(old, 0.1)
+    with pytest.raises(DataError) as raised:
+        description.read(data)
+    assert raised.value.help.startswith(help)
