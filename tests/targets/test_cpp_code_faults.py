@@ -432,3 +432,35 @@ def test_an_assignment_that_is_too_late(value: str, help: str) -> None:
     (found,) = [each for each in report if "without setting its output key" in each.message]
     assert found.help is not None
     assert found.help.startswith(help)
+
+
+@pytest.mark.parametrize(
+    ("type_", "field", "wanted"),
+    [
+        ("float<rad>[6]", "const std::vector<double> &", "const std::array<double, 6> &"),
+        ("float<rad>[6]", "const std::array<double, 7> &", "const std::array<double, 6> &"),
+        ("list[str]", "const std::vector<double> &", "const std::vector<std::string> &"),
+        ("list[float]", "double", "const std::vector<double> &"),
+        ("list[float]", "const std::vector<smachac::Pose> &", "const std::vector<double> &"),
+        ("float?", "double", "const std::optional<double> &"),
+        ("float<rad>[6]", "const Joints &", None),
+        ("list[str]", "const std::vector<Name> &", None),
+        ("float<rad>[6]", "const std::array<double, JOINTS> &", None),
+        ("float<rad>[6]", "const std::array<double,6>& ", None),
+        ("list[Pose]", "const std::vector<smachac::Pose> &", None),
+    ],
+)
+def test_the_type_of_a_field_with_items(type_: str, field: str, wanted: str | None) -> None:
+    text = PUSH_CLASS.replace("struct In { double depth", f"struct In {{ {field}depth")
+    text = text.replace("doubledepth", "double depth")
+    files = {
+        "main.yml": PUSH_SCRIPT.replace("{depth: 0.1}", "{depth: null}"),
+        "templates/Push.yml": PUSH.replace("depth: float", f"depth: '{type_}'"),
+        "arm/push.hpp": text,
+    }
+    report = analyse(
+        Source("main.yml", files["main.yml"]), memory_library(files, BUILT_IN), []
+    ).report
+    found = [each.message + str(each.help) for each in report if "In::depth" in each.message]
+    assert len(found) == (wanted is not None)
+    assert all(f"{wanted}depth" in each for each in found)

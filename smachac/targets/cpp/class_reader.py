@@ -15,7 +15,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
-from smachac.ir.types import unknown_words
+from smachac.ir.types import STRUCTS, unknown_words
 from smachac.targets.cpp.header_text import Part, without_literals
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import member_faults, signature_faults
@@ -46,6 +46,7 @@ _ODD = re.compile(r"[#(){}\[\]=]|\b(?:using|static|template|typedef|mutable)\b")
 
 KNOWN = {"bool", "double", "float", "int", "std::int64_t", "std::string"}
 """Types, beside those of `smachac::`, whose spelling decides whether two of them are the same."""
+CONTAINERS = {"std::array", "std::vector", "std::map", "std::optional"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -325,7 +326,14 @@ def _other_fields(
 def _surely_other(text: str, wanted: str) -> bool:
     """Whether two spellings are certainly two types, whatever aliases there are."""
     one, other = _plain(text), _plain(wanted)
-    return one != other and one in KNOWN and (other in KNOWN or other.startswith("smachac::"))
+    return one != other and _is_known(one) and _is_known(other)
+
+
+def _is_known(text: str) -> bool:
+    """Whether a type consists of known types and standard containers of them only."""
+    words = re.findall(r"[\w:]+", text)
+    return all(each in KNOWN or each in CONTAINERS or each.isdigit()
+               or each.removeprefix("smachac::") in STRUCTS for each in words)  # fmt: skip
 
 
 def _plain(text: str) -> str:
