@@ -17,6 +17,7 @@ from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
+from smachac.checks.empty_remaps import meant_by_empty_remaps
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.meant_keys import (
     loop_in_a_body,
@@ -176,6 +177,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found = {(each.keeper.path, each.own) for each in context.lost_outputs}  # SM307
     found |= {(each.other, each.key) for each in context.missing_keys("outside")}
     found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
+    found |= meant_by_empty_remaps(context)
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
     return found | keys_of_misplaced(context.misplaced)  # SM101
@@ -374,9 +376,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
     misnamed = {each.word.span: each for each in misnamed_keys(context).values()}
-    empty: dict[str, list[str]] = {}
-    for each in context.empty_remaps:
-        empty.setdefault(each.scope.path, []).append(each.remap.to)
+    kept |= meant_by_empty_remaps(context)  # SM302
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     yield from _unwritten_outputs(context)
@@ -395,8 +395,6 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             if wrong is not None and wrong.declared:
                 yield misnamed_finding(wrong, scope.path, container_name(scope, key.span))
                 continue
-            if any(guesser([key.name])(name) for name in empty.get(scope.path, ())):
-                continue  # SM302
             copied = copied_remap(container, key.name)
             if copied is not None:
                 yield copied_finding(scope.path, copied, key.name)

@@ -15,6 +15,7 @@ from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.unquoted import is_name
+from smachac.ir.traversal import remapping
 
 
 def empty_remap_findings(context: Context) -> Iterator[Finding]:
@@ -46,7 +47,40 @@ def _help(each: EmptyRemap) -> str | None:
         )
     if each.other:
         return f"add `{remap.to}` to the `input_keys` of `{container}`"
-    return did_you_mean(guesser(sorted(provided_keys(each.scope).keys))(remap.to))
+    return did_you_mean(_meant(each))
+
+
+def meant_by_empty_remaps(context: Context) -> set[tuple[str, str]]:
+    """The keys that empty remappings probably mean, each with the path of its container."""
+    found = [(each.scope.path, _meant(each)) for each in context.empty_remaps if not each.other]
+    return {(path, key) for path, key in found if key is not None}
+
+
+def _meant(each: EmptyRemap) -> str | None:
+    near = guesser(sorted(provided_keys(each.scope).keys))(each.remap.to)
+    return near if near is not None else _by_words(each)
+
+
+ABSENT = frozenset(["no", "none", "nothing", "empty", "zero", "unset", "without", "not"])
+"""Words of a name that is unset on purpose."""
+
+
+def _by_words(each: EmptyRemap) -> str | None:
+    """The only key that shares words with the wrong name: one that makes up that name together with
+    the remapped key, as `hover` and `offset` do for `hover_offset`, or one that nothing reads."""
+    key, words = each.remap.key, set(each.remap.to.split("_"))
+    if words & ABSENT:
+        return None
+    keys = provided_keys(each.scope).keys
+    found = [name for name in keys if {*name.split("_"), *key.split("_")} == words]
+    if not found:
+        read = {*each.scope.outputs}
+        for child in each.scope.container.children:
+            names = remapping(child)
+            read.update(names.get(one.name, one.name) for one in child.inputs)
+        own = words.difference(key.split("_"))
+        found = [name for name in keys if name not in read and own & set(name.split("_"))]
+    return found[0] if len(found) == 1 else None
 
 
 def _outer_key(context: Context, each: EmptyRemap) -> Iterator[Related]:

@@ -117,7 +117,7 @@ class Fields:
         return field.default
 
     def _inner_keys(self, name: str) -> Collection[str]:
-        """The keys that the mapping under a key can have; empty if it is no mapping with a table."""
+        """The keys that the mapping under a key can have, if it has a table."""
         known: Collection[str] = ()
         if name in self.table:
             known = self.table[name].shape.schema.get("properties", ())
@@ -128,8 +128,8 @@ class Fields:
         for name, value in self.data.items():
             inner = self._inner_keys(name)
             if isinstance(value, Mapping) and key in inner and key not in value:
-                moved = [each for each in self.data
-                         if each not in self.table and each in inner and each not in value]  # fmt: skip
+                unknown = [each for each in self.data if each not in self.table]
+                moved = [each for each in unknown if each in inner and each not in value]
                 them = "it" if len(moved) == 1 else "them"
                 return f"move {listed(moved)} into `{name}`: indent {them} as its other keys"
         return None

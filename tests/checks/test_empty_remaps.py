@@ -37,6 +37,8 @@ def found(inputs: str, offset: str) -> list[tuple[str, str, str, str | None]]:
     ("inputs", "offset", "help"),
     [
         ("spot, above", "abov", "did you mean `above`?"),
+        ("spot, above", "above_offset", "did you mean `above`?"),
+        ("spot, above", "above_table", "did you mean `above`?"),
         ("spot", "above", "add `above` to the `input_keys` of `PICK`"),
     ],
 )
@@ -51,8 +53,9 @@ def test_a_value_in_place_of_a_key() -> None:
     assert help.startswith("a remapping takes the name of a key: set `offset`")
 
 
-def test_a_key_that_is_unset_on_purpose() -> None:
-    assert [code for code, *_ in found("spot", "nothing")] == ["SM305"]
+@pytest.mark.parametrize("name", ["nothing", "no_above", "somewhere"])
+def test_a_key_that_is_unset_on_purpose(name: str) -> None:
+    assert "SM302" not in [code for code, *_ in found("spot, above", name)]
 
 
 def test_an_optional_key_that_is_set() -> None:
