@@ -194,6 +194,8 @@ def push_findings(*pairs: tuple[str, str]) -> list[str]:
         (("  Outcome execute", "  bool execute"), f"11 bool: write `{SIGNATURE}`"),
         (("  Outcome execute", "  virtual std::string execute"), "11 std::string: write"),
         ((", smachac::Stop &stop", ""), f"11 execute: write `{SIGNATURE}`"),
+        (("Stop &stop)", "Stop stop)"), "11 smachac::Stop stop: write `smachac::Stop &stop`"),
+        (("smachac::Stop &stop)", "Stop halt)"), "11 Stop halt: write `smachac::Stop &halt`"),
         (("In in, ", ""), f"11 execute: write `{SIGNATURE}`"),
         (("Arm &arm, double speed, ", "Arm &arm, "),
          "9 Push: write `Push(Arm &arm, double speed, const std::string &name)`"),

@@ -72,6 +72,10 @@ TAKES = "Arm &arm, double speed, const std::string &name"
         ("arm::Arm& arm", "Arm &arm, double speed, double name", "double name",
          "takes `double name`, but the program passes a `std::string`",
          "write `const std::string &name_`"),
+        ("arm::Arm& arm", "Arm &arm, double speed, const std::vector<int> &name",
+         "const std::vector<int> &name",
+         "takes `const std::vector<int> &name`, but the program passes a `std::string`",
+         "write `const std::string &name_`"),
     ],
 )  # fmt: skip
 def test_a_constructor_that_does_not_fit(

@@ -19,11 +19,12 @@ from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import ClassCode, parameter_type
 
-Kind = Literal["number", "text", "object", "other"]
+Kind = Literal["number", "text", "items", "object", "other"]
 """The kinds of parameters: two kinds, except `other`, have no conversion between them."""
 
 _NUMBER = re.compile(r"(?:const )?(?:double|float|bool|int|(?:std::)?u?int\d+_t)\b(?! ?[*<])")
 _TEXT = re.compile(r"(?:const )?std::string(?: const)?(?: ?&{1,2})?(?= ?\w*$)")
+_ITEMS = re.compile(r"(?:const )?std::(?:vector|array|map) ?<.*>(?: const)?(?: ?&{1,2})?(?= ?\w*$)")
 _OBJECT = re.compile(r"(?!const\b|std::|smachac::)[\w:]+ ?[&*] ?(?=\w+$)")
 _SCALARS = {"double": "float", "float": "float", "bool": "bool", "int": "int"}
 """The types of scripts for types of C++; other numbers are whole ones."""
@@ -49,6 +50,8 @@ class _Parameter:
             return "number"
         if _TEXT.match(self.text):
             return "text"
+        if _ITEMS.match(self.text):
+            return "items"
         return "object" if _OBJECT.match(self.text) else "other"
 
     @property
@@ -135,7 +138,7 @@ def _fit(one: _Parameter, other: _Parameter) -> bool:
 def _same_number(
     code: ClassCode, body: Part, name: Word, own: list[_Parameter], wanted: list[_Parameter]
 ) -> Iterator[ClassFault]:
-    """Parameters in another order, or a number in place of a text."""
+    """Parameters in another order, or a number in place of a text or of items."""
     pairs = [(one, each) for one, each in zip(own, wanted, strict=True) if one.name != each.name]
     if pairs and sorted(each.name for each in own) == sorted(each.name for each in wanted):
         near = _written(name.text, _in_words_of(own, wanted))
@@ -148,7 +151,8 @@ def _same_number(
         more = f"it compiles, but {gets}" if sure else f"by their places, {gets}"
         yield ClassFault(kind="parameter order", name=name, near=near, more=more, owner=order)
     for one, each in zip(own, wanted, strict=True) if not pairs else ():
-        if {one.kind, each.kind} == {"number", "text"} and "bool" not in one.text:
+        plain = one.kind != each.kind and {one.kind, each.kind} <= {"number", "text", "items"}
+        if plain and "bool" not in one.text:
             place = body.word(one.text, one.start, one.end)
             yield ClassFault(kind="parameter type", name=place, near=each.text, more=_type(each))
 

@@ -21,6 +21,8 @@ from smachac.targets.cpp.unused_calls import UnusedCall, unused_call
 from smachac.targets.cpp.user_classes import ClassCode, left_to_scripts, stops
 
 _EXECUTE = re.compile(r"\bexecute\s*\(([^()]*)\)")
+_STOP_COPY = re.compile(r"(?:^|,)\s*((?:const\s+)?(?:smachac\s*::\s*)?Stop\s+(\w+))\s*(?=,|$)")
+"""A parameter for requests to stop by value: `Stop` has no copies."""
 _ACCESS = re.compile(r"\b(?:public|private|protected)\s*:(?!:)")
 _RESULTS = re.compile(
     r"(?:\[\[\w+\]\]\s*)?(?:(?:virtual|inline)\s+)*"
@@ -74,9 +76,17 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         at = body.text.rfind(result["type"], 0, head.start())
         word = body.word(result["type"], at, at + len(result["type"]))
         yield ClassFault(kind="wrong result", name=word, near=wanted)
-    elif _count(head[1]) not in (None, len(_arguments(code))):
+        return
+    if _count(head[1]) not in (None, len(_arguments(code))):
         place = body.word("execute", head.start(), head.start() + len("execute"))
         yield ClassFault(kind="wrong parameters", name=place, near=wanted)
+        return
+    copied = _STOP_COPY.search(head[1])
+    if copied is not None:
+        start = head.start(1) + copied.start(1)
+        place = body.word(copied[1], start, start + len(copied[1]))
+        near = f"smachac::Stop &{copied[2]}"
+        yield ClassFault(kind="wrong parameters", name=place, near=near)
 
 
 def _execute(code: ClassCode, body: Part) -> re.Match[str] | None:
