@@ -93,7 +93,7 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
     """
     leaves = {path: node for path, node in context.states if isinstance(node, Leaf)}
     closing = [path for path, leaf in leaves.items() if grip_of(leaf) == "close"]
-    if len(closing) < 2 or not any(map(_comes_to_body, leaves.values())):
+    if len(closing) < 2 or not any(map(comes_to_body, leaves.values())):
         return
     visits = 0
     for path in closing:
@@ -180,7 +180,7 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
             type_ = context.machine.state_types.get(leaf.type)
             if type_ is not None and type_.checks_grasp and outcome in successes(leaf):
                 checked = where
-            if _comes_to_body(leaf) and outcome in successes(leaf):
+            if comes_to_body(leaf) and outcome in successes(leaf):
                 moved[where] = None
                 comes = True
         before = list(graph.pred[event])
@@ -221,7 +221,7 @@ def keeps_gripper(leaf: Leaf) -> bool:
     return bool(leaf.built_in) and not leaf.stand_in and not leaf.open
 
 
-def _comes_to_body(node: Node) -> bool:
+def comes_to_body(node: Node) -> bool:
     """Whether a state moves the tool to the pose of a body."""
     if not isinstance(node, Leaf) or not node.claims:
         return False

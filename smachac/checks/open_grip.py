@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks.grip import MOST_VISITS, grip_of, keeps_gripper
+from smachac.checks.grip import MOST_VISITS, comes_to_body, grip_of, keeps_gripper
 from smachac.checks.messages import calls, other_place
 from smachac.checks.robot import is_simulated
 from smachac.checks.rule import rule
@@ -29,8 +29,9 @@ def open_gripper(context: Context) -> Iterator[Finding]:
     The check never succeeds: the task ends with a failure in every run.
 
     Exactly: in the simulation, on every path to a state whose type has `checks_grasp: true` the
-    gripper of its limb was opened, or the machine begins, and nothing closed it since then.
-    Reported are two slips: a second state opens the gripper again after a motion of the arm, and a
+    gripper of its limb was opened, or the machine begins, and nothing closed it since then. Without
+    such a state: a gripper that is opened is opened again after the tool came to a body, and no
+    state closes a gripper. Reported are two slips: a second state opens the gripper again after a motion of the arm, and a
     state closes the gripper of another limb. A path with a state that may do something else to the
     gripper decides nothing: a stand-in, a type without an interface, one of the user without
     `role: grip`. A check that leads to a failure if it succeeds is not reported: it makes sure that
@@ -86,8 +87,10 @@ def open_gripper(context: Context) -> Iterator[Finding]:
     types = context.machine.state_types
     checking = {name for name, type_ in types.items() if type_.checks_grasp}
     checks = [path for path, leaf in leaves.items() if leaf.type in checking]
-    if not checks or not is_simulated(context):
+    if not is_simulated(context):
         return
+    if not checks:
+        yield from _never_closed(context, leaves)
     visits, reported = 0, set()
     for path in checks:
         if _expects_nothing(leaves[path]) or (path, "") not in context.routes.before:
@@ -118,7 +121,7 @@ class _Before(NamedTuple):
 
     `open`: on all of them it is open. `opened` are the states that opened it, `started`: a path
     begins with the machine. `others` are the states that close the gripper of another limb,
-    `moved`: an arm moves on some path.
+    `moved`: an arm moves on some path; `reached`: it comes to a body.
     """
 
     open: bool
@@ -127,6 +130,7 @@ class _Before(NamedTuple):
     others: tuple[str, ...] = ()
     moved: bool = False
     visits: int = 0
+    reached: bool = False
 
 
 def _before(context: Context, leaves: Mapping[str, Leaf], path: str, check: str) -> _Before:
@@ -138,7 +142,7 @@ def _before(context: Context, leaves: Mapping[str, Leaf], path: str, check: str)
     todo, seen = [start], {start}
     opened: dict[str, None] = {}
     others: dict[str, None] = {}
-    started = moved = False
+    started = moved = reached = False
     for event in todo:
         where, outcome = event
         leaf = leaves.get(where)
@@ -154,6 +158,7 @@ def _before(context: Context, leaves: Mapping[str, Leaf], path: str, check: str)
                 return _Before(open=False, visits=len(seen))
             if grip == "close":
                 others[where] = None
+            reached = reached or comes_to_body(leaf)
             moved = moved or any(claim.startswith("arm") for claim in leaf.claims)
         before = list(graph.pred[event])
         started = started or not before
@@ -161,7 +166,41 @@ def _before(context: Context, leaves: Mapping[str, Leaf], path: str, check: str)
             if each not in seen:
                 seen.add(each)
                 todo.append(each)
-    return _Before(True, tuple(opened), started, tuple(others), moved, len(seen))
+    return _Before(True, tuple(opened), started, tuple(others), moved, len(seen), reached)
+
+
+def _never_closed(context: Context, leaves: Mapping[str, Leaf]) -> Iterator[Finding]:
+    """The state that opens an open gripper after the tool came to a body, if no state of the script
+    closes a gripper: the first one of them, where only one is the first."""
+    opening = [path for path, leaf in leaves.items() if grip_of(leaf) == "open"]
+    known = all(keeps_gripper(leaf) or grip_of(leaf) == "open" for leaf in leaves.values())
+    if len(opening) < 2 or not known or any(grip_of(leaf) == "close" for leaf in leaves.values()):
+        return
+    visits, found = 0, dict[str, _Before]()
+    for path in opening:
+        before = _before(context, leaves, path, path)
+        visits += before.visits
+        if visits > MOST_VISITS:
+            return
+        if before.open and before.opened and before.reached and not before.started:
+            found[path] = before
+    first = [path for path, before in found.items() if found.keys().isdisjoint(before.opened)]
+    held = variable_of(leaves[first[0]], "grip") if len(first) == 1 else None
+    if held is None:
+        return
+    leaf, earlier = leaves[first[0]], leaves[found[first[0]].opened[0]]
+    yield Finding(
+        span=held.value.span,
+        message=f"`{leaf.name}` opens a gripper that is open already, and no state closes it",
+        arguments=(leaf.name,),
+        help=f"write `{held.name}: close`",
+        effect="the arm grasps nothing, although it does its motions",
+        related=(
+            *other_place(earlier.span, f"`{earlier.name}` opens it here"),
+            *calls(leaf, held.value.span),
+        ),
+        node=first[0],
+    )
 
 
 def _changes_beside(context: Context, leaves: Mapping[str, Leaf], path: str, check: str) -> bool:

@@ -79,6 +79,28 @@ def test_correct_sequences(steps: str) -> None:
     assert reported(steps) == []
 
 
+@pytest.mark.parametrize(
+    ("steps", "state"),
+    [
+        ("open to open", "sm/S2"),
+        ("open to open wait to open", "sm/S2"),
+        ("open to close to open", None),
+        ("open wait open", None),  # no tool comes to a body
+        ("open to right to open", None),
+        ("to open", None),
+        ("open to own open", None),
+        ("open to any open", None),
+    ],
+)
+def test_no_state_closes_the_gripper(steps: str, state: str | None) -> None:
+    assert reported(steps) == ([(state, "open")] if state else [])
+
+
+def test_the_gripper_is_opened_again_after_a_failure() -> None:
+    assert reported("open to open", S1_aborted="S0") == [("sm/S2", "open")]
+    assert reported("open to open", S0_aborted="S1") == []
+
+
 def test_a_check_that_the_gripper_is_empty() -> None:
     targets = {"S3_succeeded": "aborted", "S3_aborted": "succeeded"}
     assert reported("open to open check", **targets) == []
