@@ -31,10 +31,10 @@ def open_gripper(context: Context) -> Iterator[Finding]:
     Exactly: in the simulation, on every path to a state whose type has `checks_grasp: true` the
     gripper of its limb was opened, or the machine begins, and nothing closed it since then. Without
     such a state: a gripper that is opened is opened again after the tool came to a body, and no
-    state closes a gripper. Reported are two slips: a second state opens the gripper again after a motion of the arm, and a
-    state closes the gripper of another limb. A path with a state that may do something else to the
-    gripper decides nothing: a stand-in, a type without an interface, one of the user without
-    `role: grip`. A check that leads to a failure if it succeeds is not reported: it makes sure that
+    state closes a gripper. Reported are two slips: a second state opens the gripper again after a
+    motion of the arm, and a state closes the gripper of another limb. A path with a state that may
+    do something else to the gripper decides nothing: a stand-in, a type without an interface, one
+    of the user without `role: grip`. A check that leads to a failure if it succeeds is not reported: it makes sure that
     the gripper is empty.
 
     Wrong:
