@@ -22,6 +22,7 @@ from smachac.analysis.control_flow import (
     stuck_states,
     way,
 )
+from smachac.analysis.error_recovery import undeclared_writes
 from smachac.checks.messages import calls, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
@@ -554,6 +555,8 @@ def _written_in(region: Iterable[Node]) -> frozenset[str] | None:
                 return None
             found.update(key.name for key in node.outputs)
             found.update(remapping(node).get(key.name, "") for key in node.outputs)
+            if isinstance(node, Leaf):  # SM308
+                found.update(undeclared_writes(node))
             if isinstance(node, Leaf) and node.class_facts is not None:
                 found.update(word.text for word in node.class_facts.writes)
     return frozenset(found)

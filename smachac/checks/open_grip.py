@@ -34,8 +34,8 @@ def open_gripper(context: Context) -> Iterator[Finding]:
     state closes a gripper. Reported are two slips: a second state opens the gripper again after a
     motion of the arm, and a state closes the gripper of another limb. A path with a state that may
     do something else to the gripper decides nothing: a stand-in, a type without an interface, one
-    of the user without `role: grip`. A check that leads to a failure if it succeeds is not reported: it makes sure that
-    the gripper is empty.
+    of the user without `role: grip`. A check that leads to a failure if it succeeds is not
+    reported: it makes sure that the gripper is empty.
 
     Wrong:
         name: sm

@@ -199,3 +199,34 @@ def test_a_wrong_part_of_a_value(type_: str, floor: str, kind: str, message: str
     text = STOPS.replace("TYPE", type_).replace("FLOOR", floor).replace("KIND", kind)
     found = [item.message for item in analysed({"main.yml": text}).report if item.code == "SM304"]
     assert found == ([message] if message else [])
+
+
+COUNTED = """\
+name: rounds
+outcomes: [succeeded, aborted]
+userdata: {made: 0}
+states:
+  - WORK: {template: ScriptedState, outcomes: [done, lost],
+      transitions: {done: COUNT, lost: aborted}}
+  - COUNT:
+      template: CallbacksState
+      input_keys: [made]
+      output_keys: [made]
+      callbacks: {made: 'lambda ud: ud.made + 1'}
+      transitions: {succeeded: ALL}
+  - ALL:
+      template: ConditionalOutcomeState
+      input_keys: [made]
+      outcomes: [full]
+      callbacks: {full: 'lambda ud: ud.made >= 12'}
+      default_outcome: open
+      transitions: {full: succeeded, open: WORK}
+"""
+
+
+def test_a_counter_without_its_output_is_one_finding() -> None:
+    assert analysed({"main.yml": COUNTED}).report == []
+    text = COUNTED.replace("      output_keys: [made]\n", "")
+    assert [each.code for each in analysed({"main.yml": text}).report] == ["SM308"]
+    text = COUNTED.replace("transitions: {done: COUNT", "transitions: {done: ALL")
+    assert "SM213" in [each.code for each in analysed({"main.yml": text}).report]

@@ -105,7 +105,7 @@ def test_the_class_of_the_documentation_is_one(compiler: Compiler, tmp_path: Pat
     report, header = made({"main.yml": GRASP, "templates/Grasp.yml": interface})
     assert report == []
     (tmp_path / "my_robot").mkdir()
-    (tmp_path / "my_robot" / "grasp.hpp").write_text(f"{ARM}{class_}}}\n")
+    (tmp_path / "my_robot" / "grasp.hpp").write_text(f"{ARM}}}\n{class_}")
     (tmp_path / "sm.hpp").write_text(header)
     library = memory_library({"templates/Grasp.yml": interface}, disk_library(Path("x"), []))
     type_ = find_state_type("Grasp", library, [])
