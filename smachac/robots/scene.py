@@ -80,7 +80,10 @@ def _colour(data: Any, place: Place) -> RGB:
     for k, each in enumerate(found):
         if not 0.0 <= each <= 1.0:
             message = f"a part of a colour is from 0 to 1, not {each:g}"
-            raise DataError(message, (*place, k), "divide values from 0 to 255 by 255")
+            parts = ", ".join(f"{part / 255:.3g}" for part in found)
+            small = all(part in range(256) for part in found)
+            help = f"write `[{parts}]`" if small else "divide values from 0 to 255 by 255"
+            raise DataError(message, (*place, k), help)
     return found
 
 

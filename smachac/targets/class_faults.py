@@ -218,7 +218,7 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "write `{near}`",
     ),
     "wrong parameters": (
-        "`execute` of `{name}` has other parameters than its interface needs",
+        "`execute` of `{name}` {more}",
         "write `{near}`",
     ),
     "wrong constructor": (

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence, Set
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
@@ -43,7 +43,9 @@ class Declared:
 
     A part that could not be read is None. `others` are further differences.
     `stale` is the place of an outdated interface hash in the class, with the present hash.
-    `faults` are those of a class that does not exist or does not work as a state.
+    `faults` are those of a class that does not exist or does not work as a state. `uses` are the
+    places where its code names outcomes. `fields` are the declarations of keys, by their part and
+    name, where they can be added to those that the class has.
     """
 
     name: str
@@ -54,6 +56,8 @@ class Declared:
     others: tuple[Difference, ...] = ()
     stale: Word | None = None
     faults: tuple[ClassFault, ...] = ()
+    uses: Words = ()
+    fields: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
 
 class Language(Protocol):
@@ -335,7 +339,7 @@ def _differences(type_: StateType, found: Declared) -> Iterator[Difference]:
         if words is None or left_to_the_script or (what == "outcome" and type_.optional):
             continue
         names = [each.name for each in wanted]
-        yield from _unlike(f"`{type_.name}.yml`", what, words, names, found.span)
+        yield from _unlike(f"`{type_.name}.yml`", what, words, names, found)
     yield from found.others
 
 
@@ -349,20 +353,23 @@ _LACKED = {
 
 
 def _unlike(
-    file: str, what: str, words: Words, wanted: Sequence[str], span: Span
+    file: str, what: str, words: Words, wanted: Sequence[str], found: Declared
 ) -> Iterator[Difference]:
     names = [word.text for word in words]
     missing = [name for name in wanted if name not in names]
     more = [word for word in words if word.text not in {*wanted}]
     if len(missing) == len(more) == 1:  # probably two names of the same thing
         text = f"it has the {what} `{more[0].text}`, the interface has `{missing[0]}`"
-        change = f"write `{missing[0]}` in place of `{more[0].text}`"
+        uses = [word.span.line for word in found.uses if word.text == more[0].text]
+        lines = ", ".join(map(str, dict.fromkeys(uses))) if what == "outcome" else ""
+        also = f", also in line {lines}" if lines else ""
+        change = f"write `{missing[0]}` in place of `{more[0].text}`{also}"
         help = f"{change}, or correct {file}"
         yield Difference(Word(text, more[0].span), help, change=change)
         return
     for name in missing:
-        change = f"add `{name}` to the {what}s of the class"
-        place = Word(f"the {what} `{name}` is missing", words[0].span if words else span)
+        change = found.fields.get((what, name), f"add `{name}` to the {what}s of the class")
+        place = Word(f"the {what} `{name}` is missing", words[0].span if words else found.span)
         help = f"{change}, or remove it from {file}"
         yield Difference(place, help, _LACKED[what], change)
     for word in more:

@@ -193,10 +193,10 @@ def push_findings(*pairs: tuple[str, str]) -> list[str]:
     [
         (("  Outcome execute", "  bool execute"), f"11 bool: write `{SIGNATURE}`"),
         (("  Outcome execute", "  virtual std::string execute"), "11 std::string: write"),
-        ((", smachac::Stop &stop", ""), f"11 execute: write `{SIGNATURE}`"),
+        ((", smachac::Stop &stop", ""), f"11 In in, Out out: write `{SIGNATURE}`"),
         (("Stop &stop)", "Stop stop)"), "11 smachac::Stop stop: write `smachac::Stop &stop`"),
         (("smachac::Stop &stop)", "Stop halt)"), "11 Stop halt: write `smachac::Stop &halt`"),
-        (("In in, ", ""), f"11 execute: write `{SIGNATURE}`"),
+        (("In in, ", ""), f"11 Out out, smachac::Stop &stop: write `{SIGNATURE}`"),
         (("Arm &arm, double speed, ", "Arm &arm, "),
          "9 Push: write `Push(Arm &arm, double speed, const std::string &name)`"),
         (("return give_up()", "return Outcome::done"), None),
@@ -275,7 +275,7 @@ def test_parameters_of_a_constructor_in_another_order() -> None:
          "Arm &arm, const std::string &name, double speed)")
     )  # fmt: skip
     wanted = "Push(Arm &arm, double speed, const std::string &name)"
-    assert line == f"SM609 9 Push: write `{wanted}`"
+    assert line == f"SM609 9 const std::string &name, double speed: write `{wanted}`"
 
 
 SETS = "    out.force = arm_.force();\n"
@@ -466,3 +466,37 @@ def test_the_type_of_a_field_with_items(type_: str, field: str, wanted: str | No
     found = [each.message + str(each.help) for each in report if "In::depth" in each.message]
     assert len(found) == (wanted is not None)
     assert all(f"{wanted}depth" in each for each in found)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("execute(In in, Out out, ", "execute(Out out, ", "lacks the parameter `In in`"),
+        ("execute(In in, Out out, ", "execute(", "lacks the parameter `In in` and `Out out`"),
+        ("execute(In in, ", "execute(double in, int more, ", "has other parameters than its"),
+    ],
+)
+def test_the_message_names_the_parameter_that_is_missing(old: str, new: str, words: str) -> None:
+    files = {
+        "main.yml": PUSH_SCRIPT,
+        "templates/Push.yml": PUSH,
+        "arm/push.hpp": PUSH_CLASS.replace(old, new),
+    }
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    (found,) = [each for each in report if each.code == "SM609"]
+    assert found.message.startswith(f"`execute` of `arm::Push` {words}")
+
+
+def test_the_uses_of_a_wrong_outcome_are_in_the_help() -> None:
+    (line,) = push_findings(
+        ("{ done, stuck", "{ done, blocked"), ("Outcome::stuck", "Outcome::blocked")
+    )
+    assert line.startswith("SM603 5 blocked: write `stuck` in place of `blocked`, also in line 24,")
+
+
+def test_the_field_of_a_new_key_is_in_the_help() -> None:
+    interface = PUSH.replace("{force: float}", "{force: float, slip: 'list[float]'}")
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": interface, "arm/push.hpp": PUSH_CLASS}
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    (found,) = [each for each in report if each.code == "SM604"]
+    assert "write `smachac::Key<std::vector<double>> &slip;` in `Out`, then" in str(found.help)

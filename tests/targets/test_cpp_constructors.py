@@ -54,7 +54,8 @@ TAKES = "Arm &arm, double speed, const std::string &name"
 @pytest.mark.parametrize(
     ("with_", "takes", "place", "message", "help"),
     [
-        ("arm::Arm& arm", "double speed, Arm &arm, const std::string &name", "Push",
+        ("arm::Arm& arm", "double speed, Arm &arm, const std::string &name",
+         "double speed, Arm &arm",
          "takes its parameters in another order than the program passes them: first the objects of"
          " `with` in `Push.yml`, then its variables", f"write `Push({TAKES})`"),
         ("arm::Arm& arm", f"Arm &arm, Log &log, {TAKES[10:]}", '"arm::Arm& arm"',

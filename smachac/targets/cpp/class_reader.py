@@ -105,7 +105,27 @@ def declared(type_: StateType, library: Library) -> Declared | None:
             *_without_number(whole, body, place, interface_hash(type_), derived=derived or unsure),
             *others,
         ),
+        uses=tuple(body.word(each[1], *each.span(1)) for each in _USED_OUTCOME.finditer(body.text)),
+        fields={
+            **_new_fields("In", inputs, type_.input_keys),
+            **_new_fields("Out", outputs, type_.output_keys),
+        },
     )
+
+
+def _new_fields(
+    part: str, fields: Sequence[_Field] | None, keys: Iterable[Key]
+) -> dict[tuple[str, str], str]:
+    """The help for each key that a struct lacks: its field."""
+    found = {}
+    what = "input key" if part == "In" else "output key"
+    for key in keys if fields else ():
+        try:
+            text = f"{field_type(part, key.type)} {identifier(key.name)}".replace("& ", "&")
+        except UnportableError:
+            continue
+        found[what, key.name] = f"write `{text};` in `{part}`"
+    return found
 
 
 def _has_unknown_type(type_: StateType) -> bool:

@@ -142,6 +142,7 @@ def _same_number(
     pairs = [(one, each) for one, each in zip(own, wanted, strict=True) if one.name != each.name]
     if pairs and sorted(each.name for each in own) == sorted(each.name for each in wanted):
         near = _written(name.text, _in_words_of(own, wanted))
+        name = body.word(name.text, pairs[0][0].start, pairs[-1][0].end)
         order = _order(code, {one.name for one, _ in pairs})
         if not all(_fit(one, each) for one, each in pairs):
             yield ClassFault(kind="refused order", name=name, near=near, owner=order)

@@ -78,15 +78,22 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         yield ClassFault(kind="wrong result", name=word, near=wanted)
         return
     if _count(head[1]) not in (None, len(_arguments(code))):
-        place = body.word("execute", head.start(), head.start() + len("execute"))
-        yield ClassFault(kind="wrong parameters", name=place, near=wanted)
+        at = head.span(1) if head[1].strip() else (head.start(), head.start() + len("execute"))
+        types = {each: each.split()[0].rpartition(":")[2] for each in _arguments(code)}
+        lacks = [each for each, name in types.items() if not re.search(rf"\b{name}\b", head[1])]
+        more = "has other parameters than its interface needs"
+        if (_count(head[1]) or 0) + len(lacks) == len(_arguments(code)):
+            more = f"lacks the parameter {' and '.join(f'`{each}`' for each in lacks)}"
+        place = body.word("execute", *at)
+        yield ClassFault(kind="wrong parameters", name=place, near=wanted, more=more)
         return
     copied = _STOP_COPY.search(head[1])
     if copied is not None:
         start = head.start(1) + copied.start(1)
         place = body.word(copied[1], start, start + len(copied[1]))
         near = f"smachac::Stop &{copied[2]}"
-        yield ClassFault(kind="wrong parameters", name=place, near=near)
+        more = f"takes `{copied[1]}` as a copy, which `Stop` does not have"
+        yield ClassFault(kind="wrong parameters", name=place, near=near, more=more)
 
 
 def _execute(code: ClassCode, body: Part) -> re.Match[str] | None:
