@@ -263,12 +263,16 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     yield from empty_remap_findings(context)
 
 
-def _ignored(node: Node, meant: str | None) -> str:
-    """What happens without the entry of an unknown key in a remapping."""
+def _ignored(node: Node, meant: str | None, outer: str) -> str:
+    """What happens without the entry of an unknown key in a remapping: the key of the state that
+    was meant, and that of the container."""
     optional = any(key.name == meant and key.type.name == "optional" for key in node.inputs)
     if optional:
         return f"SMACH ignores the entry: the optional key `{meant}` stays unset"
-    return "SMACH ignores the entry: the state uses the keys under its own names"
+    if meant is None:
+        return "SMACH ignores the entry: the state uses the keys under its own names"
+    verb = "reads" if any(key.name == meant for key in node.inputs) else "sets"
+    return f"SMACH ignores the entry: `{node.name}` {verb} the key `{meant}`, not `{outer}`"
 
 
 def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
@@ -291,7 +295,9 @@ def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
             " keys",
             arguments=(remap.key, remap.to),
             help=known if remap in turned else did_you_mean(meant) or known,
-            effect=_ignored(node, meant),
+            effect=_ignored(
+                node, *((remap.to, remap.key) if remap in turned else (meant, remap.to))
+            ),
             related=calls(node, remap.span),
             node=path,
             edits=() if remap in turned else respelt(Word(remap.key, remap.span), certain),

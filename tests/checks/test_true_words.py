@@ -90,7 +90,7 @@ def test_a_name_that_is_a_boolean(name: str, entry: str) -> None:
     ("type_", "effect"),
     [
         ("float?", "SMACH ignores the entry: the optional key `offset` stays unset"),
-        ("float", "SMACH ignores the entry: the state uses the keys under its own names"),
+        ("float", "SMACH ignores the entry: `PUT` reads the key `offset`, not `above`"),
     ],
 )
 def test_an_entry_that_smach_ignores(type_: str, effect: str) -> None:

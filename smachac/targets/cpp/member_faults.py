@@ -78,13 +78,13 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         yield ClassFault(kind="wrong result", name=word, near=wanted)
         return
     if _count(head[1]) not in (None, len(_arguments(code))):
-        at = head.span(1) if head[1].strip() else (head.start(), head.start() + len("execute"))
+        marked = head.span(1) if head[1].strip() else (head.start(), head.start() + len("execute"))
         types = {each: each.split()[0].rpartition(":")[2] for each in _arguments(code)}
         lacks = [each for each, name in types.items() if not re.search(rf"\b{name}\b", head[1])]
         more = "has other parameters than its interface needs"
         if (_count(head[1]) or 0) + len(lacks) == len(_arguments(code)):
             more = f"lacks the parameter {' and '.join(f'`{each}`' for each in lacks)}"
-        place = body.word("execute", *at)
+        place = body.word("execute", *marked)
         yield ClassFault(kind="wrong parameters", name=place, near=wanted, more=more)
         return
     copied = _STOP_COPY.search(head[1])
