@@ -472,7 +472,7 @@ def test_the_type_of_a_field_with_items(type_: str, field: str, wanted: str | No
     ("old", "new", "words"),
     [
         ("execute(In in, Out out, ", "execute(Out out, ", "lacks the parameter `In in`"),
-        ("execute(In in, Out out, ", "execute(", "lacks the parameter `In in` and `Out out`"),
+        ("execute(In in, Out out, ", "execute(", "lacks the parameters `In in` and `Out out`"),
         ("execute(In in, ", "execute(double in, int more, ", "has other parameters than its"),
     ],
 )

@@ -83,7 +83,8 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         lacks = [each for each, name in types.items() if not re.search(rf"\b{name}\b", head[1])]
         more = "has other parameters than its interface needs"
         if (_count(head[1]) or 0) + len(lacks) == len(_arguments(code)):
-            more = f"lacks the parameter {' and '.join(f'`{each}`' for each in lacks)}"
+            named = " and ".join(f"`{each}`" for each in lacks)
+            more = f"lacks the parameter{'s' if len(lacks) > 1 else ''} {named}"
         place = body.word("execute", *marked)
         yield ClassFault(kind="wrong parameters", name=place, near=wanted, more=more)
         return
