@@ -67,6 +67,10 @@ _OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
     "arguments": ("variables",),
     "parameters": ("variables",),
     "params": ("variables",),
+    "ends": ("outcomes",),
+    "exits": ("outcomes",),
+    "results": ("outcomes",),
+    "transitions": ("outcomes",),
 }
 """Fields that other tools have, with those of interfaces that they are meant for."""
 
