@@ -138,6 +138,10 @@ def _bounds(name: str) -> tuple[int, int]:
     return (0, 2**bits - 1) if name.startswith("u") else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
 
 
+SWITCHES = {"on": "true", "yes": "true", "off": "false", "no": "false"}
+"""Words for the values of a `bool`, which are texts in YAML 1.2."""
+
+
 def value_help(value: Data, wanted: FieldType) -> str:
     """The help for a value that does not fit a field."""
     if is_time(wanted.name):
@@ -145,6 +149,9 @@ def value_help(value: Data, wanted: FieldType) -> str:
         if found is not None and found[2] in UNITS:
             seconds = f"{float(found[1]) * UNITS[found[2]]:g}"
             return f"write the seconds as a number: `{seconds}`"
+    meant = SWITCHES.get(value.lower()) if isinstance(value, str) else None
+    if wanted.name == "bool" and not wanted.array and meant is not None:
+        return f"write `{meant}`: in YAML 1.2, `{value}` is a text"
     item = FieldType(name=wanted.name)
     if wanted.array and wanted.size in (None, 1) and value is not None and _fits(value, item):
         text = written(value)

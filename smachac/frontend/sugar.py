@@ -77,6 +77,7 @@ def read_sugar(
     fields = {name: entries[name] for name in NAMES if name in entries and not is_own(name, type_)}
     if not fields:
         return Sugar()
+    _move_limit(fields, report)
     before = len(report)
     timeout = _timeout(fields["timeout"], report) if "timeout" in fields else None
     wrong_timeout, before = len(report) > before, len(report)
@@ -100,6 +101,23 @@ def read_sugar(
         for_each = replace(for_each, preempted=False)
     sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
     return _with_known_outcomes(sugar, own, led, report)
+
+
+def _move_limit(fields: dict[str, Entry], report: Report) -> None:
+    """Move a `timeout` that is written as a part of `retry` or `for_each` beside it; it is
+    reported there."""
+    for name in ("retry", "for_each"):
+        entry = fields.get(name)
+        inner = entry.value.entries if entry is not None and isinstance(entry.value, Map) else ()
+        inside = [each for each in inner if each.key.value == "timeout"]
+        if entry is None or len(inside) != 1 or "timeout" in fields:
+            continue
+        limit = inside[0]
+        owner = Owner(name, f"`{name}`", "part")
+        help = f"write `timeout: {limit.value.span.text}` beside `{name}`"
+        report.append(unknown_variable(Word("timeout", limit.key.span), owner, (), certain=help))
+        rest = tuple(each for each in inner if each is not limit)
+        fields |= {name: replace(entry, value=Map(rest, entry.value.span)), "timeout": limit}
 
 
 def _with_known_outcomes(

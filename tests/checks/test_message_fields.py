@@ -400,3 +400,10 @@ def test_another_type_of_the_package_with_the_fields() -> None:
     assert other_type(given, "cell_msgs/Grasp", files) == [f"{field}{both}"] * 2
     helps = other_type("{force: 1.0}", "cell_msgs/Grasp", files)
     assert helps == ["write `width`, its only field, in place of `force`"]
+
+
+@pytest.mark.parametrize(("word", "meant"), [("off", "false"), ("yes", "true")])
+def test_a_word_of_yaml_1_1_for_a_bool(word: str, meant: str) -> None:
+    script = service(f"request: {{data: {word}}}", type="std_srvs/SetBool")
+    ((text, _, help),) = faults(script, {})
+    assert (text, help) == (word, f"write `{meant}`: in YAML 1.2, `{word}` is a text")

@@ -112,10 +112,11 @@ def test_a_name_that_a_template_lacks(folder: Path) -> None:
         ("my_classes", []),  # a block of another tool
     ],
 )
-def test_a_misspelt_block(folder: Path, block: str, found: list[str]) -> None:
+@pytest.mark.parametrize("first", ["", '{% extends "State.tpl.py" %}\n'])
+def test_a_misspelt_block(folder: Path, first: str, block: str, found: list[str]) -> None:
     text = CLASS.replace("CODE", "pass") + f"{{% block {block} %}}\nX = 1\n{{% endblock %}}\n"
     own = text.replace("{% block class_defs %}", "{% block defs %}", 1)
-    (folder / "templates" / "T.tpl.py").write_text(own)
+    (folder / "templates" / "T.tpl.py").write_text(first + own)
     report = smachac.check(str(folder / "main.yml"))
     assert [item.finding.help for item in report if item.code == "SM605"] == found
     assert [item.span.text for item in report if item.code == "SM605"] == [block] * len(found)

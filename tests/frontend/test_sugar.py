@@ -16,6 +16,7 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event, InterpreterResult
 from smachac.interpreter.scenario import read_scenario, scenario_behaviour
+from tests.trust.project_text import analysed
 
 SCRIPT = """
 name: sm
@@ -305,3 +306,28 @@ def test_a_loop_over_a_number(loop: str, tmp_path: Path) -> None:
     assert [place.span.text for place in item.finding.related] == ["3"]
     path.write_text(text.replace("VALUE", "[3]"), encoding="utf-8")
     assert [item for item in smachac.check(path) if item.code == "SM304"] == []
+
+
+@pytest.mark.parametrize(
+    "sugar",
+    [
+        "retry: {on: [aborted, timeout], max: 3, timeout: 20s}",
+        "for_each: {item: n, in: [1, 2], on: [done], timeout: 20s}",
+    ],
+)
+def test_a_time_limit_inside_belongs_beside(sugar: str) -> None:
+    text = f"""
+name: sm
+template: Base
+outcomes: [done, aborted, exhausted, preempted, timeout]
+states:
+  - A:
+      template: ScriptedState
+      outcomes: [done, aborted]
+      {sugar}
+"""
+    name = sugar.partition(":")[0]
+    report = analysed({"main.yml": text}).report
+    told = [(each.code, each.span.text, each.help) for each in report if each.code == "SM003"]
+    assert told == [("SM003", "timeout", f"write `timeout: 20s` beside `{name}`")]
+    assert not any(each.code == "SM004" for each in report)

@@ -127,13 +127,16 @@ class ModuleParts:
 
     def _unused_blocks(self, page: Page, node: Node) -> None:
         """Report the misspelt blocks of a template of the user, whose text no program contains."""
-        if self.context.library.own_template(page.file) is None:
+        own = self.context.library.own_template(page.file)
+        if own is None:
             return
+        spans = {name: self.blocks.block_span(page.file, name) for name in page.own}
         known = (*APPENDED, *PREPENDED, *KEYED, "body")
-        guess = guesser(name for name in known if name not in page.own)
+        here = {name for name, span in spans.items() if span is not None and span.source == own}
+        guess = guesser(name for name in known if name not in here)
         for name in sorted(page.own.difference(known)):
             near = guess.sure(name)
-            span = self.blocks.block_span(page.file, name)
+            span = spans[name]
             if near is not None and span is not None:
                 place = Span(span.source, span.end - len(name), span.end)
                 found = template_error(
