@@ -3,7 +3,6 @@ keys. The others are unset reads (unset_reads.py)."""
 
 from __future__ import annotations
 
-from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import cache
 
@@ -37,9 +36,10 @@ def empty_remaps(flow: DataFlow, missing: tuple[Missing, ...]) -> tuple[EmptyRem
         for child in scope.children.values():
             if not child.remaps or child.name not in scope.vertices:
                 continue
-            inputs: AbstractSet[str] = {key.name for key in child.inputs}
             for remap in child.remaps:
-                if remap.key not in inputs or (path, remap.to) in known:
+                if remap.to in scope.held or remap.to in scope.inputs or (path, remap.to) in known:
+                    continue
+                if all(key.name != remap.key for key in child.inputs):
                     continue
                 if provided(path).has(remap.to):
                     continue

@@ -18,6 +18,9 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.types import ANY
 
+MOST_RELATED = 5
+"""Limit on the other readers in a finding."""
+
 
 def missing_together(
     found: Iterable[Missing], used: Callable[[str], Mapping[str, list[Use]]]
@@ -68,7 +71,7 @@ def together_finding(context: Context, lacking: tuple[Missing, ...]) -> Finding:
     where = container_name(scope, first.span)
     pairs = [f"{each.key}: {initial_value(context.types, reader, each)}"
              for each, reader in zip(lacking, readers, strict=True)]  # fmt: skip
-    others = [each for each in readers[1:] if each.span != first.span]
+    others = [each for each in readers[1:] if each.span != first.span][:MOST_RELATED]
     return Finding(
         span=first.span,
         message=f"nothing in {where} sets {listed(keys)} before its states read them",

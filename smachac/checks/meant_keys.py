@@ -104,11 +104,13 @@ def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
         unread = [*words, *(word for word in inputs if word.text not in read)]
         guess = guesser([each.key])
         alike = turned or [word for word in unread if guess(word.text) is not None]
+        if len(alike) != 1:
+            continue
         declared = each.cause == "outside" or bool(turned) or _uses_in_text(scope, each.key) > 1
         preset = presets.get(scope.path)
         if preset is not None and preset.missing is each and not turned:
             continue  # SM301 names both
-        if len(alike) == 1 and (declared or each.cause == "unset"):
+        if declared or each.cause == "unset":
             reader = reader_at(scope, each.vertices[0], each.key)
             found[scope.path, each.key] = Misnamed(
                 alike[0], each.key, reader, bool(turned), declared

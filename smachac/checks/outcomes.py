@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
@@ -235,16 +235,18 @@ def unhandled_outcome(context: Context) -> Iterator[Finding]:
 
 def _unhandled_outcomes(path: str, container: Container) -> Iterator[Finding]:
     if isinstance(container, StateMachine | nodes.Sequence):
-        free = unentered(container) if any(map(unhandled, container.children)) else []
-        for child in container.children:
-            left = unhandled(child)
+        all_left = [(child, unhandled(child)) for child in container.children]
+        lacking = any(left for _, left in all_left)
+        free = unentered(container) if lacking else []
+        order = {child.name: at for at, child in enumerate(container.children)} if lacking else {}
+        for child, left in all_left:
             meant = meant_ending(child) if isinstance(child, nodes.Iterator) and left else None
             if meant is not None and meant.result in left:
                 left.remove(meant.result)
                 yield _misnamed_ending(path, meant)
             if not left:
                 continue
-            targets = _targets(container, child, left, free)
+            targets = _targets(container, child, left, free, order)
             if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
                 for outcome in left:
                     yield _unhandled(path, container, child, outcome, targets[outcome.name])
@@ -261,23 +263,26 @@ def unentered(container: Linear) -> list[str]:
 
 
 def _targets(
-    container: Linear, child: Node, left: Iterable[Outcome], free: list[str]
+    container: Linear,
+    child: Node,
+    left: Iterable[Outcome],
+    free: list[str],
+    order: Mapping[str, int],
 ) -> dict[str, str]:
     """For each outcome without a transition the target that it probably needs. `free` are the
-    states of the container to which nothing leads yet; those that are used are removed."""
+    states of the container to which nothing leads yet; those that are used are removed. `order` has
+    the numbers of all states."""
     found: dict[str, str] = {}
     rest = [each.name for each in left]
     good = [name for name in rest if name in successes(child) or not fails(child, name)]
     good = [name for name in good if name != PREEMPTED]
     bad = [name for name in rest if name not in good and name != PREEMPTED]
-    names = [each.name for each in container.children]
-    after = [name for name in free if names.index(name) > names.index(child.name)]
     for outcome in (*good, *bad):
-        choice = next(iter(after or free), None)
+        after = (name for name in free if order[name] > order[child.name])
+        choice = next(after, free[0] if free else None)
         if choice is not None:
             found[outcome] = choice
             free.remove(choice)
-            after = [name for name in after if name != choice]
     for outcome in rest:
         if outcome not in found:
             found[outcome] = _target(container, child, outcome)

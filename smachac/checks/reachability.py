@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
@@ -82,20 +83,26 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
     for (path, container), whole in zip(context.linear, context.corrected, strict=True):
         seen = context.of_container(reachable, path, whole)
         hidden = [child for child in container.children if child.name not in seen]
-        if hidden and isinstance(container, Sequence) and _never_continues(container):
+        if not hidden:
+            continue
+        if isinstance(container, Sequence) and _never_continues(container):
             yield _wrong_connector(path, container)
             continue
-        if hidden and missed is None:
+        if missed is None:
             missed = missed_states(context)
             missed |= {each.path for each in context.misplaced}
-        before = _before(whole, frozenset(child.name for child in hidden)) if hidden else {}
+        before = _before(whole, frozenset(child.name for child in hidden))
         first = _first_hidden(container, hidden, before, seen)
+        previous = {each.name: one for one, each in pairwise(container.children)}
+        names = children_names(container)
+        led_twice = _led_twice(container, seen)
         for child in hidden:
             if child.name not in first or f"{path}/{child.name}" in (missed or ()):
                 continue  # SM701 reports the transition that must lead to it, SM101 its place
-            twice = _led_twice(container, seen) if not before.get(child.name) else None
-            past = _led_past(container, child, seen) if not before.get(child.name) else None
-            way_out = _way_out(container, child, seen) if past is None else None
+            alone, one = not before.get(child.name), previous.get(child.name)
+            twice = led_twice if alone else None
+            past = _led_past(container, one, child, names, seen) if alone else None
+            way_out = _way_out(container, one, seen) if past is None else None
             if past is not None:
                 yield _passed(path, container, child, past)
                 continue
@@ -150,15 +157,18 @@ class _LedPast(NamedTuple):
     step: Transition
 
 
-def _led_past(container: Linear, child: Node, seen: Collection[str]) -> _LedPast | None:
+def _led_past(
+    container: Linear,
+    before: Node | None,
+    child: Node,
+    names: Collection[str],
+    seen: Collection[str],
+) -> _LedPast | None:
     """The transition of the state before a child in the script that leads to a state to which the
     child leads as well, if it is the only one and not one of failure."""
-    names = children_names(container)
-    number = next(at for at, each in enumerate(container.children) if each is child)
-    before = container.children[number - 1] if number else None
     if before is None or before.name not in seen or isinstance(container, Sequence):
         return None
-    after = {step.target for step in child.transitions} & names
+    after = {step.target for step in child.transitions if step.target in names}
     steps = [
         step
         for step in before.transitions
@@ -168,12 +178,10 @@ def _led_past(container: Linear, child: Node, seen: Collection[str]) -> _LedPast
 
 
 def _way_out(
-    container: Linear, child: Node, seen: Collection[str]
+    container: Linear, before: Node | None, seen: Collection[str]
 ) -> tuple[Node, Transition] | None:
-    """The state before another one in the script, with an outcome that is not one of failure and
-    has no transition, so that the container ends with it."""
-    number = next(at for at, each in enumerate(container.children) if each is child)
-    before = container.children[number - 1] if number else None
+    """A state that can be entered, with an outcome that is not one of failure and has no
+    transition, so that the container ends with it."""
     if before is None or before.name not in seen or isinstance(container, Sequence):
         return None
     steps = [step for step in before.transitions if step.origin == "implicit"

@@ -106,7 +106,8 @@ def read_before_write(context: Context) -> Iterator[Finding]:
         if lacking[0].scope.path in presets:
             continue
         yield together_finding(context, lacking)
-        causes = [each for each in causes if all(each is not one for one in lacking)]
+        together = {id(each) for each in lacking}
+        causes = [each for each in causes if id(each) not in together]
     for missing in causes:
         swapped = swapped_loop(missing)
         if swapped is not None:

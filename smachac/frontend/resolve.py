@@ -187,6 +187,7 @@ class _Resolver:
         self.parsed: dict[tuple[str, str], tuple[Tree | None, bool]] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
         self.calls: dict[Span, KeptCall] = {}
+        self.others: dict[str, StateType | None] = {}  # types that the script need not use
         self.unknown: set[str] = set()  # the templates that were not found
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
@@ -610,7 +611,6 @@ class _Resolver:
 
     def meant_type(self, entries: Entries, type_: StateType) -> StateType | None:
         """The built-in type that a state means, in place of that of its template (SM003)."""
-
         if not has_unknown_variable(entries, type_):
             return None
         _, names = self.known_templates()
@@ -619,7 +619,9 @@ class _Resolver:
 
     def other_type(self, name: str) -> StateType | None:
         """A type that the script need not use; its faults are not reported."""
-        return self.found_types.get(name) or find_state_type(name, self.library, [])
+        if name not in self.others:
+            self.others[name] = find_state_type(name, self.library, [])
+        return self.found_types.get(name) or self.others[name]
 
     def meant_template(self, entries: Entries) -> Entry | None:
         """The field with another name that is meant for `template`, if it names a type that does
