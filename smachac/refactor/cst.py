@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any, TypeAlias
 
+from ruamel.yaml.error import YAMLError
+
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import events
 
@@ -95,10 +97,14 @@ class Document:
 
 
 def parse_cst(source: Source) -> Document:
-    """The syntax tree of a text without YAML errors. Raises UnsupportedYamlError."""
+    """The syntax tree of a text. Raises UnsupportedYamlError, also for a text that is no YAML, which
+    the checks read as repaired (frontend/yaml_mends.py)."""
     if source.text.startswith("%"):
         raise UnsupportedYamlError("it begins with a YAML directive")
-    return _CstBuilder(source).read()
+    try:
+        return _CstBuilder(source).read()
+    except YAMLError as error:
+        raise UnsupportedYamlError("it is no valid YAML") from error
 
 
 class _CstBuilder:
