@@ -97,8 +97,8 @@ class Document:
 
 
 def parse_cst(source: Source) -> Document:
-    """The syntax tree of a text. Raises UnsupportedYamlError, also for a text that is no YAML, which
-    the checks read as repaired (frontend/yaml_mends.py)."""
+    """The syntax tree of a text. Raises UnsupportedYamlError, also for a text that is no YAML, but
+    that the checks read as repaired (frontend/yaml_mends.py)."""
     if source.text.startswith("%"):
         raise UnsupportedYamlError("it begins with a YAML directive")
     try:
