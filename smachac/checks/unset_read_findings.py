@@ -79,6 +79,7 @@ def unset_read(
     guesses: Guesses,
     types: Types,
 ) -> Finding:
+    """SM301 for a key where a state reads it. `users` are the uses of the key in its container."""
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
     value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
@@ -97,43 +98,8 @@ def unset_read(
             help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
-        guess = guesses.of(scope)(missing.key)
-        node = reader.node
-        if isinstance(node, nodes.Iterator) and guess == node.item_key:
-            # The item of an iterator is no list of items, although `item` resembles `items`.
-            guess = guesser(sorted(keys_of(scope) - {node.item_key}))(missing.key)
-        names = remapping(node)
-        own = {names.get(key.name, key.name) for key in node.inputs}
-        if node is not scope.container and guess in own:
-            guess = guesses.of(scope).sure(missing.key)  # the state reads that key too
-        wanted, inside = types.inputs.get((reader.path, reader.key), ANY), witness.inner
-        if inside is not None and is_open(wanted):
-            wanted = types.inputs.get((inside.path, inside.key), ANY)
-        if guess is not None and not _may_be(types, scope, guess, wanted):
-            guess = None
-        of_item = _item_help(scope.container, node, missing.key)
-        help = did_you_mean(guess) or of_item or help
-        unread = unread_output(scope, missing.key) if guess is None else None
-        fitting = []
-        if guess is None and (of_item is None or isinstance(node, nodes.Leaf)):
-            fitting = fitting_keys(types, scope, reader, wanted)
-        if len(fitting) == 1:
-            pair = f"{reader.key}: {fitting[0]}"
-            help = f"write `remapping: {{{pair}}}` in `{node.name}`"
-            if node.remaps:
-                help = f"add `{pair}` to the `remapping` of `{node.name}`"
-            help += f", if it must read `{fitting[0]}`, which has this type"
-        elif fitting and reader.key == missing.key:
-            ways = " or ".join(f"`remapping: {{{reader.key}: {key}}}`" for key in fitting)
-            help = f"write {ways} in `{node.name}`: these keys have its type"
-        if unread is not None:
-            help = unread.help
-            related = other_place(unread.place, f"nothing reads `{unread.key}`")
-        if isinstance(node, nodes.Iterator) and node.sugar == "for_each":
-            help = _item_name_help(node, missing.key) or help
-        if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
-            help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
-        related = (*related, *_item_place(scope.container, node))
+        cure, related = _meant_key(missing, witness, guesses, types)
+        help = cure or help
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",
@@ -149,6 +115,52 @@ def unset_read(
         severity=None if witness.always else Severity.WARNING,
         node=reader.path,
     )
+
+
+def _meant_key(
+    missing: Missing, witness: Witness, guesses: Guesses, types: Types
+) -> tuple[str | None, tuple[Related, ...]]:
+    """The help for a key that nothing sets, if another key is probably meant, with the places that
+    belong to it."""
+    scope, reader = missing.scope, witness.reader
+    related: tuple[Related, ...] = ()
+    guess = guesses.of(scope)(missing.key)
+    node = reader.node
+    if isinstance(node, nodes.Iterator) and guess == node.item_key:
+        # The item of an iterator is no list of items, although `item` resembles `items`.
+        guess = guesser(sorted(keys_of(scope) - {node.item_key}))(missing.key)
+    names = remapping(node)
+    own = {names.get(key.name, key.name) for key in node.inputs}
+    if node is not scope.container and guess in own:
+        guess = guesses.of(scope).sure(missing.key)  # the state reads that key too
+    wanted, inside = types.inputs.get((reader.path, reader.key), ANY), witness.inner
+    if inside is not None and is_open(wanted):
+        wanted = types.inputs.get((inside.path, inside.key), ANY)
+    if guess is not None and not _may_be(types, scope, guess, wanted):
+        guess = None
+    of_item = _item_help(scope.container, node, missing.key)
+    help = did_you_mean(guess) or of_item
+    unread = unread_output(scope, missing.key) if guess is None else None
+    fitting = []
+    if guess is None and (of_item is None or isinstance(node, nodes.Leaf)):
+        fitting = fitting_keys(types, scope, reader, wanted)
+    if len(fitting) == 1:
+        pair = f"{reader.key}: {fitting[0]}"
+        help = f"write `remapping: {{{pair}}}` in `{node.name}`"
+        if node.remaps:
+            help = f"add `{pair}` to the `remapping` of `{node.name}`"
+        help += f", if it must read `{fitting[0]}`, which has this type"
+    elif fitting and reader.key == missing.key:
+        ways = " or ".join(f"`remapping: {{{reader.key}: {key}}}`" for key in fitting)
+        help = f"write {ways} in `{node.name}`: these keys have its type"
+    if unread is not None:
+        help = unread.help
+        related = other_place(unread.place, f"nothing reads `{unread.key}`")
+    if isinstance(node, nodes.Iterator) and node.sugar == "for_each":
+        help = _item_name_help(node, missing.key) or help
+    if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
+        help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
+    return help, (*related, *_item_place(scope.container, node))
 
 
 def _may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:

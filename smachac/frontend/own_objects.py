@@ -4,7 +4,8 @@ methods that are not called."""
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -29,66 +30,84 @@ WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
 
 def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     """The attributes of objects of plain classes that these do not define, each once."""
-    kept = {name: entries[0] for name, entries in own.assigned().items() if len(entries) == 1}
+    objects = _Objects(own, library)
     done = set[tuple[str, str]]()
-    classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
     for module, node in own.classes:
-        others = of_other_objects(node) | caught(node)
         every = [*ast.walk(module.text.tree)]
         set_here = {each.attr for each in every if isinstance(each, ast.Attribute)
                     and not isinstance(each.ctx, ast.Load)}  # fmt: skip
         quoted = {each.value for each in every if isinstance(each, ast.Constant)}
-        for each in ast.walk(node):
-            match each:
-                case ast.Attribute(
-                    value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=member,
-                    ctx=ast.Load(),
-                ) if name in kept and each not in others:  # fmt: skip
-                    pass
-                case _:
-                    continue
-            if name not in classes:
-                classes[name] = _plain_class(kept[name], library)
-            found = classes[name]
-            span = module.text.span(each)
-            if found is None or (name, member) in done or module.text.is_filled(span):
+        for use in objects.uses(module, node, ast.walk(node)):
+            if (use.name, use.member) in done:
                 continue
-            names, methods = members_of(found[1])
+            names, methods = members_of(use.definition)
+            member = use.member
             if member in names | set_here or member in quoted or hasattr(object, member):
                 continue
-            done.add((name, member))
-            place = Word(member, Span(span.source, span.end - len(member), span.end))
-            where = f" in `{file_of(found[0])}`" if found[0].name else ""
+            done.add((use.name, member))
+            place = Word(member, Span(use.span.source, use.span.end - len(member), use.span.end))
+            where = f" in `{file_of(use.module)}`" if use.module.name else ""
             near = guesser(sorted(names))(member)
             if near is None:
                 near = next((one for one in methods if _is_part(one, member)), None)
             yield ClassFault(kind="no member", name=place, near=near, file=where,
-                             more=_help(methods), owner=found[1].name)  # fmt: skip
+                             more=_help(methods), owner=use.definition.name)  # fmt: skip
 
 
 def uncalled_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     """The methods of objects of plain classes without `()`, in a condition or alone in a line."""
-    kept = {name: entries[0] for name, entries in own.assigned().items() if len(entries) == 1}
-    classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
+    objects = _Objects(own, library)
     for module, node in own.classes:
-        others = of_other_objects(node) | caught(node)
         set_here = {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)
                     and not isinstance(each.ctx, ast.Load)}  # fmt: skip
-        for kind, each in _conditions_and_lines(node):
-            match each:
+        kinds = {part: kind for kind, part in _conditions_and_lines(node)}
+        for use in objects.uses(module, node, kinds):
+            if use.member not in set_here and _is_method(use.definition, use.member):
+                word = Word(use.span.text, use.span)
+                yield ClassFault(kind=kinds[use.node], name=word, near=f"{use.span.text}()")
+
+
+class _Use(NamedTuple):
+    """A read of a member of an object in an attribute of `self`: the name of the attribute, the
+    member, the place of both, and the class of the object with its module."""
+
+    node: ast.expr
+    name: str
+    member: str
+    span: Span
+    module: Module
+    definition: ast.ClassDef
+
+
+class _Objects:
+    """The objects of plain classes of the project that a class keeps in its attributes."""
+
+    def __init__(self, own: OwnClass, library: Library) -> None:
+        self.library = library
+        self.kept = {
+            name: entries[0] for name, entries in own.assigned().items() if len(entries) == 1
+        }
+        self.classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
+
+    def uses(
+        self, module: Module, node: ast.ClassDef, expressions: Iterable[ast.AST]
+    ) -> Iterator[_Use]:
+        """The reads of members among some expressions of a class."""
+        others = of_other_objects(node) | caught(node)
+        for expression in expressions:
+            match expression:
                 case ast.Attribute(
-                    value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=member
-                ) if name in kept and member not in set_here and each not in others:  # fmt: skip
+                    value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=member,
+                    ctx=ast.Load(),
+                ) as each if name in self.kept and each not in others:  # fmt: skip
                     pass
                 case _:
                     continue
-            if name not in classes:
-                classes[name] = _plain_class(kept[name], library)
-            found = classes[name]
-            span = module.text.span(each)
-            if found is None or module.text.is_filled(span) or not _is_method(found[1], member):
-                continue
-            yield ClassFault(kind=kind, name=Word(span.text, span), near=f"{span.text}()")
+            if name not in self.classes:
+                self.classes[name] = _plain_class(self.kept[name], self.library)
+            found, span = self.classes[name], module.text.span(each)
+            if found is not None and not module.text.is_filled(span):
+                yield _Use(each, name, member, span, *found)
 
 
 def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.expr]]:
