@@ -60,7 +60,8 @@ def uncalled_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     for module, node in own.classes:
         set_here = {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)
                     and not isinstance(each.ctx, ast.Load)}  # fmt: skip
-        kinds = {part: kind for kind, part in _conditions_and_lines(node)}
+        kinds: dict[ast.expr, FaultKind] = {}
+        kinds.update((part, kind) for kind, part in _conditions_and_lines(node))
         for use in objects.uses(module, node, kinds):
             if use.member not in set_here and _is_method(use.definition, use.member):
                 word = Word(use.span.text, use.span)
