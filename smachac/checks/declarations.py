@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Literal
 
 from smachac.analysis.accesses import callback_names, userdata_fields
@@ -142,34 +143,46 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 yield copied_finding(scope.path, copied, key)
                 continue
             back = _turned_preset(scope, key, read) if node is container else None
+            finding = _unread_key(scope, key, node, span, back)
             is_result = container is flow.machine.root and node is not container
-            where = container_name(scope, span)
-            yield Finding(
-                span=span,
-                message=f"`{key}` is set, but nothing in {where} reads it",
-                arguments=(key,),
-                help=_reader_help(scope, key, node)
-                or (f"write `{back}: {key}`: the name of the key comes first" if back else None)
-                or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
-                f" it, or to the `output_keys` of {where}",
-                related=calls(node, span),
-                severity=Severity.INFO if is_result else None,
-                node=scope.path if node is container else f"{scope.path}/{node.name}",
-            )
+            yield replace(finding, severity=Severity.INFO) if is_result else finding
         for child, remap, meant in context.of_container(_misnamed_outputs, scope.path, scope):
             if remap.to in read or (scope.path, remap.to) in reported:
                 continue
-            yield Finding(
-                span=remap.to_span,
-                message=f"`{remap.to}` is set, but nothing in {container_name(scope, remap.span)}"
-                " reads it",
-                arguments=(remap.to,),
-                help=f"did you mean `{meant}`? Write `{remap.key}: {meant}`",
-                effect=f"the result `{remap.key}` of `{child.name}` is lost: what reads `{meant}`"
-                " works without it",
-                related=calls(child, remap.span),
-                node=f"{scope.path}/{child.name}",
-            )
+            yield _lost_result(scope, child, remap, meant)
+
+
+def _unread_key(
+    scope: UserdataScope, key: str, node: Node, span: Span, back: str | None
+) -> Finding:
+    """SM305 for a key of a container that a node sets. `back`: the key that is meant, if name and
+    value have changed places."""
+    where = container_name(scope, span)
+    return Finding(
+        span=span,
+        message=f"`{key}` is set, but nothing in {where} reads it",
+        arguments=(key,),
+        help=_reader_help(scope, key, node)
+        or (f"write `{back}: {key}`: the name of the key comes first" if back else None)
+        or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
+        f" it, or to the `output_keys` of {where}",
+        related=calls(node, span),
+        node=scope.path if node is scope.container else f"{scope.path}/{node.name}",
+    )
+
+
+def _lost_result(scope: UserdataScope, child: Node, remap: Remap, meant: str) -> Finding:
+    """SM305 for an output of a state that is remapped to a misspelt key."""
+    return Finding(
+        span=remap.to_span,
+        message=f"`{remap.to}` is set, but nothing in {container_name(scope, remap.span)} reads it",
+        arguments=(remap.to,),
+        help=f"did you mean `{meant}`? Write `{remap.key}: {meant}`",
+        effect=f"the result `{remap.key}` of `{child.name}` is lost: what reads `{meant}`"
+        " works without it",
+        related=calls(child, remap.span),
+        node=f"{scope.path}/{child.name}",
+    )
 
 
 def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:

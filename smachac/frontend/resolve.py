@@ -322,15 +322,9 @@ class _Resolver:
         self.uses.params(params, begin, self.report, around.via)
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
-        listed = entries["outcomes"].value.span if "outcomes" in entries else None
-        return State(
-            owner=owner,
-            type=type_,
-            via=around.via,
-            states=children,
-            outcomes_place=listed,
-            **fields,
-        )
+        if "outcomes" in entries:
+            fields["outcomes_place"] = entries["outcomes"].value.span
+        return State(owner=owner, type=type_, via=around.via, states=children, **fields)
 
     def fill(self, key: str, entry: Entry, scope: Scope, *, flat: bool) -> Entry:
         """The field with values in place of its look-ups and aliases of types. `flat`: see

@@ -87,7 +87,8 @@ def rename_an_outcome_in_a_transition(subject: Subject) -> Mutant | None:
 
 @mutation
 def drop_a_container_outcome(subject: Subject) -> Mutant | None:
-    """The transitions to it lead nowhere; a rule, or the default, of a concurrence as well."""
+    """The transitions to it lead nowhere; a rule, or the default, of a concurrence as well. If only
+    one name is missing, the finding is at the list that lacks it."""
     found = [
         (site, outcome, steps)
         for site in subject.sites()
@@ -100,7 +101,8 @@ def drop_a_container_outcome(subject: Subject) -> Mutant | None:
     site, outcome, uses = subject.draw.choice(found)
     site.body["outcomes"] = [name for name in site.body["outcomes"] if name != outcome]
     codes = ("SM103",) if site.target == "Concurrence" else ("SM101",)
-    return Mutant(codes=codes, places=tuple((site.file, steps) for steps in uses))
+    places = [(site.file, steps) for steps in (*uses, (*site.path, "outcomes"))]
+    return Mutant(codes=codes, places=tuple(places))
 
 
 def uses_of_outcome(site: Site, outcome: str) -> list[Steps]:
