@@ -181,11 +181,10 @@ def name_of(tree: Tree) -> Word | None:
 
 def as_name(tree: Tree, report: Report) -> Word | None:
     """A name: of a state, an outcome, a key, a script, a template."""
-    if not isinstance(tree, Scalar):
-        wrong(tree, "name", report)
-        return None
     text = name_text(tree, report)
-    return None if text is None else Word(text, Span(tree.source, tree.start, tree.end))
+    if text is None or not isinstance(tree, Scalar):
+        return None
+    return Word(text, Span(tree.source, tree.start, tree.end))
 
 
 def name_text(tree: Tree, report: Report) -> str | None:

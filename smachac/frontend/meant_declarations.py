@@ -129,8 +129,9 @@ def _has_unknown(base: State) -> bool:
     stack = [base]
     while stack:
         state = stack.pop()
-        stack.extend(state.states)
-        if state.owner == "state" and _is_plain(state, known_of):
+        if state.states:
+            stack.extend(state.states)
+        elif state.owner == "state" and _is_plain(state, known_of):
             continue  # most states; the rest of this loop would take 5 % of a check
         ends = {name for name, _ in _ends(state)}
         if not state.type.open and any(word.text not in ends for word in _own_words(state)):
@@ -166,8 +167,12 @@ def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
         return False
     if facts is not None and any(word.text not in known for word in facts.returns):
         return False
-    own = {each.name for each in state.outcomes}
-    return all(word.text in known or word.text in own for word, _ in state.transitions)
+    if state.outcomes:
+        known = known.union([each.name for each in state.outcomes])
+    for word, _ in state.transitions:  # a generator expression takes longer
+        if word.text not in known:
+            return False
+    return True
 
 
 def _ends(state: State) -> Iterator[tuple[str, Span]]:

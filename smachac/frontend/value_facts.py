@@ -46,10 +46,12 @@ def _is_record(tree: Map, known: Collection[str]) -> bool:
     """Whether a mapping has the form of a record type, and none of the known fields; where
     each of its names resembles one, it is probably misspelt."""
     names = {str(entry.key.value) for entry in tree.entries}
+    if not names or not names.isdisjoint(known):
+        return False
     guess = Guesser(known)
     if all(guess(name) is not None for name in names):
         return False
-    record = as_record(tree) if names and names.isdisjoint(known) else tree
+    record = as_record(tree)
     type_ = parse_type(str(record.value)) if isinstance(record, Scalar) else None
     return type_ is not None and not unknown_words(type_)
 

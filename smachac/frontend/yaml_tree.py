@@ -358,7 +358,7 @@ class _Open:
     """A collection that is being built. `before` is the number of nodes before it, `around` are the
     items of the collection around it."""
 
-    __slots__ = ("anchor", "around", "before", "flow", "items", "start")
+    __slots__ = ("anchor", "around", "before", "flow", "start")
 
     def __init__(
         self, around: list[Tree], before: int, flow: bool, start: int, anchor: str | None
@@ -368,7 +368,6 @@ class _Open:
         self.flow = flow
         self.start = start
         self.anchor = anchor
-        self.items: list[Tree] = []
 
 
 def _identity(key: Scalar) -> str | tuple[type, object]:
@@ -516,7 +515,9 @@ class _Builder:
         self.stack.append(_Open(self.items, self.nodes, event.flow_style, start, event.anchor))
         self.items = []
         self.end = event.end_mark.index
-        self._count(1, start)
+        self.nodes += 1  # as in `_scalar`
+        if self.nodes > self.most:
+            self._too_many(start)
 
     def _close_mapping(self, event: Any) -> None:
         done = self.stack.pop()
@@ -598,11 +599,13 @@ class _Builder:
             if key.value == "<<" and key.plain:
                 merged.extend(self._merge(value))
                 continue
-            if key.plain and isinstance(key.value, str) and _NO_KEY.search(key.value) is not None:
+            name = key.value
+            text = name if isinstance(name, str) else ""
+            if key.plain and not text.isidentifier() and _NO_KEY.search(text) is not None:
                 self.doubtful.append(key.start)
             if flow and isinstance(value, Scalar) and value.value is None:
                 key, value = self._separated(key, value)
-            name = key.value
+                name = key.value
             known = first.setdefault(name if isinstance(name, str) else (type(name), name), key)
             if known is not key:
                 self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
