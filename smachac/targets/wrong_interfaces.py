@@ -1,5 +1,6 @@
-"""Interfaces that are wrong where the class and the script agree: one finding (SM603) at the name
-in the interface, in place of those that follow from it."""
+"""Keys and variables that an interface has wrong where the class and the script agree: one finding
+(SM603) at the name in the interface, in place of those that follow from it. Its outcomes are judged
+before the script is lowered (frontend/meant_declarations.py)."""
 
 from __future__ import annotations
 
@@ -15,28 +16,17 @@ from smachac.diagnostics.wording import listed
 from smachac.frontend.class_reader import PARAMETERS
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import Parameter
-from smachac.ir.nodes import Container, Leaf, Machine, Remap, StateType, Transition
+from smachac.ir.nodes import Container, Leaf, Machine, Remap, StateType
 from smachac.ir.script_paths import plain_paths
 from smachac.ir.traversal import remapping, walk
 from smachac.targets.errors import Difference, interfaces_differ
 from smachac.targets.interface_check import Load
 
-IN_SCRIPT = (
-    "SM003",
-    "SM004",
-    "SM102",
-    "SM104",
-    "SM201",
-    "SM301",
-    "SM302",
-    "SM305",
-    "SM306",
-    "SM403",
-)
+IN_SCRIPT = ("SM003", "SM004", "SM301", "SM302", "SM305", "SM306")
 """The findings in a script about a name that an interface lacks or has wrong."""
 
-ANYWHERE = ("SM201", "SM301", "SM305", "SM306")
-"""Those about a key, at any place that sets or reads it, and about a state behind an outcome."""
+ANYWHERE = ("SM301", "SM305", "SM306")
+"""Those about a key, at any place that sets or reads it."""
 
 IN_CODE = ("SM002", "SM004", "SM308", "SM309", "SM310", "SM314", "SM315", "SM603", "SM604", "SM609")
 """Those in the interface and in the class."""
@@ -46,8 +36,9 @@ OF_PARAMETERS = ("no parameter", "required parameter", "other parameter", "renam
 
 
 class _Part(NamedTuple):
-    """A part of an interface: its field, what a name of it is, the names that the interface has,
-    those that the class has, and those that the script uses. `whole`: the class has no others."""
+    """The keys or the variables of an interface: their field, what a name of it is, the names that
+    the interface has, those of the class, and those that the script uses. `whole`: the class has no
+    others."""
 
     field: str
     what: str
@@ -75,23 +66,18 @@ class _Code(NamedTuple):
 
     language: str
     name: str
-    outcomes: Sequence[Word] | None
     inputs: Sequence[Word] | None
     outputs: Sequence[Word] | None
-    returns: Sequence[Word] = ()
     reads: Sequence[Word] = ()
     writes: Sequence[Word] = ()
-    complete: bool = False
     parameters: Sequence[Parameter] | None = None
 
 
 class _Use(NamedTuple):
-    """A state of a type, the container around it in the script, and its transitions and remappings
-    there."""
+    """A state of a type, the container around it in the script, and its remappings there."""
 
     leaf: Leaf
     around: Container
-    transitions: Sequence[Transition]
     remaps: Sequence[Remap]
 
 
@@ -112,9 +98,6 @@ def with_wrong_interfaces(report: Report, machine: Machine, library: Library, lo
         if len(wrong) == 1 and not others:
             names = {*wrong[0].more, *wrong[0].missing}
             names |= {each.to for one in used for each in one.remaps if each.key in names}
-            names |= {
-                each.target for one in used for each in one.transitions if each.outcome in names
-            }
             rest = [item for item in report if not _follows(item, names, type_, source, paths)]
             field = next((item for item in rest if _is_field(item, source)), None)
             found = _finding(wrong[0], type_, code, used[0].leaf, source)
@@ -143,13 +126,11 @@ def _uses(machine: Machine) -> tuple[dict[str, list[_Use]], dict[str, str]]:
             containers[path] = node
             continue
         above = path.rpartition("/")[0]
-        steps = [*node.transitions]
         remaps = [*node.remaps]
         while containers[above].sugar:
-            steps += containers[above].transitions
             remaps += containers[above].remaps
             above = above.rpartition("/")[0]
-        uses.setdefault(node.type, []).append(_Use(node, containers[above], steps, remaps))
+        uses.setdefault(node.type, []).append(_Use(node, containers[above], remaps))
         paths[plain.get(path, path)] = node.type
     return uses, paths
 
@@ -160,14 +141,13 @@ def _code(type_: StateType, library: Library, load: Load) -> _Code | None:
     if facts is not None:
         name = facts.name.text if facts.name is not None else type_.name
         return _Code(
-            "python", name, facts.outcomes, facts.inputs, facts.outputs, facts.returns,
-            facts.reads, facts.writes, facts.complete, facts.parameters,
-        )  # fmt: skip
+            "python", name, facts.inputs, facts.outputs, facts.reads, facts.writes, facts.parameters
+        )
     target = load("cpp") if "cpp" in type_.classes else None
     found = target.declared(type_, library) if target is not None else None
     if found is None:
         return None
-    return _Code("cpp", found.name, found.outcomes, found.inputs, found.outputs)
+    return _Code("cpp", found.name, found.inputs, found.outputs)
 
 
 def _parts(type_: StateType, code: _Code, used: Sequence[_Use], report: Report) -> Iterator[_Part]:
@@ -178,12 +158,6 @@ def _parts(type_: StateType, code: _Code, used: Sequence[_Use], report: Report) 
         for item in report
         if item.code == "SM003" and item.finding.arguments[1:] == (type_.name,)
     }
-    if not type_.optional and "outcomes" not in type_.given:
-        ends = {each.outcome for one in used for each in one.transitions}
-        names = [each.name for each in type_.outcomes]
-        has = _texts(code.returns if code.outcomes is None else code.outcomes)
-        whole = code.outcomes is not None or (code.complete and bool(code.returns))
-        yield _Part("outcomes", "outcome", names, has, ends, whole)
     inputs = [each.name for each in type_.input_keys]
     outputs = [each.name for each in type_.output_keys]
     if "input_keys" not in type_.given:
