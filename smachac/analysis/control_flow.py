@@ -92,10 +92,10 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
 
 def strays(child: Node, names: frozenset[str], exits: frozenset[str]) -> list[Transition]:
     """The transitions of a child that lead neither to one of `names` nor out by one of `exits`."""
-    return [
+    return [  # `leads_to_child` in place: most checks of a state come here
         step
         for step in child.transitions
-        if step.target not in exits and not leads_to_child(step, names)
+        if step.target not in exits and (step.target not in names or step.origin == "implicit")
     ]
 
 

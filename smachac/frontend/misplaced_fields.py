@@ -99,14 +99,15 @@ def _outer_fields(tree: Map, own: Mapping[str, Entry]) -> Iterator[tuple[str, En
     """The entries of a mapping of names that are fields of the state, by long name: none of these
     values is a name."""
     for entry in tree.entries:
-        key = schema.LONG.get(str(entry.key.value), str(entry.key.value))
+        name = str(entry.key.value)
+        key = schema.LONG.get(name, name)
         row = schema.VARIABLES.get(key)
         if row is None or row.owners == {"base"}:
             continue
         value = entry.value
         is_time = key == "timeout" and duration(value, []) is not None
         is_type = key in _NAMED and _NAMED.isdisjoint(own) and _is_text(value)
-        has_shape = _has_shape(row.shape, value) and len(str(entry.key.value)) > 1
+        has_shape = _has_shape(row.shape, value) and len(name) > 1
         if is_time or is_type or has_shape:
             yield key, entry
 
