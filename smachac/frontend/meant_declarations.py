@@ -169,10 +169,7 @@ def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
         return False
     if state.outcomes:
         known = known.union([each.name for each in state.outcomes])
-    for word, _ in state.transitions:  # a generator expression takes longer
-        if word.text not in known:
-            return False
-    return True
+    return known.issuperset([word.text for word, _ in state.transitions])
 
 
 def _ends(state: State) -> Iterator[tuple[str, Span]]:
