@@ -34,6 +34,7 @@ from smachac.checks.rule import rule
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit, type_at
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -528,9 +529,9 @@ def _help(clash: Clash) -> str:
         if more is not None:
             return more
     if wanted.name == "one_of" and given.name == "literal":
-        choices = [str(choice) for choice in wanted.args]
-        guess = did_you_mean(guesser(choices)(str(given.args[0])))
-        return guess or f"use one of {', '.join(f'`{choice}`' for choice in choices)}"
+        choices, word = [str(choice) for choice in wanted.args], str(given.args[0])
+        meant = of_same_meaning(word, choices) or guesser(choices)(word)
+        return did_you_mean(meant) or f"use one of {', '.join(f'`{choice}`' for choice in choices)}"
     for name, near in _misspelt_fields(clash):
         return f"did you mean `{name}` in place of `{near}`?"
     for name in _missing_fields(clash):

@@ -1,0 +1,42 @@
+"""The help for a value that is none of the choices of a variable names the one that means it."""
+
+from __future__ import annotations
+
+import pytest
+
+from smachac.diagnostics.meanings import MEANINGS, of_same_meaning
+from tests.trust.project_text import MAIN, analysed
+
+SCRIPT = """name: m
+template: Base
+outcomes: [done, bad]
+states:
+- A:
+    template: GripperState
+    command: %s
+    transitions: {succeeded: done, aborted: bad, preempted: bad}
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "help"),
+    [
+        ("grasp", "did you mean `close`?"),
+        ("Released", "did you mean `open`?"),
+        ("sideways", "use one of `open`, `close`"),
+    ],
+)
+def test_the_choice_of_the_same_meaning_is_named(command: str, help: str) -> None:
+    report = analysed({MAIN: SCRIPT % command}).report
+    found = [item for item in report if item.code == "SM304"]
+    assert [item.finding.help for item in found] == [help]
+
+
+def test_a_word_has_one_meaning() -> None:
+    words = [word for group in MEANINGS for word in group]
+    assert len(words) == len(set(words))
+
+
+def test_two_choices_of_one_meaning_are_no_guess() -> None:
+    assert of_same_meaning("begin", ["start", "on", "stop"]) is None
+    assert of_same_meaning("begin", ["start", "stop"]) == "start"
