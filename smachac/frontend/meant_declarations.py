@@ -17,6 +17,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.frontend.script import ANY_OUTCOME, ERROR, EXHAUSTED, TIMEOUT, Script, State
+from smachac.frontend.turned_transitions import with_turned_transitions
 from smachac.ir.nodes import DeclarationKind, Expression, Misdeclared, Outcome, StateType, Struct
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
 from smachac.ir.properties import atoms
@@ -84,6 +85,8 @@ def with_meant_declarations(script: Script, library: Library, report: Report) ->
     was reported about uses of their names is removed."""
     if not _has_unknown(script.base):
         return script
+    base = with_turned_transitions(script.base, _ends, report)
+    script = script if base is script.base else replace(script, base=base)
     states = dict(_walk(script.base))
     reported: dict[Source, Report] = {}
     for item in report:
