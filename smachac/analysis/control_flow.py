@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import pairwise
+from operator import is_
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
@@ -58,7 +59,8 @@ class MeantTarget(NamedTuple):
 
 def meant_targets(container: Linear) -> dict[str, MeantTarget]:
     """The names that are meant by the unknown targets of transitions in a container: the nearest
-    one, first of those to which nothing leads; or the only one to which nothing leads."""
+    one, first of those to which nothing leads; or the only one to which nothing leads. None for a
+    state that is missing (`_missing_states`)."""
     names, exits = children_names(container), frozenset(outcome_names(container))
     lost = [step.target for child in container.children for step in strays(child, names, exits)]
     if not lost:
@@ -83,8 +85,10 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
         if len(choices) == 1 and not are_opposite(left[0], choices[0]):
             found[left[0]] = MeantTarget(choices[0], free(left[0]) != choices[0])
             left = []
+    shouted = all(name.isupper() for name in names)
     for target in left:
-        near = free(target) or every(target)
+        # A state to which other transitions lead is hardly meant by a name that is not near to it.
+        near = free(target) or (None if shouted and target.isupper() else every(target))
         if near is not None:
             found[target] = MeantTarget(near)
     return found
@@ -190,7 +194,9 @@ def is_catch_all(step: Transition) -> bool:
 def corrected(container: Linear) -> Linear:
     """A container with misspelt targets and outcomes corrected, where a near name exists.
 
-    A state gets the unknown outcomes of its transitions for which no known one is meant.
+    A state gets the unknown outcomes of its transitions for which no known one is meant. An unknown
+    target that is written like the names of the states is a missing state: an open one stands for
+    it.
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
@@ -220,10 +226,25 @@ def corrected(container: Linear) -> Linear:
         outcomes = (*node.outcomes, *added)
         return replace(node, outcomes=outcomes, transitions=tuple(map(target, steps)))
 
-    children = tuple(map(child, container.children))
-    if all(new is old for new, old in zip(children, container.children, strict=True)):
+    children = (*map(child, container.children), *_missing_states(container, names, exits, meant))
+    if len(children) == len(container.children) and all(map(is_, children, container.children)):
         return container
     return replace(container, children=children)
+
+
+def _missing_states(
+    container: Linear,
+    names: frozenset[str],
+    exits: frozenset[str],
+    meant: Mapping[str, MeantTarget],
+) -> list[Leaf]:
+    """Open states for the unknown targets of transitions in a container of states in upper case."""
+    lost = [step for child in container.children for step in strays(child, names, exits)]
+    if not lost or not all(name.isupper() for name in names):
+        return []
+    spans = {step.target: step.span for step in reversed(lost)}
+    missing = [name for name in spans if name.isupper() and name not in meant]
+    return [Leaf(name=name, type="", span=spans[name], open=True) for name in reversed(missing)]
 
 
 def _catches_itself(node: Node, step: Transition) -> bool:

@@ -169,6 +169,14 @@ def _targets(container: Linear) -> str:
     return listed([*(child.name for child in container.children), *outcome_names(container)])
 
 
+def _add_or_use(container: Linear, target: str) -> str:
+    """The help for an unknown target that no name resembles: a state that is missing, if it is
+    written like one."""
+    known = f"use a state or an outcome of `{container.name}`: {_targets(container)}"
+    is_state = target.isupper() and all(child.name.isupper() for child in container.children)
+    return f"add the state `{target}`, or {known}" if is_state else known
+
+
 def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
     path, container, child, step, meant, sure, paired = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
@@ -192,7 +200,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
             step.target,
             *(() if step.target else (step.outcome,)),
         ),
-        help=help or f"use a state or an outcome of `{container.name}`: {_targets(container)}",
+        help=help or _add_or_use(container, step.target),
         effect="SMACH refuses to run such a container: none of its states runs",
         related=(*_unentered(container, step.target, fault.sure), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",

@@ -31,6 +31,9 @@ _CPP_OUTCOMES = re.compile(r"enum class Outcome\b[^{;]*(\{[^}]*\})")
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
 
+_COMMON = frozenset(["succeeded", "aborted", PREEMPTED])
+"""The outcomes of SMACH: a declared name that is one slip away, which nothing uses, means them."""
+
 
 @dataclass(slots=True)
 class _Declarer:
@@ -83,7 +86,7 @@ class _Repairs:
 def with_meant_declarations(script: Script, library: Library, report: Report) -> Script:
     """The script with its misspelt and incomplete declarations corrected, and these faults. What
     was reported about uses of their names is removed."""
-    if not _has_unknown(script.base):
+    if not _has_unknown(script.base) and not _has_unknown_atom(script):
         return script
     base = with_turned_transitions(script.base, _ends, report)
     script = script if base is script.base else replace(script, base=base)
@@ -155,6 +158,13 @@ def _has_unknown(base: State) -> bool:
         if facts is not None and any(word.text not in ends for word in facts.returns):
             return True
     return False
+
+
+def _has_unknown_atom(script: Script) -> bool:
+    """Whether a property of the script names a state that does not exist."""
+    parts = {name for each in script.properties for atom in atoms(each.form)
+             if atom.subject == "path" for name in atom.name.split("/")}  # fmt: skip
+    return bool(parts) and not parts <= {state.name.text for _, state in _walk(script.base)}
 
 
 def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
@@ -449,7 +459,7 @@ def _judge_children(
     for each in script.properties:
         for atom in atoms(each.form):
             for name in atom.name.split("/") if atom.subject == "path" else ():
-                if name not in known:
+                if name not in known or name in texts:
                     found.use("properties", Word(name, atom.span))
     renamed, _ = _meant(found, pairs=False)
     for old, new in renamed.items():
@@ -518,6 +528,8 @@ def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str,
     renamed: dict[str, str] = {}
     for name in unknown:
         near = guesser(unused)(name) if unused and _is_strong(found, name) else None
+        if near is None and name in _COMMON:
+            near = guesser(unused).sure(name)
         if near is not None:
             renamed[near] = name
             unused.remove(near)
