@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import children_names, strays
+from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.messages import other_place
 from smachac.checks.outcomes import unhandled
 from smachac.checks.property_turns import Turn, turn_of
@@ -41,6 +42,9 @@ if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit
     from smachac.analysis.property_events import NameFault
     from smachac.interpreter.counterexample import Replay
+
+_MOST_ALIKE = 5
+"""The most further places of one unknown name that a finding shows."""
 
 LONGEST_SCENARIO = 200
 """Limit on the characters of a scenario in a help line."""
@@ -514,9 +518,21 @@ def unknown_event(context: Context) -> Iterator[Finding]:
           - GRASP: {template: ScriptedState, outcomes: [done], transitions: {done: LIFT}}
           - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    for judgement in _with(context, "unclear"):
-        for fault in judgement.faults:
-            yield _name_fault(fault, context)
+    faults = [fault for each in _with(context, "unclear") for fault in each.faults]
+    if not faults:
+        return
+    lost = {each.step.target for each in context.at_containers(stray_transitions)}  # SM101
+    alike: dict[tuple[str, ...], list[NameFault]] = {}  # a name in several properties
+    for fault in faults:
+        atom = fault.atom
+        if atom.subject != "path" or atom.name.rpartition("/")[2] not in lost:
+            which = fault.kind, atom.subject, atom.name, atom.outcome or ""
+            alike.setdefault(which, []).append(fault)
+    for first, *others in alike.values():
+        found = _name_fault(first, context)
+        spans = [*dict.fromkeys(each.atom.span for each in others)][:_MOST_ALIKE]
+        more = [part for span in spans for part in other_place(span, "and here")]
+        yield replace(found, related=(*found.related, *more))
 
 
 def _name_fault(fault: NameFault, context: Context) -> Finding:

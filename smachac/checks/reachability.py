@@ -172,8 +172,9 @@ def _led_past(
     steps = [
         step
         for step in before.transitions
-        if step.target in after and step.origin == "written" and not fails(before, step.outcome)
-    ]
+        if step.target in after and step.origin == "written"
+        and step.outcome != PREEMPTED and not fails(before, step.outcome)
+    ]  # fmt: skip
     return _LedPast(before, steps[0]) if len(steps) == 1 else None
 
 
