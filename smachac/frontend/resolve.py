@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, has_errors
+from smachac.diagnostics.diagnostic import Diagnostic, Report, has_errors
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import schema
@@ -21,9 +21,7 @@ from smachac.frontend.errors.references import (
     template_not_found,
 )
 from smachac.frontend.errors.script import (
-    Owner,
     duplicate_key,
-    missing_variable,
     too_big,
     wrong_shape,
 )
@@ -85,7 +83,12 @@ from smachac.frontend.sub_scripts import (
     sub_script_state,
 )
 from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
-from smachac.frontend.unknown_templates import one_for_each_template, types_with_the_names
+from smachac.frontend.unknown_templates import (
+    missing_template,
+    missing_template_help,
+    one_for_each_template,
+    types_with_the_names,
+)
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import (
     Entry,
@@ -107,7 +110,6 @@ MAX_KEYS, MAX_KEYS_BY_STATE = 20_000, 10
 """The most userdata values of a script: a fixed part and a part for each state. One takes 3 kB of
 memory in the checks."""
 
-CALLED_HERE = "in the sub-script called here"
 
 SCRIPT_HELP = "write a mapping with `name:`, `outcomes:` and `states:`"
 
@@ -645,14 +647,11 @@ class _Resolver:
         if entry is None and role == "base":
             word = Word("Base", name.span)
         if entry is None and role != "base":
-            shown = around.inner or name
-            calls = around.via if around.inner is not None else ()
-            related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
-            owner = Owner(shown.text, f"`{shown.text}`")
-            others = [entries[key] for key in entries if key in TEMPLATE_WORDS]
-            instead = Word(str(others[0].key.value), others[0].key.span) if others else None
-            missing = missing_variable(shown.span, "template", owner, related, instead=instead)
-            self.report.append(missing)
+            scripts = self.library.script_names(around.source.name)
+            types = self.known_templates()[1]
+            shown, calls = around.inner or name, around.via if around.inner is not None else ()
+            help = missing_template_help(shown.text, entries, scripts, types, self.other_type)
+            self.report.append(missing_template(shown, calls, entries, help))
         nested: FieldOwner = "StateMachine" if "states" in entries else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested
