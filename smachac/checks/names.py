@@ -23,9 +23,10 @@ from smachac.analysis.control_flow import (
 from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.meant_keys import meant_keys
-from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
+from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.misdeclared import misdeclared
 from smachac.checks.misplaced_states import misplaced_finding
+from smachac.checks.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
@@ -33,7 +34,6 @@ from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
-from smachac.ir.outcome_names import GOOD, SUCCESSES
 from smachac.ir.traversal import PREEMPTED, outcome_names
 
 EXCEPTIONS = "error"
@@ -353,7 +353,6 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     unknown = unknown_outcomes(child)
     if not unknown:
         return
-    known = _known_outcomes(child)
     guess = guesser([*outcome_names(child), EXCEPTIONS])
     default = missing_default(child)
     for step, known_meant in unknown:
@@ -373,7 +372,7 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
             or retried
             or _catch_all(child, step)
             or did_you_mean(meant)
-            or known,
+            or other_outcome(child, step),
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=()
@@ -401,13 +400,6 @@ def _retried(child: Node, outcome: str) -> str | None:
     return None
 
 
-def _known_outcomes(child: Node) -> str:
-    names = outcome_names(child)
-    if not names:
-        return f"remove the transition: `{child.name}` has no outcomes"
-    return ends_of(child) or f"use one of its outcomes: {listed(names)}"
-
-
 def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     if any(is_open(child) for child in container.children):
         return
@@ -432,11 +424,11 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
 
 def _loop_help(name: str, container: nodes.Iterator, known: list[str]) -> str:
     """The help for an entry of `loop_outcomes` that the child does not end with: the outcome that
-    is near it, or the only success of the child, where the list has none of its outcomes."""
+    is near it, or the only one that can start the next item."""
     near = did_you_mean(guesser(known)(name))
-    good = [each for each in known if each.lower() in SUCCESSES | GOOD]
-    if near is None and len(good) == 1 and good[0] not in container.loop_outcomes:
-        return f"write `{good[0]}` in place of `{name}`"
+    meant = continuing_outcome(container) if near is None else None
+    if meant is not None:
+        return f"write `{meant}` in place of `{name}`"
     return near or f"use one of {listed(known)}"
 
 
