@@ -25,7 +25,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import GOOD, PREEMPTED, STOPS, SUCCESSES, fails, is_failure
+from smachac.ir.outcome_names import GOOD, PREEMPTED, STOPS, SUCCESSES, TIMEOUTS, fails, is_failure
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
@@ -122,9 +122,13 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
         if others and left:
             alike |= _of_one_meaning(child, others, left)
         stops = left == [PREEMPTED] and "implicit" in origins
-        if stops and len(others) == 1 and others[0] not in GOOD | SUCCESSES:
+        if stops and len(others) == 1 and others[0] not in _NO_STOPS:
             alike.setdefault(others[0], PREEMPTED)
     return [(step, near[step.outcome] or alike.get(step.outcome)) for step in unknown]
+
+
+_NO_STOPS = GOOD | SUCCESSES | TIMEOUTS | {"exhausted"}
+"""Outcomes that do not mean the one after a stop request."""
 
 
 def missing_default(node: Node) -> tuple[Transition, str] | None:

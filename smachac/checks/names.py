@@ -22,6 +22,8 @@ from smachac.analysis.control_flow import (
 )
 from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.expressions import unknown_endings
+from smachac.checks.loop_targets import WORDS as LOOP_WORDS
+from smachac.checks.loop_targets import loop_target
 from smachac.checks.meant_keys import meant_keys
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.misdeclared import misdeclared
@@ -107,7 +109,13 @@ def unknown_target(context: Context) -> Iterator[Finding]:
         if (fault.path, target) not in causes and f"{fault.path}/{fault.child.name}" not in moved:
             alike.setdefault((fault.path, target or at, fault.child.via), []).append(fault)
     for first, *others in alike.values():
-        yield _with_others(_nowhere(first, paths.get(first.step.target)), others)
+        loop = None
+        if first.step.target.casefold() in LOOP_WORDS:
+            whole = dict(context.containers)
+            loop = loop_target(
+                first.path, first.container, first.child, first.step, first.meant, whole
+            )
+        yield _with_others(_nowhere(first, paths.get(first.step.target), loop), others)
     for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
             yield from _idle_transitions(context, path, container, moved)
@@ -169,7 +177,8 @@ def _targets(container: Linear) -> str:
     return listed([*(child.name for child in container.children), *outcome_names(container)])
 
 
-def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
+def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
+    """SM101 for a transition; `loop` is the help if its target is a word for a loop."""
     path, container, child, step, meant, sure, paired = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
@@ -192,7 +201,9 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
             step.target,
             *(() if step.target else (step.outcome,)),
         ),
-        help=help or f"use a state or an outcome of `{container.name}`: {_targets(container)}",
+        help=loop
+        or help
+        or f"use a state or an outcome of `{container.name}`: {_targets(container)}",
         effect="SMACH refuses to run such a container: none of its states runs",
         related=(*_unentered(container, step.target, fault.sure), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",
