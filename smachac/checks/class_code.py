@@ -160,7 +160,7 @@ def _wrong_returns(
     path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]
 ) -> Iterator[Finding]:
     guess = guesser(outcomes)
-    known = _known(leaf, outcomes)
+    known, alone = _known(leaf, outcomes), _only_left(leaf, facts, outcomes)
     for ending in facts.endings:
         word = ending.outcome
         if word.text not in outcomes:
@@ -170,6 +170,9 @@ def _wrong_returns(
             near = near or _without_tuple(word.text, outcomes)
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
+            elif near is None and alone is not None:
+                near = f'write `return "{alone}"`, which no path returns'
+                near += "" if ending.possible else _or_declare(ending, leaf)
             returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
                 span=ending.defined or word.span,
@@ -180,6 +183,16 @@ def _wrong_returns(
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
+
+
+def _only_left(leaf: Leaf, facts: ClassFacts, outcomes: Collection[str]) -> str | None:
+    """The only outcome but `preempted` that `execute` does not return, if it returns one unknown
+    outcome; else None."""
+    returned = {word.text for word in facts.returns}
+    known = {PREEMPTED, leaf.catches, *returned}
+    left = [name for name in outcomes if name not in known]
+    is_one = facts.complete and not facts.silent and len(returned.difference(outcomes)) == 1
+    return left[0] if is_one and len(left) == 1 else None
 
 
 def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]) -> Finding:

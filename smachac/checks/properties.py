@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import children_names, strays
+from smachac.analysis.control_flow import children_names, strays, unknown_outcomes
 from smachac.checks.messages import other_place
 from smachac.checks.outcomes import unhandled
 from smachac.checks.property_turns import Turn, turn_of
@@ -31,6 +31,7 @@ from smachac.ir.properties import (
     Form,
     Never,
     Property,
+    atoms,
     either,
     in_words,
 )
@@ -138,13 +139,17 @@ def _failures(context: Context) -> Iterator[_Failure]:
 
 
 def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
-    """The outcomes of states that lead nowhere (SM101, SM104), each with the path of the state."""
+    """The outcomes of states that lead nowhere or may lack their transition (SM101, SM102, SM104),
+    each with the path of the state."""
     found: set[tuple[str, str]] = set()
     for path, container in context.linear:
         names, exits = children_names(container), frozenset(outcome_names(container))
         for child in container.children:
             ends = [step.outcome for step in strays(child, names, exits)]
             ends += [each.name for each in unhandled(child)]
+            if unknown_outcomes(child):  # SM102: a transition of these is probably meant
+                handled = {step.outcome for step in child.transitions if step.origin == "written"}
+                ends += [name for name in outcome_names(child) if name not in handled]
             found.update((f"{path}/{child.name}", end) for end in ends)
     return frozenset(found)
 
@@ -516,10 +521,10 @@ def unknown_event(context: Context) -> Iterator[Finding]:
     """
     for judgement in _with(context, "unclear"):
         for fault in judgement.faults:
-            yield _name_fault(fault, context)
+            yield _name_fault(fault, judgement.property, context)
 
 
-def _name_fault(fault: NameFault, context: Context) -> Finding:
+def _name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
     atom = fault.atom
     if fault.kind == "ambiguous":
         return Finding(
@@ -544,6 +549,8 @@ def _name_fault(fault: NameFault, context: Context) -> Finding:
         written = [each.plain.rpartition("/")[2] for each in walk_script(context.machine.root)
                    if not each.added]  # fmt: skip
         known = [name for name in known if name in written]
+    beside = _beside(given.form, atom) if atom.subject == "path" else ()
+    known = [name for name in known if all(name != each.name for each in beside)]
     sure = guesser(known).sure(atom.name)
     edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
     names = listed(known)
@@ -554,9 +561,55 @@ def _name_fault(fault: NameFault, context: Context) -> Finding:
         help=_other_subject(atom, context)
         or did_you_mean(atom.name, known)
         or _by_words(atom, known)
+        or _of_same_work(beside, known, context)
+        or _unnamed(known, context)
         or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
         edits=edits,
     )
+
+
+def _beside(form: Form, atom: Atom) -> Atoms:
+    """The other events, without an outcome, of the list that an event of a property is in."""
+    lists: tuple[Atoms, ...] = ()
+    match form:
+        case Never(after=after, until=until, enter=enter):
+            lists = (after, until, enter)
+        case Before(later=later, earlier=earlier):
+            lists = (later, earlier)
+        case After(first=first, answer=answer, before_claim=claims):
+            lists = (first, answer, claims)
+        case AtMost(event=event):
+            lists = (event,)
+    for each in lists:
+        if any(one is atom for one in each):
+            return tuple(one for one in each if one is not atom and one.outcome == atom.outcome)
+    return ()
+
+
+def _of_same_work(beside: Atoms, known: Sequence[str], context: Context) -> str | None:
+    """The help for an unknown event in a list of states that do the same work: the only other state
+    that does it."""
+    names = [each.name for each in beside if each.subject == "path"]
+    leaves = [node for _, node in context.states if isinstance(node, Leaf)]
+    listed_work = [_work(node) for node in leaves
+                   if node.name in names and _own_work(context, node)]  # fmt: skip
+    found = {node.name for node in leaves if node.name in known and _work(node) in listed_work}
+    if len(found) != 1:
+        return None
+    (name,) = found
+    return f"write `{name}`: it does the same as {_either_name(names)}"
+
+
+def _either_name(names: Sequence[str]) -> str:
+    return " or ".join(f"`{name}`" for name in names)
+
+
+def _unnamed(known: Sequence[str], context: Context) -> str | None:
+    """The help for an unknown event: the only state that no property names."""
+    named = {atom.name.rpartition("/")[2] for each in context.machine.properties
+             for atom in atoms(each.form) if atom.subject == "path"}  # fmt: skip
+    left = [name for name in known if name not in named]
+    return f"write `{left[0]}`, the only state that no property names" if len(left) == 1 else None
 
 
 def _by_words(atom: Atom, known: Sequence[str]) -> str | None:

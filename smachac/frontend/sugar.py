@@ -305,13 +305,14 @@ def _parts(
         meant = _part_meant(word.text, others)
         if meant is None and paired:
             help = paired_help(word.text, paired, ())
-            report.append(unknown_variable(word, owner, others, certain=help))
+            report.append(unknown_variable(word, owner, others, certain=help, required=paired))
             parts[paired] = each.value
             continue
         if meant is None:
             report.append(unknown_variable(word, owner, others))
             continue
-        report.append(unknown_variable(word, owner, known, meant=meant))
+        lost = meant if meant in required and meant not in written else None
+        report.append(unknown_variable(word, owner, known, meant=meant, required=lost))
         parts.setdefault(meant, each.value)
     for name, example in required.items():
         if name not in parts:
