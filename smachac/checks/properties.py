@@ -9,38 +9,34 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import children_names, strays, unknown_outcomes
+from smachac.checks.event_names import name_fault, own_work, work
 from smachac.checks.messages import other_place
 from smachac.checks.outcomes import unhandled
 from smachac.checks.property_turns import Turn, turn_of
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
-from smachac.diagnostics.negation import are_opposite
-from smachac.diagnostics.source import Span, Word, assert_never
-from smachac.diagnostics.spelling import guesser, respelt, written_name
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.source import Span, assert_never
+from smachac.diagnostics.spelling import written_name
 from smachac.ir.graph import reachable
-from smachac.ir.nodes import Concurrence, Data, Leaf, Node
+from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.properties import (
     After,
     AlwaysEnds,
     AtMost,
-    Atom,
     Atoms,
     Before,
     Form,
     Never,
     Property,
-    atoms,
     either,
     in_words,
 )
 from smachac.ir.script_paths import sugared_child, walk_script
-from smachac.ir.traversal import outcome_names, walk
+from smachac.ir.traversal import outcome_names
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit
-    from smachac.analysis.property_events import NameFault
     from smachac.interpreter.counterexample import Replay
 
 LONGEST_SCENARIO = 200
@@ -247,11 +243,11 @@ def _longer_list(
     nodes = context.routes.nodes
     names = tuple(f"/{each.name}" for each in ends if each.outcome is None)
     triggers = tuple(f"/{each.name}" for each in begins)
-    alike = [_work(node) for path, node in nodes.items()
+    alike = [work(node) for path, node in nodes.items()
              if isinstance(node, Leaf) and f"/{path}".endswith(names)]  # fmt: skip
     for visit in example.visits:
         node = nodes.get(visit.path)
-        if not isinstance(node, Leaf) or not _own_work(context, node) or _work(node) not in alike:
+        if not isinstance(node, Leaf) or not own_work(context, node) or work(node) not in alike:
             continue
         if any(f"{trigger}/" in f"/{visit.path}/" for trigger in triggers):
             continue  # the property would always hold
@@ -273,19 +269,6 @@ def _with_ends(form: Form, ends: Atoms) -> Form:
         case Before():
             return replace(form, earlier=ends)
     return form
-
-
-def _own_work(context: Context, leaf: Leaf) -> bool:
-    """Whether a state sets a variable to another value than its default."""
-    type_ = context.machine.state_types.get(leaf.type)
-    known = type_.variables if type_ is not None else {}
-    defaults = {name: each.default.data for name, each in known.items() if each.default}
-    return any(each.value.data != defaults.get(each.name) for each in leaf.variables)
-
-
-def _work(leaf: Leaf) -> tuple[str, list[tuple[str, Data]]]:
-    """The type of a state and the values of its variables."""
-    return leaf.type, sorted(((each.name, each.value.data) for each in leaf.variables), key=repr)
 
 
 def _names(events: Atoms) -> str:
@@ -521,121 +504,7 @@ def unknown_event(context: Context) -> Iterator[Finding]:
     """
     for judgement in _with(context, "unclear"):
         for fault in judgement.faults:
-            yield _name_fault(fault, judgement.property, context)
-
-
-def _name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
-    atom = fault.atom
-    if fault.kind == "ambiguous":
-        return Finding(
-            span=atom.span,
-            message=f"`{atom.name}` may be any of {listed(fault.known)}",
-            arguments=("ambiguous", atom.name),
-            help="write more of its path",
-        )
-    if fault.kind == "outcome":
-        outcome = atom.outcome or ""
-        return Finding(
-            span=atom.span,
-            message=f"`{atom.name}` has no outcome `{outcome}`",
-            arguments=("outcome", atom.name, outcome),
-            help=did_you_mean(outcome, fault.known)
-            or f"use one of its outcomes: {listed(fault.known) or 'it has none'}",
-        )
-    what = {"path": "state", "tag": "state with the tag", "type": "state of the type"}
-    subject = what.get(atom.subject, "state with a claim of")
-    known: Sequence[str] = fault.known
-    if atom.subject == "path":  # without the states that a retry or a time limit adds
-        written = [each.plain.rpartition("/")[2] for each in walk_script(context.machine.root)
-                   if not each.added]  # fmt: skip
-        known = [name for name in known if name in written]
-    beside = _beside(given.form, atom) if atom.subject == "path" else ()
-    known = [name for name in known if all(name != each.name for each in beside)]
-    sure = guesser(known).sure(atom.name)
-    edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
-    names = listed(known)
-    return Finding(
-        span=atom.span,
-        message=f"there is no {subject} `{atom.name}`",
-        arguments=("unknown", atom.subject, atom.name),
-        help=_other_subject(atom, context)
-        or did_you_mean(atom.name, known)
-        or _by_words(atom, known)
-        or _of_same_work(beside, known, context)
-        or _unnamed(known, context)
-        or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
-        edits=edits,
-    )
-
-
-def _beside(form: Form, atom: Atom) -> Atoms:
-    """The other events, without an outcome, of the list that an event of a property is in."""
-    lists: tuple[Atoms, ...] = ()
-    match form:
-        case Never(after=after, until=until, enter=enter):
-            lists = (after, until, enter)
-        case Before(later=later, earlier=earlier):
-            lists = (later, earlier)
-        case After(first=first, answer=answer, before_claim=claims):
-            lists = (first, answer, claims)
-        case AtMost(event=event):
-            lists = (event,)
-    for each in lists:
-        if any(one is atom for one in each):
-            return tuple(one for one in each if one is not atom and one.outcome == atom.outcome)
-    return ()
-
-
-def _of_same_work(beside: Atoms, known: Sequence[str], context: Context) -> str | None:
-    """The help for an unknown event in a list of states that do the same work: the only other state
-    that does it."""
-    names = [each.name for each in beside if each.subject == "path"]
-    leaves = [node for _, node in context.states if isinstance(node, Leaf)]
-    listed_work = [_work(node) for node in leaves
-                   if node.name in names and _own_work(context, node)]  # fmt: skip
-    found = {node.name for node in leaves if node.name in known and _work(node) in listed_work}
-    if len(found) != 1:
-        return None
-    (name,) = found
-    return f"write `{name}`: it does the same as {_either_name(names)}"
-
-
-def _either_name(names: Sequence[str]) -> str:
-    return " or ".join(f"`{name}`" for name in names)
-
-
-def _unnamed(known: Sequence[str], context: Context) -> str | None:
-    """The help for an unknown event: the only state that no property names."""
-    named = {atom.name.rpartition("/")[2] for each in context.machine.properties
-             for atom in atoms(each.form) if atom.subject == "path"}  # fmt: skip
-    left = [name for name in known if name not in named]
-    return f"write `{left[0]}`, the only state that no property names" if len(left) == 1 else None
-
-
-def _by_words(atom: Atom, known: Sequence[str]) -> str | None:
-    """The guess for the path of a state whose first words are the name of one state only."""
-    words = atom.name.split("_")
-    begins = ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
-    meant = [name for name in begins if name in known]
-    fits = atom.subject == "path" and meant and not are_opposite(atom.name, meant[0])
-    return f"did you mean `{meant[0]}`?" if fits else None
-
-
-def _other_subject(atom: Atom, context: Context) -> str | None:
-    """The help for a tag, type or claim that is written without its word."""
-    if atom.subject != "path":
-        return None
-    states = [node for _, node in walk(context.machine.root)]
-    subjects = {
-        "tag": (name for node in states for name in node.tags),
-        "type": (node.type for node in states if isinstance(node, Leaf)),
-        "claim": (name for names in context.claims.values() for name in names),
-    }
-    for subject, names in subjects.items():
-        if atom.name in names:
-            outcome = f":{atom.outcome}" if atom.outcome else ""
-            return f"`{atom.name}` is a {subject}: write `{subject} {atom.name}{outcome}`"
-    return None
+            yield name_fault(fault, judgement.property, context)
 
 
 @rule("SM704", "property-undecided", Severity.WARNING)
