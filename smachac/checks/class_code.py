@@ -13,6 +13,7 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
@@ -171,7 +172,8 @@ def _wrong_returns(
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
             elif near is None and alone is not None:
-                near = f'write `return "{alone}"`, which no path returns'
+                text = f'"{alone}"' if ending.defined else f'return "{alone}"'
+                near = f"write `{text}`, as no path returns `{alone}`"
                 near += "" if ending.possible else _or_declare(ending, leaf)
             returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
@@ -191,8 +193,10 @@ def _only_left(leaf: Leaf, facts: ClassFacts, outcomes: Collection[str]) -> str 
     returned = {word.text for word in facts.returns}
     known = {PREEMPTED, leaf.catches, *returned}
     left = [name for name in outcomes if name not in known]
-    is_one = facts.complete and not facts.silent and len(returned.difference(outcomes)) == 1
-    return left[0] if is_one and len(left) == 1 else None
+    wrong = returned.difference(outcomes)
+    if not facts.complete or facts.silent or len(wrong) != 1 or len(left) != 1:
+        return None
+    return None if is_negation(*wrong, left[0]) else left[0]
 
 
 def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]) -> Finding:

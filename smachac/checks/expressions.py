@@ -16,7 +16,7 @@ from smachac.checks.rule import rule
 from smachac.checks.types import written
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
-from smachac.diagnostics.negation import are_opposite
+from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, in_quotes, respelt
 from smachac.diagnostics.wording import listed
@@ -238,7 +238,7 @@ def _only_left(leaf: Leaf, word: str) -> str | None:
     names = outcome_names(leaf)
     left = [name for name in names if name not in {*conditions, default, leaf.catches}]
     unknown = [name for name in conditions if name not in names]
-    if unknown != [word] or len(left) != 1 or are_opposite(word, left[0]):
+    if unknown != [word] or len(left) != 1 or is_negation(word, left[0]):
         return None
     return f"write `{left[0]}` in place of `{word}`: no condition leads to `{left[0]}`"
 

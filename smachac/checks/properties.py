@@ -56,6 +56,9 @@ def property_fails(context: Context) -> Iterator[Finding]:
     exceptions that the script catches, stop requests and time limits. The scenario in the help line
     replays the path with `smachac run --mock`.
 
+    Exactly: the finding is at the property; or at the transition that leads past the only state
+    that the property requires after an event, if no transition leads to that state.
+
     Wrong:
         name: sm
         template: Base
@@ -99,12 +102,19 @@ def property_fails(context: Context) -> Iterator[Finding]:
         swapped = _swap_help(context, given)
         longer = _longer_list(context, given, example) if swapped is None else None
         first = swapped or f"{longer[1] if longer else ''}{_cure(given.form, example, turn)}\n"
+        span, related = given.span if longer is None else longer[0], _turn_place(turn)
+        message = f"{_named(given)} does not hold: {_violation(given.form, example)}"
+        if swapped is None and longer is None and turn is not None and _leads_past(given, turn):
+            span = turn.step.target_span
+            related = other_place(given.span, f"{_named(given)} does not hold")
+            message = f"this transition leads past {_named_states(turn.missed)}:"
+            message += f" {_violation(given.form, example)}"
         yield Finding(
-            span=given.span if longer is None else longer[0],
-            message=f"{_named(given)} does not hold: {_violation(given.form, example)}",
+            span=span,
+            message=message,
             arguments=(given.name, in_words(given.form)),
             help=f"{first}{_replayed(shown, number, script)}",
-            related=_turn_place(turn),
+            related=related,
             path=witness(example._replace(visits=_shown(context, example))),
             node=example.node or context.machine.root.name,
         )
@@ -319,6 +329,12 @@ def _shown(context: Context, example: Counterexample) -> tuple[Visit, ...]:
         shown.append(visit._replace(path=path, outcome=outcome))
         skipped = path if ended else ""
     return tuple(shown)
+
+
+def _leads_past(given: Property, turn: Turn) -> bool:
+    """Whether a transition of the same file leads past a state to which nothing leads."""
+    place = turn.step.target_span.source
+    return turn.unled and len(turn.missed) == 1 and place is given.span.source
 
 
 def _turn_place(turn: Turn | None) -> tuple[Related, ...]:
