@@ -193,10 +193,10 @@ def _only_left(leaf: Leaf, facts: ClassFacts, outcomes: Collection[str]) -> str 
     returned = {word.text for word in facts.returns}
     known = {PREEMPTED, leaf.catches, *returned}
     left = [name for name in outcomes if name not in known]
-    wrong = returned.difference(outcomes)
+    wrong = [*returned.difference(outcomes)]
     if not facts.complete or facts.silent or len(wrong) != 1 or len(left) != 1:
         return None
-    return None if is_negation(*wrong, left[0]) else left[0]
+    return None if is_negation(wrong[0], left[0]) else left[0]
 
 
 def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]) -> Finding:

@@ -135,18 +135,20 @@ def _with_known_outcomes(sugar: Sugar, own: tuple[str, ...], uses: _Uses, report
     led = uses.led
     first = (*own, TIMEOUT) if sugar.timeout else own
     second = (*first, EXHAUSTED) if sugar.retry else first
-    if sugar.retry is not None:
-        on = _known(sugar.retry.on, first, uses, "retry", report)
-        lost = [word for word in sugar.retry.on if word.text == TIMEOUT and TIMEOUT not in first]
+    retry = sugar.retry
+    if retry is not None:
+        on = _known(retry.on, first, uses, "retry", report)
+        lost = [word for word in retry.on if word.text == TIMEOUT and TIMEOUT not in first]
         left = [name for name in first if name not in led]
-        if lost and (len(sugar.retry.on) > 1 or len(left) != 1):
+        if lost and (len(retry.on) > 1 or len(left) != 1):
             # It was reported; with a time limit nothing follows from it.
             place = lost[0].span
             limit = Timeout(seconds=UNKNOWN_SECONDS, span=place, value_span=place)
-            on = tuple(word for word in sugar.retry.on if word.text in first)
+            others = tuple(word for word in retry.on if word.text != TIMEOUT)
+            on = _known(others, first, uses, "retry", [])
             on = on if on and TIMEOUT in led else (*on, lost[0])
             sugar = replace(sugar, timeout=limit)
-        sugar = replace(sugar, retry=replace(sugar.retry, on=on))
+        sugar = replace(sugar, retry=replace(retry, on=on))
     if sugar.for_each is not None:
         on = _known(sugar.for_each.on, second, uses, "for_each", report)
         sugar = replace(sugar, for_each=replace(sugar.for_each, on=on))
