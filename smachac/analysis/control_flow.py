@@ -26,7 +26,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, is_failure
+from smachac.ir.outcome_names import GOOD, PREEMPTED, STOPS, SUCCESSES, TIMEOUTS, fails, is_failure
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
@@ -124,11 +124,15 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
         left = [name for name in outcome_names(child) if name not in used and name != child.catches]
         others = [name for name in others if name not in alike]
         if others and left:
-            alike |= _of_one_meaning(child, others, [name for name in left if name != PREEMPTED])
+            alike |= _of_one_meaning(child, others, left)
         stops = left == [PREEMPTED] and "implicit" in origins
-        if stops and len(others) == 1 and others[0] not in GOOD | SUCCESSES:
+        if stops and len(others) == 1 and others[0] not in _NO_STOPS:
             alike.setdefault(others[0], PREEMPTED)
     return [(step, near[step.outcome] or alike.get(step.outcome)) for step in unknown]
+
+
+_NO_STOPS = GOOD | SUCCESSES | TIMEOUTS | {"exhausted"}
+"""Outcomes that do not mean the one after a stop request."""
 
 
 def missing_default(node: Node) -> tuple[Transition, str] | None:
@@ -147,27 +151,27 @@ def missing_default(node: Node) -> tuple[Transition, str] | None:
 
 
 def outcome_of_one_meaning(child: Node, name: str) -> str | None:
-    """The outcome of a state that is probably meant by an unknown one: the only success or the only
-    failure."""
-    left = [each for each in outcome_names(child) if each != PREEMPTED]
+    """The outcome of a state that is probably meant by an unknown one: the only success, the only
+    failure or the only one after a stop."""
     meaning = _meaning(name, is_failure(name))
-    alike = [each for each in left if _meaning(each, fails(child, each)) == meaning]
-    return alike[0] if meaning in ("success", "failure") and len(alike) == 1 else None
+    alike = [each for each in outcome_names(child)
+             if _meaning(each, fails(child, each)) == meaning]  # fmt: skip
+    return alike[0] if meaning in _MEANINGS and len(alike) == 1 else None
 
 
 def _of_one_meaning(child: Node, others: list[str], left: list[str]) -> dict[str, str]:
     """For unknown outcomes the ones in `left` that are probably meant: the only success, the only
-    failure, the only one that remains."""
+    failure, the only one after a stop, the only one that remains."""
     found: dict[str, str] = {}
-    means = {name: _meaning(name, is_failure(name)) for name in others if name != PREEMPTED}
+    means = {name: _meaning(name, is_failure(name)) for name in others}
     known = {name: _meaning(name, fails(child, name)) for name in left}
-    for meaning in ("success", "failure"):
+    for meaning in _MEANINGS:
         wrong = [name for name in means if means[name] == meaning]
         right = [name for name in known if known[name] == meaning]
         if len(wrong) == len(right) == 1:
             found[wrong[0]] = right[0]
-    wrong = [name for name in means if name not in found]
-    right = [name for name in known if name not in found.values()]
+    wrong = [name for name in means if name not in found and name != PREEMPTED]
+    right = [name for name in known if name not in found.values() and name != PREEMPTED]
     if len(wrong) == len(right) == 1 and {means[wrong[0]], known[right[0]]} != {
         "success",
         "failure",
@@ -176,9 +180,15 @@ def _of_one_meaning(child: Node, others: list[str], left: list[str]) -> dict[str
     return found
 
 
+_MEANINGS = ("success", "failure", "stop")
+
+
 def _meaning(outcome: str, failure: bool) -> str:
+    """One of `_MEANINGS`, or empty for other outcomes."""
     if failure:
         return "failure"
+    if outcome.lower() in STOPS:
+        return "stop"
     return "success" if outcome.lower() in GOOD | SUCCESSES else ""
 
 

@@ -13,6 +13,7 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
@@ -160,7 +161,7 @@ def _wrong_returns(
     path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]
 ) -> Iterator[Finding]:
     guess = guesser(outcomes)
-    known = _known(leaf, outcomes)
+    known, alone = _known(leaf, outcomes), _only_left(leaf, facts, outcomes)
     for ending in facts.endings:
         word = ending.outcome
         if word.text not in outcomes:
@@ -170,6 +171,10 @@ def _wrong_returns(
             near = near or _without_tuple(word.text, outcomes)
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
+            elif near is None and alone is not None:
+                text = f'"{alone}"' if ending.defined else f'return "{alone}"'
+                near = f"write `{text}`, as no path returns `{alone}`"
+                near += "" if ending.possible else _or_declare(ending, leaf)
             returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
                 span=ending.defined or word.span,
@@ -180,6 +185,18 @@ def _wrong_returns(
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
+
+
+def _only_left(leaf: Leaf, facts: ClassFacts, outcomes: Collection[str]) -> str | None:
+    """The only outcome but `preempted` that `execute` does not return, if it returns one unknown
+    outcome; else None."""
+    returned = {word.text for word in facts.returns}
+    known = {PREEMPTED, leaf.catches, *returned}
+    left = [name for name in outcomes if name not in known]
+    wrong = [*returned.difference(outcomes)]
+    if not facts.complete or facts.silent or len(wrong) != 1 or len(left) != 1:
+        return None
+    return None if is_negation(wrong[0], left[0]) else left[0]
 
 
 def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]) -> Finding:

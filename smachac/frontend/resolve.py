@@ -35,7 +35,11 @@ from smachac.frontend.message_definitions import (
     missing_definitions_of,
     other_types_of,
 )
-from smachac.frontend.misplaced_fields import with_outer_fields, with_outer_variables
+from smachac.frontend.misplaced_fields import (
+    with_inner_rules,
+    with_outer_fields,
+    with_outer_variables,
+)
 from smachac.frontend.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -506,7 +510,7 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
-        own = with_outer_fields(name, own, self.report)
+        own = with_inner_rules(with_outer_fields(name, own, self.report), self.report)
         called: list[tuple[Word, tuple[Entry, ...]]] = []
         beside: dict[str, Span] = {}
         while "script" in own:

@@ -285,10 +285,11 @@ def _known_fields(
             as_key = _as_key(word, entry, entries, type_)
             stray = target is not None
             certain = paired_help(word.text, sure, [*known, *own])
+            needed = sure if sure is not None and _is_required(sure, owner, type_) else None
             report.append(
                 unknown_variable(
                     word, whose, known, own=own, meant=sure, outcome=stray, key=as_key,
-                    certain=certain,
+                    certain=certain, required=needed,
                 )
             )  # fmt: skip
             if as_key is not None:
@@ -299,6 +300,11 @@ def _known_fields(
     if strays:
         read["transitions"] = (*read.get("transitions", ()), *strays)
     return read, meant
+
+
+def _is_required(key: str, owner: FieldOwner, type_: StateType) -> bool:
+    variable = type_.variables.get(key)
+    return key in schema.REQUIRED[owner] or (variable is not None and variable.required)
 
 
 def _as_key(word: Word, entry: Entry, entries: Entries, type_: StateType) -> str | None:

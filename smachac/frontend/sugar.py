@@ -7,8 +7,9 @@ are read here; desugar.py makes containers of them.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Word
@@ -100,7 +101,9 @@ def read_sugar(
     if for_each is not None and wrong_loop and PREEMPTED not in {*own, *used}:
         for_each = replace(for_each, preempted=False)
     sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
-    return _with_known_outcomes(sugar, own, led, report)
+    failing = [each.name for each in (*type_.outcomes, *outcomes)
+               if (is_failure(each.name) if each.failure is None else each.failure)]  # fmt: skip
+    return _with_known_outcomes(sugar, own, _Uses(led, failing), report)
 
 
 def _move_limit(fields: dict[str, Entry], report: Report) -> None:
@@ -120,18 +123,34 @@ def _move_limit(fields: dict[str, Entry], report: Report) -> None:
         fields |= {name: replace(entry, value=Map(rest, entry.value.span)), "timeout": limit}
 
 
-def _with_known_outcomes(
-    sugar: Sugar, own: tuple[str, ...], led: Collection[str], report: Report
-) -> Sugar:
-    """The sugar, in which retries and loops name only outcomes of the state and its sugar. `led`
-    are those that have transitions."""
+class _Uses(NamedTuple):
+    """The outcomes of a state that have transitions, and those of failure."""
+
+    led: Collection[str]
+    failing: Collection[str]
+
+
+def _with_known_outcomes(sugar: Sugar, own: tuple[str, ...], uses: _Uses, report: Report) -> Sugar:
+    """The sugar, in which retries and loops name only outcomes of the state and its sugar."""
+    led = uses.led
     first = (*own, TIMEOUT) if sugar.timeout else own
     second = (*first, EXHAUSTED) if sugar.retry else first
-    if sugar.retry is not None:
-        on = _known(sugar.retry.on, first, led, report)
-        sugar = replace(sugar, retry=replace(sugar.retry, on=on))
+    retry = sugar.retry
+    if retry is not None:
+        on = _known(retry.on, first, uses, "retry", report)
+        lost = [word for word in retry.on if word.text == TIMEOUT and TIMEOUT not in first]
+        left = [name for name in first if name not in led]
+        if lost and (len(retry.on) > 1 or len(left) != 1):
+            # It was reported; with a time limit nothing follows from it.
+            place = lost[0].span
+            limit = Timeout(seconds=UNKNOWN_SECONDS, span=place, value_span=place)
+            others = tuple(word for word in retry.on if word.text != TIMEOUT)
+            on = _known(others, first, uses, "retry", [])
+            on = on if on and TIMEOUT in led else (*on, lost[0])
+            sugar = replace(sugar, timeout=limit)
+        sugar = replace(sugar, retry=replace(retry, on=on))
     if sugar.for_each is not None:
-        on = _known(sugar.for_each.on, second, led, report)
+        on = _known(sugar.for_each.on, second, uses, "for_each", report)
         sugar = replace(sugar, for_each=replace(sugar.for_each, on=on))
     loop = sugar.for_each
     if loop and loop.item and not loop.on and not set(second) & set(GOOD_OUTCOMES):
@@ -142,7 +161,11 @@ def _with_known_outcomes(
 
 
 def _known(
-    on: tuple[Word, ...], outcomes: tuple[str, ...], led: Collection[str], report: Report
+    on: tuple[Word, ...],
+    outcomes: tuple[str, ...],
+    uses: _Uses,
+    field: str,
+    report: Report,
 ) -> tuple[Word, ...]:
     """The words that name outcomes. A word that names none is reported; in its place the result has
     the outcome with the most similar name, or else an outcome without a transition."""
@@ -151,22 +174,60 @@ def _known(
         if word.text in (*outcomes, ERROR):
             found.append(word)
             continue
-        others = [name for name in outcomes if name not in led] or list(outcomes[-1:])
+        given = {each.text for each in on}
+        left = [name for name in outcomes if name not in given]
+        fitting = _fitting(outcomes, uses.failing, field)
+        others = [name for name in left if name not in uses.led]
+        others = others or [name for name in left if name in fitting] or list(outcomes[-1:])
         if not word.text:  # it is missing, which was reported
             found += [Word(name, word.span) for name in others[:1]]
             continue
         message = f"this state has no outcome `{word.text}`"
-        known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
-        given = {each.text for each in on}
-        left = [name for name in outcomes if name not in led and name not in given]
-        if len(left) == 1:
-            known = f"write `{left[0]}`, which has no transition"
-        help = did_you_mean(word.text, outcomes) or known
+        help = _other_outcome(word.text, [each.text for each in on], outcomes, uses, field)
         arguments = ("outcome", word.text)
         report.append(wrong_shape(word.span, message, help, arguments=arguments))
         meant = guesser(outcomes)(word.text) or next(iter(others), "")
         found += [Word(meant, word.span)] if meant else []
     return tuple(found)
+
+
+_ADDED_BY = {TIMEOUT: ("timeout", "SECONDS"), EXHAUSTED: ("retry", "{on: [OUTCOME], max: 3}")}
+"""The outcomes that a field adds, each with the field and an example of its value."""
+
+
+def _other_outcome(
+    word: str, given: Sequence[str], outcomes: tuple[str, ...], uses: _Uses, field: str
+) -> str:
+    """The help for a word in `on` of a field that is no outcome of its state."""
+    kept = [name for name in given if name in outcomes]
+    left = [name for name in outcomes if name not in uses.led and name not in given]
+    fitting = _fitting(outcomes, uses.failing, field)
+    kept = kept or (left if len(left) == 1 else fitting)
+    shorter = f"write `on: [{', '.join(kept)}]`" if kept else ""
+    if word == EXHAUSTED and field == "retry":
+        return f"the state ends with `{word}` after the last try: {shorter or 'remove `retry`'}"
+    if word in _ADDED_BY:
+        name, value = _ADDED_BY[word]
+        why = f"a state has the outcome `{word}` only with the field `{name}`"
+        return f"{why}: add `{name}: {value}`, or {shorter or f'remove `{field}`'}"
+    if word == PREEMPTED and shorter:
+        return f"{shorter}: a state that a stop request ends does not run again"
+    if len(left) == 1:
+        return did_you_mean(word, outcomes) or f"write `{left[0]}`, which has no transition"
+    near = did_you_mean(word, outcomes)
+    if near is None and len(fitting) == 1 and fitting[0] not in given:
+        near = f"write `{fitting[0]}` in place of `{word}`"
+    return near or (f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES)
+
+
+def _fitting(outcomes: tuple[str, ...], failing: Collection[str], field: str) -> list[str]:
+    """The outcomes after which a field makes its state run again: those of failure for `retry`,
+    those of success for `for_each`, or those that are no failure."""
+    if field == "retry":
+        return [name for name in outcomes if name in failing]
+    good = [name for name in outcomes if name in GOOD_OUTCOMES]
+    other = {*failing, PREEMPTED, TIMEOUT, EXHAUSTED}
+    return good or [name for name in outcomes if name not in other]
 
 
 UNITS = {
@@ -246,13 +307,14 @@ def _parts(
         meant = _part_meant(word.text, others)
         if meant is None and paired:
             help = paired_help(word.text, paired, ())
-            report.append(unknown_variable(word, owner, others, certain=help))
+            report.append(unknown_variable(word, owner, others, certain=help, required=paired))
             parts[paired] = each.value
             continue
         if meant is None:
             report.append(unknown_variable(word, owner, others))
             continue
-        report.append(unknown_variable(word, owner, known, meant=meant))
+        lost = meant if meant in required and meant not in written else None
+        report.append(unknown_variable(word, owner, known, meant=meant, required=lost))
         parts.setdefault(meant, each.value)
     for name, example in required.items():
         if name not in parts:
