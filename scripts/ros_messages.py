@@ -28,7 +28,7 @@ ROOM = Path(__file__).parents[1] / "smachac" / "frontend" / "messages"
 
 PACKAGES = (
     "action_msgs", "actionlib_msgs", "builtin_interfaces", "control_msgs", "diagnostic_msgs",
-    "geometry_msgs", "lifecycle_msgs", "map_msgs", "move_base_msgs", "nav_msgs", "rosgraph_msgs",
+    "geometry_msgs", "lifecycle_msgs", "map_msgs", "move_base_msgs", "nav_msgs",
     "sensor_msgs", "shape_msgs", "std_msgs", "std_srvs", "stereo_msgs", "tf2_msgs",
     "trajectory_msgs",
     "unique_identifier_msgs", "visualization_msgs",

@@ -15,10 +15,13 @@ from smachac.analysis.message_code import (
     message_code,
 )
 from smachac.analysis.type_lattice import fits, present
+from smachac.checks.class_messages import faults_in_classes
 from smachac.checks.message_reads import (
+    code_places,
     described,
     field_finding,
     near_field,
+    operands_of,
     unknown_field_finding,
     wrong_comparisons,
     wrong_operands,
@@ -115,10 +118,13 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of `code` in the
     project file, in the folder of the script and in those above it up to the root of the
     repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs smachac.
-    The common types of std_msgs, std_srvs and geometry_msgs are known without their files. Without
-    a definition, nothing is checked; but a type is reported if its package has other types of its
-    kind, or its name is that of another kind. Where several are found, such as those of ROS
-    1 and ROS 2, a finding holds for all of them.
+    The types of common packages, such as std_msgs, std_srvs, geometry_msgs, sensor_msgs, nav_msgs
+    and trajectory_msgs, are known without their files. Without a definition, nothing is checked;
+    but a type is reported if its package has other types of its kind, or its name is that of
+    another kind. Where several are found, such as those of ROS 1 and ROS 2, a finding holds for all
+    of them. In the classes of state types, imports of messages are checked, and the fields of new
+    messages and of the arguments of callbacks. A function that calculates with a whole message, or
+    compares it with a number or a text, is also found.
 
     Wrong:
         name: sm
@@ -173,9 +179,11 @@ def unknown_field(context: Context) -> Iterator[Finding]:
         for slot in code_slots(node, context.machine.state_types):
             code = message_code(slot, node, found, context.machine.functions)
             if code is not None:
-                yield from wrong_reads(path, node, slot, code, found)
-                yield from wrong_comparisons(path, node, slot, code, found)
-                yield from wrong_operands(path, node, slot, code, found)
+                here = code_places(node, slot, code)
+                yield from wrong_reads(path, node, code, found, here)
+                yield from wrong_comparisons(path, node, code, found, here)
+                yield from wrong_operands(path, node, operands_of(slot, code), code, found, here)
+    yield from faults_in_classes(context, found, missing)
 
 
 @rule(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from smachac.analysis.code_slots import CodeSlot
@@ -39,7 +39,7 @@ SHORTEST_PART = 3
 
 
 def wrong_comparisons(
-    path: str, leaf: Leaf, slot: CodeSlot, code: MessageCode, found: Definitions
+    path: str, leaf: Leaf, code: MessageCode, found: Definitions, here: tuple[Related, ...]
 ) -> Iterator[Finding]:
     """Comparisons of a number in a message with a text, or the reverse."""
     for part, operator, value, span in code.uses.comparisons:
@@ -62,20 +62,26 @@ def wrong_comparisons(
             arguments=(part.text, repr(value)),
             help=help,
             effect="the condition always has the same result, or the function fails",
-            related=_code_places(leaf, slot, code),
+            related=(*here, *calls(leaf, span)),
             node=path,
         )
 
 
-def _code_places(leaf: Leaf, slot: CodeSlot, code: MessageCode) -> tuple[Related, ...]:
-    """Where the script names a function with a fault, and where it calls its file."""
+def code_places(leaf: Leaf, slot: CodeSlot, code: MessageCode) -> tuple[Related, ...]:
+    """Where the script names the function in a module with a fault."""
     named = code.function is not None
-    first = other_place(slot.code.span, f"`{leaf.name}` calls it here") if named else ()
-    return (*first, *calls(leaf, slot.code.span))
+    return other_place(slot.code.span, f"`{leaf.name}` calls it here") if named else ()
+
+
+def operands_of(slot: CodeSlot, code: MessageCode) -> tuple[Operand, ...]:
+    """The parts of arguments that have to be values, with the results of a condition."""
+    results = code.results if is_condition(slot) else ()
+    whole = [Operand(each.part, each.span, each.text) for each in results if each.part is not None]
+    return (*code.uses.operands, *whole)
 
 
 def wrong_reads(
-    path: str, leaf: Leaf, slot: CodeSlot, code: MessageCode, found: Definitions
+    path: str, leaf: Leaf, code: MessageCode, found: Definitions, here: tuple[Related, ...]
 ) -> Iterator[Finding]:
     """Fields that a function uses and that its messages do not have."""
     for read in field_reads(code, found):
@@ -89,13 +95,10 @@ def wrong_reads(
             or {name, name.rstrip("_")} & (known | constants)
         ):
             continue
-        finding = unknown_field_finding(path, leaf, word, messages)
+        finding = unknown_field_finding(path, leaf, word, messages, here=here)
         level = _level_help(read, code, found)
         if level is not None:
             finding = replace(finding, help=level)
-        if code.function is not None:
-            here = other_place(slot.code.span, f"`{leaf.name}` calls it here")
-            finding = replace(finding, related=(*here, *finding.related))
         yield finding
 
 
@@ -113,8 +116,7 @@ def _level_help(read: FieldRead, code: MessageCode, found: Definitions) -> str |
     the message: `message.force` of a WrenchStamped is `message.wrench.force`."""
     name, text = read.part.name, read.part.text
     owner = text[: -len(name.text)]
-    after = [each for each in code.uses.parts if each.text.startswith(f"{text}.")]
-    whole = next((each for each in after if _follows(each, read.part)), read.part)
+    whole = _whole(read.part, code.uses.parts)
     rest = whole.text[len(text) :]
     guess = near_field(name.text, [each.name for each in read.messages[0].fields])
     if guess is not None and name.text in guess:
@@ -126,10 +128,14 @@ def _level_help(read: FieldRead, code: MessageCode, found: Definitions) -> str |
     return f"write `{owner}{deeper}{rest}`" if deeper is not None else None
 
 
-def _follows(part: Part, before: Part) -> bool:
-    """Whether a part of an argument is another one at the same place and one more name."""
-    start, end = part.name.span.start, before.name.span.end
-    return part.name.span.source is before.name.span.source and start == end + 1
+def _whole(part: Part, parts: Sequence[Part]) -> Part:
+    """The longest part of an argument that begins with another one, at its place."""
+    longer = [each for each in parts if each.text.startswith(f"{part.text}.")]
+    for each in sorted(longer, key=lambda each: len(each.steps)):
+        name = each.name.span
+        if name.source is part.name.span.source and name.start == part.name.span.end + 1:
+            part = each
+    return part
 
 
 def _deeper(name: str, messages: Sequence[Message], found: Definitions) -> str | None:
@@ -150,16 +156,16 @@ def _deeper(name: str, messages: Sequence[Message], found: Definitions) -> str |
 
 
 def wrong_operands(
-    path: str, leaf: Leaf, slot: CodeSlot, code: MessageCode, found: Definitions
+    path: str,
+    leaf: Leaf,
+    operands: Iterable[Operand],
+    code: MessageCode,
+    found: Definitions,
+    here: tuple[Related, ...],
 ) -> Iterator[Finding]:
     """Messages with which a function calculates as if they were numbers or texts, whose fields it
     reads as items, or that are the result of a condition."""
-    whole = [
-        Operand(each.part, each.span, each.text)
-        for each in (code.results if is_condition(slot) else ())
-        if each.part is not None
-    ]
-    for each in (*code.uses.operands, *whole):
+    for each in operands:
         content = content_of(each.part, code, found)
         messages = nested_messages(content, found) if content else []
         if messages:
@@ -170,7 +176,7 @@ def wrong_operands(
                 arguments=(each.part.text, messages[0].name),
                 help=_operand_help(each, messages[0]),
                 effect="the function fails, or the condition always has the same result",
-                related=_code_places(leaf, slot, code),
+                related=(*here, *calls(leaf, each.span)),
                 node=path,
             )
 
@@ -202,8 +208,10 @@ def unknown_field_finding(
     also: str = "",
     effect: str | None = None,
     other: str = "",
+    here: tuple[Related, ...] = (),
 ) -> Finding:
-    """`also`: the other place of the script that has the name; `other`: another type."""
+    """`also`: the other place of the script that has the name; `other`: another type; `here`: the
+    place that uses the code."""
     names = sorted({each.name for message in messages for each in message.fields})
     known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
     if len(names) == 1 and not other:
@@ -213,7 +221,8 @@ def unknown_field_finding(
     if guess and also:
         help += f" Write it here{also}, and remap it: `remapping: {{{guess}: {word.text}}}`"
     message = f"{described(messages[0])} has no field `{word.text}`"
-    return field_finding(path, leaf, word, message, help, messages, effect)
+    finding = field_finding(path, leaf, word, message, help, messages, effect)
+    return replace(finding, related=(*here, *finding.related)) if here else finding
 
 
 def described(message: Message) -> str:

@@ -8,7 +8,7 @@ not valid gives no definition, because its package does not build either.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -16,6 +16,7 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
 from smachac.frontend.standard_messages import packages_with, standard_package
+from smachac.ir.class_facts import ClassFacts
 from smachac.ir.leaf import given_fields, type_text
 from smachac.ir.message_types import (
     PARTS,
@@ -125,11 +126,13 @@ def _without_places(definition: Definition) -> Definition:
     return replace(definition, messages=tuple(messages), span=NOWHERE)
 
 
-def definitions_of(base: State, library: Library) -> Definitions:
-    """The definitions of the types that the states of a script name, and those of the messages in
-    their fields."""
+def definitions_of(base: State, classes: Iterable[ClassFacts], library: Library) -> Definitions:
+    """The definitions of the types that the states of a script and the classes of their types name,
+    and those of the messages in their fields."""
     found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
     todo: list[tuple[DefinitionKind, str]] = list(_named_types(base))
+    for facts in classes:
+        todo += [(kind, text) for kind, text, _ in _readings(facts)]
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:
@@ -208,9 +211,18 @@ def _nested(definition: Definition) -> list[str]:
     return [each.type.name for each in fields if each.type.name not in PRIMITIVES]
 
 
-def missing_definitions_of(base: State, found: Definitions, library: Library) -> MissingDefinitions:
-    """The types in the states of a script whose package has types of their kind, but not these, or
-    types of these names, but of another kind.
+def _readings(facts: ClassFacts) -> Iterator[tuple[DefinitionKind, str, str]]:
+    """The types and messages that a class can mean."""
+    if facts.messages is not None:
+        for ref, _ in facts.messages.named:
+            yield from ref.readings()
+
+
+def missing_definitions_of(
+    base: State, classes: Iterable[ClassFacts], found: Definitions, library: Library
+) -> MissingDefinitions:
+    """The types in the states of a script, or in the classes of their types, whose package has
+    types of their kind, but not these, or types of these names, but of another kind.
 
     Types that ROS 1 makes of an action, such as `TestActionGoal`, and those with a definition in
     the format of the OMG (`.idl`) are not missing.
@@ -223,6 +235,14 @@ def missing_definitions_of(base: State, found: Definitions, library: Library) ->
         absent = missing_type(word, kind, library)
         if absent is not None:
             missing[kind, text] = absent
+    for facts in classes:
+        for ref, _ in facts.messages.named if facts.messages is not None else ():
+            readings = ref.readings()
+            if not any((kind, text) in found for kind, text, _ in readings):
+                kind, text, _ = readings[0]
+                absent = missing_type(TypeName(ref.package, ref.name), kind, library)
+                if absent is not None:
+                    missing[kind, text] = absent
     return missing
 
 
@@ -244,7 +264,8 @@ def missing_type(word: TypeName, kind: DefinitionKind, library: Library) -> Miss
     other = kinds[0] if kinds else None
     if not names and other is None and not is_listed(word.package, library):
         return None
-    packages = [] if other is not None else packages_with(word.name, kind, library.ros)
+    packages = packages_with(word.name, kind, library.ros) if other is None else []
+    packages = [each for each in packages if each != word.package]
     return Missing(tuple(sorted(names)), other, tuple(packages))
 
 

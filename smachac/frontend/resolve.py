@@ -214,13 +214,18 @@ class _Resolver:
         if "types" in entries:
             self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
-        definitions = definitions_of(base, self.library)
+        classes = [
+            type_.class_facts
+            for type_ in self.types.values()
+            if type_ is not None and type_.class_facts is not None
+        ]
+        definitions = definitions_of(base, classes, self.library)
         script = Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
             definitions=definitions,
-            missing_definitions=missing_definitions_of(base, definitions, self.library),
+            missing_definitions=missing_definitions_of(base, classes, definitions, self.library),
             other_types=other_types_of(base, definitions, self.library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),

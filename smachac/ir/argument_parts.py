@@ -135,16 +135,19 @@ def result_of(node: ast.expr, names: Collection[ast.Name], places: Places) -> Re
     return Result(text, span, "part" if part is not None else "", None, part)
 
 
-def own_names(body: Iterable[ast.stmt], parameters: Iterable[str]) -> list[ast.Name]:
-    """The places in a function with statements that read its parameters. None of a parameter that
-    is set again in it, or whose class or fields it tests; none at all in a `try`."""
+def own_names(
+    body: Iterable[ast.stmt], parameters: Iterable[str], assigned: Collection[str] = ()
+) -> list[ast.Name]:
+    """The places in a function with statements that read its parameters, or variables that it has
+    `assigned` once. None of a parameter that is set again in it, or whose class or fields it tests;
+    none at all in a `try`."""
     nodes = [each for line in body for each in ast.walk(line)]
     lost: set[str] = set()
     caught: set[ast.AST] = set()
     for node in nodes:
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
-                lost.add(name)
+                lost.update({name} - {*assigned})
             case (
                 ast.arg(arg=name) | ast.ExceptHandler(name=str(name)) | ast.alias(asname=str(name))
             ):
