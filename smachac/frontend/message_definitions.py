@@ -91,6 +91,10 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
     names = [word.name]
     if kind == "action" and word.name.endswith("Action"):
         names.append(word.name.removesuffix("Action"))
+    if not library.definition_names(f"{word.package}/{kind}"):
+        common = _standard(word.package, names, kind, library)
+        if common:
+            return common
     for name in names:
         path = f"{word.package}/{kind}/{name}.{kind}"
         sources = library.definitions(path)
@@ -98,9 +102,7 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
             read = [read_definition(each, TypeName(word.package, name), kind) for each in sources]
             found = tuple(each for each in read if each is not None)
             return found if len(found) == len(read) else ()
-    if library.definition_names(f"{word.package}/{kind}"):
-        return ()
-    return _standard(word.package, names, kind, library)
+    return ()
 
 
 def _standard(
@@ -272,9 +274,9 @@ def missing_type(word: TypeName, kind: DefinitionKind, library: Library) -> Miss
 def is_listed(package: str, library: Library) -> bool:
     """Whether all types of a package are known: it is a common one, and no folder of the user or of
     an installation has a package of its name."""
-    if any(library.definition_names(f"{package}/{kind}") for kind in PARTS):
+    if not standard_package(package, library.ros).is_complete:
         return False
-    return standard_package(package, library.ros).is_complete
+    return not any(library.definition_names(f"{package}/{kind}") for kind in PARTS)
 
 
 def _names_in(package: str, kind: DefinitionKind, library: Library) -> list[str]:
