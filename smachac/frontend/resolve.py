@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Literal
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, has_errors
@@ -220,14 +221,17 @@ class _Resolver:
         if "types" in entries:
             self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
-        definitions = definitions_of(base, self.library)
+        known = [each for each in self.types.values() if each is not None]
+        classes = [each.class_facts for each in known if each.class_facts is not None]
+        library = replace(self.library, definition_names=cache(self.library.definition_names))
+        definitions = definitions_of(base, classes, library)
         script = Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
             definitions=definitions,
-            missing_definitions=missing_definitions_of(base, definitions, self.library),
-            other_types=other_types_of(base, definitions, self.library),
+            missing_definitions=missing_definitions_of(base, classes, definitions, library),
+            other_types=other_types_of(base, definitions, library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=params_of(entries.get("params")),
