@@ -162,8 +162,11 @@ def _known(
         if len(left) == 1:
             known = f"write `{left[0]}`, which has no transition"
         help = did_you_mean(word.text, outcomes) or known
+        if word.text == TIMEOUT:
+            help = "add `timeout: 20s` to the state: it adds this outcome; or remove `timeout` here"
+        effect = f"its outcomes are {listed(outcomes)}" if outcomes else None
         arguments = ("outcome", word.text)
-        report.append(wrong_shape(word.span, message, help, arguments=arguments))
+        report.append(wrong_shape(word.span, message, help, arguments=arguments, effect=effect))
         meant = guesser(outcomes)(word.text) or next(iter(others), "")
         found += [Word(meant, word.span)] if meant else []
     return tuple(found)
