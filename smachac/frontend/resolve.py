@@ -67,6 +67,7 @@ from smachac.frontend.state_fields import (
     TEMPLATE_WORDS,
     Entries,
     accepts,
+    another_state,
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
@@ -311,7 +312,7 @@ class _Resolver:
         sugar: Sugar | None = fields.get("sugar")
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
-        if owner == "state" and has_wrong_transitions(entries, fields):
+        if owner != "base" and has_wrong_transitions(entries, fields):
             return unknown_state(name, (), around.via)
         if owner == "state" and has_unknown_outcomes(entries):
             return unknown_state(name, fields.get("transitions", ()), around.via)
@@ -419,10 +420,8 @@ class _Resolver:
             if state is None:
                 continue
             if owner == "Iterator" and found:
-                message = "an Iterator must contain exactly one state; this is another one"
-                help = "put the states into a StateMachine inside the Iterator"
-                arguments = ("iterator", state.name.text)
-                self.report.append(wrong_shape(state.name.span, message, help, arguments=arguments))
+                self.report.append(another_state(name.text, found[0].name.text, state.name))
+                continue
             found.append(state)
         return tuple(found)
 

@@ -627,3 +627,17 @@ def second_key(name: Word, fields: Map, other: Entry) -> Diagnostic:
         (Related(span=name.span, message="the first key"),),
         arguments=("item", name.text, str(key.value)),
     )
+
+
+def another_state(iterator: str, first: str, other: Word) -> Diagnostic:
+    """SM004 for a further state in an Iterator."""
+    message = f"the Iterator `{iterator}` has the state `{first}`: `{other.text}` is another one"
+    help = f"indent `{other.text}` like `{iterator}` if it comes after the loop; or put `{first}`"
+    help += f" and `{other.text}` into a StateMachine inside `{iterator}`"
+    return wrong_shape(
+        other.span,
+        message,
+        help,
+        arguments=("iterator", other.text),
+        effect="an Iterator has exactly one state, which it runs for each item",
+    )

@@ -184,8 +184,9 @@ def _known(
             continue
         message = f"this state has no outcome `{word.text}`"
         help = _other_outcome(word.text, [each.text for each in on], outcomes, uses, field)
+        effect = f"its outcomes are {listed(outcomes)}" if outcomes else None
         arguments = ("outcome", word.text)
-        report.append(wrong_shape(word.span, message, help, arguments=arguments))
+        report.append(wrong_shape(word.span, message, help, arguments=arguments, effect=effect))
         meant = guesser(outcomes)(word.text) or next(iter(others), "")
         found += [Word(meant, word.span)] if meant else []
     return tuple(found)
@@ -252,16 +253,42 @@ def duration(tree: Tree, report: Report) -> float | None:
 def _duration_meant(tree: Tree) -> str | None:
     """The help for a duration with another word for its unit, such as `20 sec`, and for one of
     several parts, such as `1m30s`."""
-    parts = _PARTS.findall(tree.span.text) if isinstance(tree, Scalar) else []
+    if isinstance(tree, Seq | Map):
+        return _duration_inside(tree)
+    number, arrow, target = tree.span.text.partition("->")
+    if arrow and _DURATION.fullmatch(number.strip()) is not None and target.strip():
+        return (
+            f"write `timeout: {number.strip()}`, and `timeout: {target.strip()}` in `transitions`"
+        )
+    parts = _PARTS.findall(tree.span.text)
     if len(parts) > 1 and "".join(map("".join, parts)) == "".join(tree.span.text.split()):
         units = [unit if unit in SECONDS else UNITS.get(unit, "") for _, unit in parts]
         if all(units):
             seconds = sum(float(number) * SECONDS[unit]
                           for (number, _), unit in zip(parts, units, strict=True))  # fmt: skip
             return f"write it with one unit: `{seconds:g}s`"
-    found = _DURATION.fullmatch(tree.span.text) if isinstance(tree, Scalar) else None
+    found = _DURATION.fullmatch(tree.span.text)
     unit = UNITS.get(found.group(2)) if found is not None else None
     return f"write it as `{found.group(1)}{unit}`" if found is not None and unit else None
+
+
+def _duration_inside(tree: Seq | Map) -> str | None:
+    """The help for a list or a mapping with one duration, such as `{seconds: 5}`."""
+    if isinstance(tree, Seq):
+        values = [("", item) for item in tree.items]
+    else:
+        values = [(str(entry.key.value), entry.value) for entry in tree.entries]
+    if len(values) != 1 or not isinstance(values[0][1], Scalar):
+        return None
+    name, text = values[0][0], values[0][1].span.text
+    limit = _DURATION.fullmatch(name)
+    if limit is not None and limit[2] in SECONDS:
+        return f"write `timeout: {name}`, and `timeout: {text}` in `transitions`"
+    found = _DURATION.fullmatch(text)
+    if found is None:
+        return None
+    unit = found[2] or UNITS.get(name, name if name in SECONDS else "") or "s"
+    return f"write it as `{found[1]}{unit}`"
 
 
 def _timeout(entry: Entry, report: Report) -> Timeout:
@@ -278,16 +305,23 @@ def _timeout(entry: Entry, report: Report) -> Timeout:
 
 
 def _parts(
-    entry: Entry, known: tuple[str, ...], required: Mapping[str, str], report: Report
+    entry: Entry,
+    known: tuple[str, ...],
+    required: Mapping[str, str],
+    report: Report,
+    own: tuple[str, ...] = (),
 ) -> dict[str, Tree] | None:
     """The entries of a mapping with known keys, without those that are missing; None for other
-    values. All errors are reported. `required`: keys that must be there, with example values."""
+    values. All errors are reported. `required`: keys that must be there, with example values.
+    `own` are the outcomes of the state."""
     if not isinstance(entry.value, Map):
-        wrong(entry.value, "map", report, _mapping_for(entry, required))
+        wrong(entry.value, "map", report, _mapping_for(entry, required, own))
         return None
-    pair = _pair_for(entry)
+    pair = _pair_for(entry) or _tries_for(entry, own)
     if pair is not None:
         message = "`for_each` has two parts, the name of its item and its list"
+        if "on" in known and "max" in known:
+            message = "`retry` has two parts, the outcomes `on` and the number of tries `max`"
         report.append(wrong_shape(entry.value.span, message, pair, arguments=("pair",)))
         return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
@@ -352,6 +386,9 @@ def _pair_for(entry: Entry) -> str | None:
     entries = entry.value.entries if isinstance(entry.value, Map) else ()
     if entry.key.value != "for_each" or not entries:
         return None
+    sentence = _SENTENCE.fullmatch(str(entries[0].key.value))
+    if sentence is not None and len(entries) == 1:
+        return f"write `for_each: {{item: {sentence[1]}, in: {sentence[2]}}}`"
     (word, *others), items = [str(each.key.value) for each in entries], entries[0].value.span.text
     parts = ("in", "item", "on")
     if any(name in parts or _part_meant(name, parts) for name in (word, *others)):
@@ -362,17 +399,32 @@ def _pair_for(entry: Entry) -> str | None:
     return f"{help}; there is no part {either(others)}" if others else help
 
 
-def _mapping_for(entry: Entry, required: Mapping[str, str]) -> str:
-    """How a field is written whose value is no mapping, with the user's value where it belongs."""
+def _tries_for(entry: Entry, own: tuple[str, ...]) -> str | None:
+    """How tries are written whose mapping is `{outcome: 3}`; None for other mappings."""
+    entries = entry.value.entries if isinstance(entry.value, Map) else ()
+    if entry.key.value != "retry" or len(entries) != 1:
+        return None
+    name, value = entries[0].key.value, entries[0].value
+    if name not in own or not isinstance(value, Scalar) or type(value.value) is not int:
+        return None
+    return f"write `retry: {{on: [{name}], max: {value.value}}}`"
+
+
+def _mapping_for(entry: Entry, required: Mapping[str, str], own: tuple[str, ...]) -> str:
+    """How a field is written whose value is no mapping, with the user's value where it belongs.
+    `own` are the outcomes of the state."""
     value, text = entry.value, entry.value.span.text
     if entry.key.value == "for_each":
         items = text if isinstance(value, (Seq, Scalar)) and "\n" not in text and text else "KEY"
-        sentence = _SENTENCE.fullmatch(text)
+        sentence = _SENTENCE.fullmatch(text.strip("'\""))
         meant = required["item"], items
         item, items = (sentence[1], sentence[2]) if sentence is not None else meant
         return f"write `for_each: {{item: {item}, in: {items}}}`"
-    number = value.value if isinstance(value, Scalar) and type(value.value) is int else 3
-    return f"write `retry: {{on: [OUTCOME], max: {number}}}`, with the outcomes to try again after"
+    numbers = re.findall(r"(?<![\w.])\d+(?![\w.])", text)
+    named = [name for name in own if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text)]
+    on = f"[{', '.join(named)}]" if named else required["on"]
+    help = f"write `retry: {{on: {on}, max: {numbers[0] if numbers else 3}}}`"
+    return help if named else f"{help}, with the outcomes to try again after"
 
 
 def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
@@ -380,7 +432,7 @@ def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
     because of them. `own` are the outcomes of the state."""
     failures = [name for name in own if is_failure(name)] or ["OUTCOME"]
     required = {"on": f"[{', '.join(failures)}]", "max": "3"}
-    parts = _parts(entry, ("on", "max", "delay"), required, report) or {}
+    parts = _parts(entry, ("on", "max", "delay"), required, report, own) or {}
     on = as_names(parts["on"], report) if "on" in parts else (Word("", entry.key.span),)
     most = _tries(parts["max"], report) if "max" in parts else UNKNOWN_TRIES
     delay = duration(parts["delay"], report) if "delay" in parts else 0.0
@@ -415,6 +467,12 @@ def _for_each(entry: Entry, inputs: tuple[str, ...], report: Report) -> ForEach:
     unknown = Value(data=Expression(text=UNKNOWN, span=value.span), span=value.span)
     name = as_name(parts["item"], report) if "item" in parts else None
     items = as_items(parts["in"], report) if "in" in parts else unknown
+    given_items = parts.get("in")
+    sentence = _SENTENCE.fullmatch(given_items.span.text) if given_items is not None else None
+    if sentence is not None and given_items is not None:
+        message = f"`in` has the list alone: `{sentence[1]} in` is one word too many"
+        help = f"write `in: {sentence[2]}`"
+        report.append(wrong_shape(given_items.span, message, help, arguments=("sentence",)))
     item = name.text if name is not None and len(report) == before else ""
     on = as_names(parts["on"], report) if "on" in parts else ()
     return ForEach(
