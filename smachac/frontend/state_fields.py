@@ -515,7 +515,16 @@ def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterato
         called = name == "callbacks" or role in ("callbacks", "conditions")
         value = as_value(entry.value, code=called)
         declared = known.type if known is not None else ANY
-        yield Variable(name=name, type=declared, role=role, value=value, span=entry.key.span)
+        yield Variable(
+            name=name,
+            type=declared,
+            role=role,
+            takes_userdata=known is not None
+            and known.unquoted == "function"
+            and (known.arguments or ())[:1] == ("userdata",),
+            value=value,
+            span=entry.key.span,
+        )
 
 
 def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, report: Report) -> None:

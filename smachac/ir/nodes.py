@@ -111,12 +111,16 @@ class Limits:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variable:
     """A variable of a state type with its value in the script, and its type and role in the
-    interface."""
+    interface.
+
+    `takes_userdata`: the value is a function whose first argument is the userdata of the state.
+    """
 
     name: str
     value: Value
     type: Type = ANY
     role: VariableRole = field(default="", compare=False, repr=False)
+    takes_userdata: bool = field(default=False, compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
