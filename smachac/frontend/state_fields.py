@@ -139,7 +139,8 @@ def read_fields(
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
         read["name"] = name
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
-        read["default_outcome"] = name_of(entries["default_outcome"].value)
+        given = entries["default_outcome"].value
+        read["default_outcome"] = None if is_known_wrong(given) else name_of(given)
     if not NAMES.isdisjoint(entries):
         written = (word.text for word, _ in read.get("input_keys", ()))
         inputs = (*written, *(key.name for key in type_.input_keys))

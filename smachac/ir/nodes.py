@@ -378,12 +378,14 @@ ContainerKind = Literal["StateMachine", "Sequence", "Concurrence", "Iterator"]
 
 class Unused(NamedTuple):
     """A declaration of the script that is not used, and the calls of sub-scripts that lead to it.
-    `known` are the params that the state with an unused one uses and does not define."""
+    `known` are the params that the state with an unused one uses and does not define, `kept` the
+    values that a called sub-script has for some of them."""
 
     what: Literal["param", "type"]
     word: Word
     via: tuple[Span, ...] = ()
     known: tuple[str, ...] = ()
+    kept: Mapping[str, Span] = {}
 
 
 DeclarationKind = Literal["interface", "state", "container", "child"]
