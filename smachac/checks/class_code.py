@@ -360,6 +360,10 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             if renamed and renamed[0] in inputs:
                 help = f"write `{_owner(word)}.{renamed[0]}`: `{word.text}` is the name of this key"
                 help += f" around `{leaf.name}`"
+            lone = _lone_input(facts, inputs, known) if word.text not in outputs else None
+            if lone is not None and guesser(inputs)(word.text) is None and not renamed:
+                message += f", and it never reads its input key `{lone}`"
+                help = f"write `{_owner(word)}.{lone}`" if _owner(word) else f"write `{lone}`"
             if word.text in outputs:
                 message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
                 message += " key of its interface"
@@ -433,6 +437,10 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
             unset = [key for key in outputs if key not in written and key not in inputs]
             near = guesser(unset if only else outputs)(word.text)
             guess = did_you_mean(near)
+            lone = lone_output(facts, inputs, outputs)
+            if near is None and lone is not None and lone[0] == word.text:
+                near = lone[1]
+                guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
             never = f", and `{near}` is never set" if near in unset and sure else ""
             yield Finding(
                 span=word.span,
@@ -445,6 +453,38 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 related=used_here(leaf),
                 node=path,
             )
+
+
+def lone_output(
+    facts: ClassFacts, inputs: Collection[str], outputs: Collection[str]
+) -> tuple[str, str] | None:
+    """The only key that a class sets without an output in its interface, and the only output key
+    that it never sets: both are one slip. None if that is not certain."""
+    listed_ = {word.text for word in facts.outputs or ()}
+    local = {key for key, _ in facts.unused}
+    written = {word.text for word in facts.writes}
+    wrong = written - {*inputs, *outputs, *(word.text for word in facts.reads)}
+    unset = [key for key in outputs if key not in written and key not in inputs]
+    known = facts.endings and all(each.written is not None for each in facts.endings)
+    if not known or len(wrong) != 1 or len(unset) != 1 or local & {*unset} or listed_ & wrong:
+        return None
+    return (*wrong, *unset)
+
+
+def _lone_input(facts: ClassFacts, inputs: Collection[str], known: Collection[str]) -> str | None:
+    """The only input key that the code of a class does not read, where it reads exactly one key
+    that is none of the `known` ones."""
+    read = {word.text for word in facts.reads}
+    wrong = read - {*known} - DICTIONARY_METHODS
+    unread = [key for key in inputs if key not in read]
+    sure = facts.endings and all(each.written is not None for each in facts.endings)
+    listed_ = {word.text for word in facts.inputs or ()}
+    written = {word.text for word in facts.writes}
+    return (
+        unread[0]
+        if sure and len(wrong) == len(unread) == 1 and not wrong & (listed_ | written)
+        else None
+    )
 
 
 def first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
