@@ -42,8 +42,9 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
     """The keys, under the leaf's names, that must be set when it is entered.
 
     These are its declared inputs except optional ones; keys with the role `argument` only if a
-    function of the script reads them, or can read them because its code is not known. `raw`: the leaf sees every key of its container, as the child
-    of an iterator does (docs/semantics.md, Iterator).
+    function of the script reads them, or can read them because its code is not known. `raw`: the
+    leaf sees every key of its container, as the child of an iterator does (docs/semantics.md,
+    Iterator).
     """
     if leaf.open or not (leaf.inputs or raw):
         return ()

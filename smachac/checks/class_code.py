@@ -6,6 +6,7 @@ of a class is reported once, with the first state of its type as a related place
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
@@ -410,13 +411,19 @@ def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
 
 def _local_variable(word: Word) -> str:
     """The help for a read of a key that the code itself sets: the way to do without it."""
-    after = word.span.source.text[word.span.end :][:20].lstrip(" ]")
+    after = word.span.source.text[word.span.end :][:60].lstrip(" ]")
     what = "compute the value" if after.startswith(("+=", "-=", "*=", "/=")) else "keep the value"
+    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
+    whole = _WHOLE.match(after)
+    if whole is not None:
+        return f"write `{key} = {whole[1]}`"
     if after.startswith(COLLECTS):
         what = "collect the items"
-    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
     return f"{what} in a local variable, and set `{key}` once, before the return"
 
+
+_WHOLE = re.compile(r"\.(?:extend|update)\((\w+)\)\s*\n")
+"""A call that adds all items of a variable."""
 
 COLLECTS = (".append(", ".extend(", ".insert(", ".add(", ".update(")
 """The calls by which code collects items in a list, a set or a dictionary."""

@@ -109,9 +109,11 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
         lone = lone_output(facts, kept, [key.name for key in type_.output_keys])
         misspelt |= {lone[1]} if lone is not None else set()  # SM308
         unused = dict(facts.unused)
+        read = {word.text for word in facts.reads} if not facts.passed else set()
+        collected = read - {word.text for word in facts.writes}
         for key in outputs:
-            if key in misspelt:
-                continue
+            if key in misspelt or key in collected:
+                continue  # SM308, SM310
             found = [*_unwritten(path, leaf, type_, facts, key)]
             if found and key in unused:
                 found = [_local(path, leaf, key, unused[key])]

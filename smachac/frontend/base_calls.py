@@ -39,7 +39,7 @@ def base_call_faults(own: OwnClass) -> Iterator[ClassFault]:
             continue
         faults = [*_name_faults(call)] or [*_count_faults(call)]
         if not faults and at == 0:
-            faults = [*_shifted(own, call)]
+            faults = [*_shifted(own, call)] or [*_exchanged(own, call, own.classes[0][0])]
         yield from faults
 
 

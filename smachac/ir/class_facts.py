@@ -95,6 +95,10 @@ FaultKind = Literal[
     "lost text",
     "no value",
     "no member",
+    "called early",
+    "other order",
+    "number of values",
+    "no module here",
 ]
 
 ANY = "*"
