@@ -85,10 +85,11 @@ def _fields_of_functions(leaf: Leaf) -> Iterator[Fields | None]:
         if held.takes_userdata and isinstance(data, str | Expression):
             text = data if isinstance(data, str) else data.text
             tree = python_tree(text.strip().strip("`"))
-            arguments = (
-                [*tree.args.posonlyargs, *tree.args.args] if isinstance(tree, ast.Lambda) else []
-            )
-            yield fields_of(tree.body, {arguments[0].arg}) if arguments else None
+            known: Fields | None = None
+            if isinstance(tree, ast.Lambda):
+                names = [each.arg for each in (*tree.args.posonlyargs, *tree.args.args)]
+                known = fields_of(tree.body, names[:1]) if names else None
+            yield known
 
 
 def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:

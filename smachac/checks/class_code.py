@@ -475,7 +475,7 @@ def lone_output(
     known = facts.endings and all(each.written is not None for each in facts.endings)
     if not known or len(wrong) != 1 or len(unset) != 1 or local & {*unset} or listed_ & wrong:
         return None
-    return (*wrong, *unset)
+    return min(wrong), unset[0]
 
 
 def _lone_input(facts: ClassFacts, inputs: Collection[str], known: Collection[str]) -> str | None:

@@ -84,6 +84,7 @@ FaultKind = Literal[
     "too many arguments",
     "missing base argument",
     "shifted arguments",
+    "exchanged arguments",
     "no state class",
     "not called",
     "function not called",

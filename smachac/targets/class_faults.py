@@ -161,6 +161,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " `outcomes`",
         "write `{near}`",
     ),
+    "exchanged arguments": (
+        "`{word}` and `{more}` have changed places in this call of `__init__` of `{owner}`",
+        "write `{near}`",
+    ),
     "no state class": (
         "`{word}` is not a class of SMACH",
         "write `{near}`",
@@ -470,6 +474,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "missing base argument": _RAISED,
     "shifted arguments": "the state does not have the outcomes that it returns: the machine stops"
     " with an error",
+    "exchanged arguments": "the state has other outcomes or keys than its code uses: the machine"
+    " stops with an error",
     "no state class": "the definition of the class raises an error when the program starts",
     "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
     "no parameter": _PASSED,
@@ -518,6 +524,7 @@ WRITTEN = frozenset[FaultKind](
         "no state class",
         "missing base argument",
         "shifted arguments",
+        "exchanged arguments",
         "not called",
         "function not called",
         "no effect",
