@@ -192,7 +192,7 @@ def _shifted(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
     at = positional.index("outcomes") - 1
     if at < 0 or len(call.arguments) < at + 2:
         return
-    returned: set[object] = {each.value for line in returns_of(found[1].body) if line.value
+    returned = {each.value for line in returns_of(found[1].body) if line.value is not None
                 for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
     early, late = _texts(call.arguments[at]), _texts(call.arguments[at + 1])
     if early is None or late is None or not early & returned or late & returned:
@@ -290,7 +290,7 @@ def _uses(own: OwnClass) -> dict[str, set[object]] | None:
     userdata = found[1].args.args[1].arg
     accesses = [access for each in ast.walk(found[1])
                 if (access := access_of(each, userdata)) is not None]  # fmt: skip
-    returned = {each.value for line in returns_of(found[1].body) if line.value is not None
+    returned: set[object] = {each.value for line in returns_of(found[1].body) if line.value
                 for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
     return {
         "outcomes": returned,
