@@ -143,7 +143,7 @@ def _set_by(child: Node) -> set[str]:
 def _is_dead(scope: UserdataScope, writer: Node, own: str) -> bool:
     """Whether no state in the container reads a key after the writer has set it."""
     if isinstance(scope.container, Concurrence):
-        return not any(own in keys for keys in scope.reads.values())
+        return not any(own in keys for vertex, keys in scope.reads.items() if vertex != writer.name)
     return _read_after(scope, writer.name, own, again=True, written=True) is None
 
 

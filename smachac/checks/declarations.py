@@ -16,6 +16,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
+from smachac.checks.candidate_keys import meant_by_types
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.empty_remaps import meant_by_empty_remaps
@@ -193,6 +194,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= meant_by_empty_remaps(context)
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
+    found |= meant_by_types(context)  # SM301
     return found | keys_of_misplaced(context.misplaced)  # SM101
 
 

@@ -214,6 +214,10 @@ def with_meant_fields(
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
+    if owner == "state" and "default_outcome" in type_.variables:
+        default = [key for key in unknown if "default" in key.split("_")]
+        if len(default) == 1 and isinstance(entries[default[0]].value, Scalar):
+            meant.setdefault("default_outcome", entries[default[0]])
     found = {name: entry for name, entry in meant.items() if name is not None}
     left = [key for key in unknown if all(entries[key] is not each for each in found.values())]
     return found | paired_fields(left, {*entries, *found}, entries, owner, type_) | entries
