@@ -551,8 +551,6 @@ def lost_output(context: Context) -> Iterator[Finding]:
 def _output_help(key: str, keeper: Container, written: Span | None) -> str:
     """The help for an output that a container lacks. `written`: where a state in a sub-script sets
     it, if the container is the outermost state of that."""
-    if written is None and not keeper.outputs:
-        return f"add `output_keys: [{key}]` to `{keeper.name}`"
     if written is None:
         return f"add `{key}` to the `output_keys` of `{keeper.name}`"
     where = f"the outermost state in `{written.source.name}`"
