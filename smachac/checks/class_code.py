@@ -6,6 +6,7 @@ of a class is reported once, with the first state of its type as a related place
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
@@ -377,6 +378,10 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             if renamed and renamed[0] in inputs:
                 help = f"write `{_owner(word)}.{renamed[0]}`: `{word.text}` is the name of this key"
                 help += f" around `{leaf.name}`"
+            lone = _lone_input(facts, inputs, known) if word.text not in outputs else None
+            if lone is not None and guesser(inputs)(word.text) is None and not renamed:
+                message += f", and it never reads its input key `{lone}`"
+                help = f"write `{_owner(word)}.{lone}`" if _owner(word) else f"write `{lone}`"
             if word.text in outputs:
                 message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
                 message += " key of its interface"
@@ -423,13 +428,19 @@ def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
 
 def _local_variable(word: Word) -> str:
     """The help for a read of a key that the code itself sets: the way to do without it."""
-    after = word.span.source.text[word.span.end :][:20].lstrip(" ]")
+    after = word.span.source.text[word.span.end :][:60].lstrip(" ]")
     what = "compute the value" if after.startswith(("+=", "-=", "*=", "/=")) else "keep the value"
+    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
+    whole = _WHOLE.match(after)
+    if whole is not None:
+        return f"write `{key} = {whole[1]}`"
     if after.startswith(COLLECTS):
         what = "collect the items"
-    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
     return f"{what} in a local variable, and set `{key}` once, before the return"
 
+
+_WHOLE = re.compile(r"\.(?:extend|update)\((\w+)\)\s*\n")
+"""A call that adds all items of a variable."""
 
 COLLECTS = (".append(", ".extend(", ".insert(", ".add(", ".update(")
 """The calls by which code collects items in a list, a set or a dictionary."""
@@ -450,6 +461,10 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
             unset = [key for key in outputs if key not in written and key not in inputs]
             near = guesser(unset if only else outputs)(word.text)
             guess = did_you_mean(near)
+            lone = lone_output(facts, inputs, outputs)
+            if near is None and lone is not None and lone[0] == word.text:
+                near = lone[1]
+                guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
             never = f", and `{near}` is never set" if near in unset and sure else ""
             yield Finding(
                 span=word.span,
@@ -462,6 +477,38 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 related=used_here(leaf),
                 node=path,
             )
+
+
+def lone_output(
+    facts: ClassFacts, inputs: Collection[str], outputs: Collection[str]
+) -> tuple[str, str] | None:
+    """The only key that a class sets without an output in its interface, and the only output key
+    that it never sets: both are one slip. None if that is not certain."""
+    listed_ = {word.text for word in facts.outputs or ()}
+    local = {key for key, _ in facts.unused}
+    written = {word.text for word in facts.writes}
+    wrong = written - {*inputs, *outputs, *(word.text for word in facts.reads)}
+    unset = [key for key in outputs if key not in written and key not in inputs]
+    known = facts.endings and all(each.written is not None for each in facts.endings)
+    if not known or len(wrong) != 1 or len(unset) != 1 or local & {*unset} or listed_ & wrong:
+        return None
+    return min(wrong), unset[0]
+
+
+def _lone_input(facts: ClassFacts, inputs: Collection[str], known: Collection[str]) -> str | None:
+    """The only input key that the code of a class does not read, where it reads exactly one key
+    that is none of the `known` ones."""
+    read = {word.text for word in facts.reads}
+    wrong = read - {*known} - DICTIONARY_METHODS
+    unread = [key for key in inputs if key not in read]
+    sure = facts.endings and all(each.written is not None for each in facts.endings)
+    listed_ = {word.text for word in facts.inputs or ()}
+    written = {word.text for word in facts.writes}
+    return (
+        unread[0]
+        if sure and len(wrong) == len(unread) == 1 and not wrong & (listed_ | written)
+        else None
+    )
 
 
 def first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:

@@ -14,6 +14,7 @@ from smachac.analysis.control_flow import (
     strays,
 )
 from smachac.analysis.misplaced_states import ends_of_misplaced
+from smachac.checks.hidden_conditions import hidden_conditions
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
@@ -348,10 +349,13 @@ def _why_unreachable(container: Linear, group: list[Node]) -> str:
     effect="a transition for this outcome is never taken",
 )
 def impossible_outcome(context: Context) -> Iterator[Finding]:
-    """A container declares an outcome with which it can never end.
+    """A container or a state of conditions has an outcome with which it can never end.
 
     What the script does after that outcome never happens. If the outcome is one of failure, a
     failure of the robot probably ends the container with another outcome.
+
+    Exactly: a condition of a state counts as hidden if it compares one key with numbers, and an
+    earlier one is true for each of these values: `ud.n > 3` before `ud.n > 5`.
 
     Wrong:
         name: sm
@@ -373,6 +377,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
+    yield from context.at_states(hidden_conditions)
     linear = iter(context.corrected)
     again = {found.stop.path for found in context.stop_paths.again}
     moved: set[tuple[str, str]] | None = None

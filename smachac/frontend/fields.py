@@ -245,7 +245,7 @@ def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ..
     found: dict[str, Word] = {}
     for item in tree.items:
         word = as_name(item, report)
-        if word is None:
+        if word is None or is_known_wrong(item):
             continue
         first = found.setdefault(word.text, word)
         if first is not word:

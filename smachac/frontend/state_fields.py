@@ -139,7 +139,8 @@ def read_fields(
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
         read["name"] = name
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
-        read["default_outcome"] = name_of(entries["default_outcome"].value)
+        given = entries["default_outcome"].value
+        read["default_outcome"] = None if is_known_wrong(given) else name_of(given)
     if not NAMES.isdisjoint(entries):
         written = (word.text for word, _ in read.get("input_keys", ()))
         inputs = (*written, *(key.name for key in type_.input_keys))
@@ -213,6 +214,10 @@ def with_meant_fields(
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
+    if owner == "state" and "default_outcome" in type_.variables:
+        default = [key for key in unknown if "default" in key.split("_")]
+        if len(default) == 1 and isinstance(entries[default[0]].value, Scalar):
+            meant.setdefault("default_outcome", entries[default[0]])
     found = {name: entry for name, entry in meant.items() if name is not None}
     left = [key for key in unknown if all(entries[key] is not each for each in found.values())]
     return found | paired_fields(left, {*entries, *found}, entries, owner, type_) | entries
@@ -521,7 +526,16 @@ def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterato
         called = name == "callbacks" or role in ("callbacks", "conditions")
         value = as_value(entry.value, code=called)
         declared = known.type if known is not None else ANY
-        yield Variable(name=name, type=declared, role=role, value=value, span=entry.key.span)
+        yield Variable(
+            name=name,
+            type=declared,
+            role=role,
+            takes_userdata=known is not None
+            and known.unquoted == "function"
+            and (known.arguments or ())[:1] == ("userdata",),
+            value=value,
+            span=entry.key.span,
+        )
 
 
 def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, report: Report) -> None:

@@ -21,7 +21,7 @@ from smachac.frontend.paired_fields import paired_help
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
 from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import UNKNOWN
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.nodes import Expression, Outcome, StateType, Value
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
 
@@ -433,7 +433,9 @@ def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
     failures = [name for name in own if is_failure(name)] or ["OUTCOME"]
     required = {"on": f"[{', '.join(failures)}]", "max": "3"}
     parts = _parts(entry, ("on", "max", "delay"), required, report, own) or {}
-    on = as_names(parts["on"], report) if "on" in parts else (Word("", entry.key.span),)
+    on: tuple[Word, ...] = (Word("", entry.key.span),)
+    if "on" in parts and not is_known_wrong(parts["on"]):
+        on = as_names(parts["on"], report)
     most = _tries(parts["max"], report) if "max" in parts else UNKNOWN_TRIES
     delay = duration(parts["delay"], report) if "delay" in parts else 0.0
     return Retry(on=on, most=most, delay=delay or 0.0, span=entry.key.span)
@@ -441,6 +443,8 @@ def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
 
 def _tries(tree: Tree, report: Report) -> int:
     """The number of tries; a wrong one is reported."""
+    if is_known_wrong(tree):
+        return UNKNOWN_TRIES  # SM015
     number = tree.value if isinstance(tree, Scalar) and type(tree.value) is int else None
     if number is not None and 1 <= number <= MOST_TRIES:
         return number

@@ -86,6 +86,7 @@ FaultKind = Literal[
     "too many arguments",
     "missing base argument",
     "shifted arguments",
+    "exchanged arguments",
     "no state class",
     "not called",
     "function not called",
@@ -97,6 +98,10 @@ FaultKind = Literal[
     "lost text",
     "no value",
     "no member",
+    "called early",
+    "other order",
+    "number of values",
+    "no module here",
 ]
 
 ANY = "*"

@@ -348,7 +348,7 @@ def look_up_of_call(
             span=wrong.span,
             message=f"the sub-script `{script.text}` does not read the param `{wrong.text}`",
             arguments=(wrong.text,),
-            help=f"did you mean `{name}`?",
+            help=f"did you mean `{name}`?{_with_value(wrong, name)}",
             effect=effect,
             related=related,
             edits=respelt(wrong, name),
@@ -393,6 +393,12 @@ def _renamed_param(wrong: Word, name: str) -> str:
     if value is None:
         return f"write `{name}:` in place of `{wrong.text}:`"
     return f"write `{name}: {value[1]}` in place of `{wrong.text}: {value[1]}`"
+
+
+def _with_value(wrong: Word, name: str) -> str:
+    """The end of a help that names the right param of a call, with its value, if that is short."""
+    value = _SHORT_VALUE.match(wrong.span.source.text, wrong.span.end)
+    return f" Write `{name}: {value[1]}`" if value is not None else ""
 
 
 _SHORT_VALUE = re.compile(r":[ ]+([\w.+-]+)[ ]*(?=[,}\n#]|$)")
