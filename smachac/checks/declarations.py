@@ -32,6 +32,7 @@ from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_mea
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes import meant_default
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
+from smachac.checks.remap_slips import keys_of_swapped
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code, lone_input
 from smachac.checks.unsent_keys import unsent_keys
@@ -47,6 +48,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
+from smachac.frontend.errors.references import short_value
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
@@ -193,6 +195,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= meant_by_empty_remaps(context)
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
+    found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302
     return found | keys_of_misplaced(context.misplaced)  # SM101
 
 
@@ -501,7 +504,8 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
             span=word.span,
             message=f"the {what} `{word.text}` is defined, but nothing uses it",
             arguments=(what, word.text),
-            help=did_you_mean(_param_meant(word.text, known))
+            help=_turned_param_help(word, known)
+            or did_you_mean(_param_meant(word.text, known))
             or (f"write `{known[0]}`, the param that is used here" if len(known) == 1 else None)
             or (f"the params that are used here are {listed(known)}" if known else None)
             or "remove it, or correct its name",
@@ -509,6 +513,14 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
             related=tuple(Related(span=call, message=CALLED_HERE) for call in outside),
             node=machine.root.name,
         )
+
+
+def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:
+    """The help for a param whose value is the name of one that is used."""
+    value = short_value(word)
+    if value not in known:
+        return None
+    return f"write `{value}: {word.text}`: the name of the param comes first"
 
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:

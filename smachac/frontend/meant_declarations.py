@@ -509,10 +509,11 @@ def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str,
     """The names that are meant by misspelt ones of a declarer, and the names that it lacks.
     `pairs`: names that are not alike can belong together."""
     unknown = [name for name in found.used if name not in found.declared and name.isidentifier()]
-    if not unknown:
-        return {}, ()
     unused = [word.text for word in found.listed if word.text not in found.used]
-    renamed: dict[str, str] = {}
+    renamed = _implied(found, unused)
+    if not unknown:
+        return renamed, ()
+    unused = [name for name in unused if name not in renamed]
     for name in unknown:
         near = guesser(unused)(name) if unused and _is_strong(found, name) else None
         if near is not None:
@@ -527,6 +528,17 @@ def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str,
         return renamed | {unused[0]: left[0]}, ()
     empty = not found.declared or {*found.declared} <= {ERROR}
     return renamed, tuple(name for name in left if name in strong or empty)
+
+
+def _implied(found: _Declarer, unused: Iterable[str]) -> dict[str, str]:
+    """The outcomes in the list of a state that nothing uses, and that misspell one that the state
+    has without its list, such as its default outcome."""
+    if found.kind != "state":
+        return {}
+    listed = {word.text for word in found.listed}
+    names = [name for name in found.declared if name not in listed and name in found.used]
+    near = {name: guesser(names).sure(name) for name in unused} if names else {}
+    return {name: meant for name, meant in near.items() if meant is not None}
 
 
 def _is_strong(found: _Declarer, name: str) -> bool:

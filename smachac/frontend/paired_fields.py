@@ -51,14 +51,59 @@ def _has_shape(name: str, value: Tree, type_: StateType) -> bool:
                 return False
             return least <= given <= most
         return variable.type.name != "str" or not isinstance(value, Map)
-    if name == "states":
-        return isinstance(value, Seq) and all(isinstance(each, Map) for each in value.items)
-    shape = schema.VARIABLES[name].shape
-    if shape == "name":
-        return isinstance(value, Scalar) and isinstance(value.value, str)
-    if shape in ("names", "outcomes", "keys"):
-        return isinstance(value, Seq) and all(isinstance(each, Scalar) for each in value.items)
-    return isinstance(value, Map) or shape not in ("map", "pairs", "rules", "userdata")
+    return fits_field(name, value)
+
+
+def fits_field(name: str, value: Tree) -> bool:
+    """Whether a value has the shape of a field of the schema."""
+    text = value.value if isinstance(value, Scalar) else None
+    items = value.items if isinstance(value, Seq) else ()
+    match schema.VARIABLES[name].shape if name not in _SHAPES else _SHAPES[name]:
+        case "states":
+            return isinstance(value, Seq) and all(isinstance(each, Map) for each in items)
+        case "name" | "text":
+            return isinstance(text, str)
+        case "flag":
+            return isinstance(text, bool)
+        case "duration":
+            return isinstance(value, Scalar) and not isinstance(text, bool)
+        case "names" | "outcomes" | "keys" as shape:
+            listed = isinstance(value, Seq) and all(isinstance(each, Scalar) for each in items)
+            return listed or (shape != "names" and isinstance(value, Map))
+        case "items":
+            return isinstance(value, Seq) or isinstance(text, str)
+        case "map" | "userdata" | "fields":
+            return isinstance(value, Map)
+        case "pairs" as shape:
+            return _has_values(value, Scalar)
+        case "rules":
+            return _has_values(value, Map)
+    return True
+
+
+_SHAPES = {
+    "states": "states",
+    "properties": "states",
+    "timeout": "duration",
+    "retry": "fields",
+    "for_each": "fields",
+}
+"""The shapes of the fields that the schema reads as any value."""
+
+
+def _has_values(value: Tree, kind: type[Scalar] | type[Map]) -> bool:
+    """Whether a value is a mapping with values of one kind."""
+    return isinstance(value, Map) and all(isinstance(each.value, kind) for each in value.entries)
+
+
+def fitting_fields(
+    value: Tree, known: Sequence[str], entries: Collection[str], type_: StateType
+) -> list[str]:
+    """The names among `known` that are not given yet, those of fields only if they can have the
+    value."""
+    free = [name for name in known if name not in entries]
+    own = type_.variables
+    return [name for name in free if name in own or fits_field(name, value)]
 
 
 def paired_help(word: str, meant: str | None, known: Sequence[str]) -> str | None:
