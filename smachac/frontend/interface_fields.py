@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend.errors.script import Owner, unknown_variable
@@ -45,7 +46,7 @@ def interface_fields(name: str, tree: Map, library: Library, report: Report) -> 
         if key in INTERFACE_FIELDS:
             fields[key] = entry.value
             continue
-        near = sure(key)
+        near = sure(key) or of_same_meaning(key, [*INTERFACE_FIELDS])
         names = _OTHER_FIELDS.get(key, (near,) if near is not None else ())
         for each in names:
             meant[each] = entry.value

@@ -88,8 +88,8 @@ def field_meant(
     if found is not None:
         words = {
             "outcomes": (*found.returns, *(found.outcomes or ())),
-            "input_keys": (*found.reads, *(found.inputs or ())),
-            "output_keys": (*found.writes, *(found.outputs or ())),
+            "input_keys": found.reads if found.inputs is None else found.inputs,
+            "output_keys": found.writes if found.outputs is None else found.outputs,
             "variables": tuple(each.word for each in found.parameters or ()),
         }
         for field, own_words in words.items():

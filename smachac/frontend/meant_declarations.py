@@ -136,6 +136,8 @@ def _has_unknown(base: State) -> bool:
         ends = {name for name, _ in _ends(state)}
         if not state.type.open and any(word.text not in ends for word in _own_words(state)):
             return True
+        if state.owner == "state" and _misspells_implied(state, ends):
+            return True
         names = {each.name.text for each in state.states}
         exits = {each.name for each in state.outcomes}
         for word in _inner_words(state):
@@ -152,6 +154,14 @@ def _has_unknown(base: State) -> bool:
         if facts is not None and any(word.text not in ends for word in facts.returns):
             return True
     return False
+
+
+def _misspells_implied(state: State, ends: set[str]) -> bool:
+    """Whether an outcome in the list of a state that its transitions do not use is like one that it
+    has without its list."""
+    listed = {each.name for each in state.outcomes}
+    unused = listed.difference(word.text for word in _own_words(state))
+    return bool(unused) and any(guesser(ends - listed).sure(name) for name in unused)
 
 
 def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
