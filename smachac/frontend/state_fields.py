@@ -466,6 +466,8 @@ def _example(variable: VariableType) -> str:
     high = limits.most if math.isfinite(limits.most) else low + 2
     middle = low / 2 + high / 2
     shown = str(round(middle)) if variable.type.name == "int" else f"{middle:.4g}"
+    if variable.type.name == "float" and "." not in shown:
+        shown += ".0"
     inside = low < float(shown) < high or (float(shown) in (low, high) and not limits.exclusive)
     return shown if inside and "e" not in shown else "..."
 

@@ -148,6 +148,12 @@ def test_an_output_that_only_writes_has(fields: list[str], help: str) -> None:
     assert detect(*fields, python=False) == [("SM004", "part", help)]
 
 
+@pytest.mark.parametrize("field", ["output_keys:", "output_keys: {}"])
+def test_a_field_of_an_interface_that_has_lost_its_only_row(field: str) -> None:
+    found = detect(field, OUTCOMES)
+    assert found == [("SM603", "output_keys", "add `part: {}` to `output_keys`")]
+
+
 def test_an_output_that_writes_misspells() -> None:
     found = detect(OUTPUT, OUTCOMES, "writes: {found: [prat]}", python=False)
     assert found == [("SM004", "prat", "did you mean `part`?")]
