@@ -389,3 +389,45 @@ def test_an_unknown_variable_of_the_script(row: str, help: str) -> None:
     text = f"name: sm\n{row}\noutcomes: [done]\nstates:\n  - LOOK: {{template: ScriptedState,"
     found = reported({"main.yml": f"{text} outcomes: [done]}}\n"})
     assert found == [("SM003", "lamp", help)]
+
+
+LISTS = """\
+name: sm
+outcomes: [done, failed]
+userdata: {count: 1, most: 3}
+states:
+  - COUNT:
+      template: CallbacksState
+      INPUTS
+      OUTPUTS
+      callbacks:
+        more: 'lambda ud: ud.count + 1'
+        left: 'lambda ud: ud.most - ud.count'
+      transitions: {succeeded: JUDGE}
+  - JUDGE:
+      template: ConditionalOutcomeState
+      input_keys: [more, left]
+      outcomes: [few, many]
+      default_outcome: many
+      callbacks: {few: 'lambda ud: ud.more < 2 and ud.left > 1'}
+      transitions: {few: done, many: failed}
+"""
+
+
+@pytest.mark.parametrize(
+    ("inputs", "outputs", "found"),
+    [
+        ("input_keys: [count, most]", "output_keys: [more, left]", []),
+        ("input_keys: [count, most]", "tags: []",
+         [("SM308", "left", "add `output_keys: [left, more]` to `COUNT`")]),
+        ("tags: []", "output_keys: [more, left]",
+         [("SM310", "most", "add `input_keys: [most, count]` to `COUNT`")]),
+        ("input_keys: [count, most]", "output_keys: [more]",
+         [("SM308", "left", "add `left` to the `output_keys` of `COUNT`")]),
+    ],
+)  # fmt: skip
+def test_a_state_that_has_lost_its_list_of_keys(
+    inputs: str, outputs: str, found: list[Row]
+) -> None:
+    text = LISTS.replace("INPUTS", inputs).replace("OUTPUTS", outputs)
+    assert reported({"main.yml": text}) == found
