@@ -20,7 +20,7 @@ from smachac.frontend.paired_fields import paired_help
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
 from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import UNKNOWN
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.nodes import Expression, Outcome, StateType, Value
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED, is_failure
 
@@ -330,6 +330,8 @@ def _tries(tree: Tree, report: Report) -> int:
     number = tree.value if isinstance(tree, Scalar) and type(tree.value) is int else None
     if number is not None and 1 <= number <= MOST_TRIES:
         return number
+    if is_known_wrong(tree):
+        return UNKNOWN_TRIES
     message = f"`max`, the number of tries, must be a whole number from 1 to {MOST_TRIES:,}"
     help = "write a whole number, such as `3`"
     if isinstance(tree, Scalar) and isinstance(tree.value, str) and tree.value.isdecimal():

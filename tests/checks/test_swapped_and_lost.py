@@ -482,3 +482,30 @@ def test_two_params_of_a_call_that_have_changed_places(
              "serve.yml": SERVE.replace("DEFAULTS", defaults)}  # fmt: skip
     found = [each for each in reported(files) if each[0] == "SM311"]
     assert [each[2] for each in found] == help
+
+
+LOOK_UPS = """\
+name: sm
+outcomes: [done]
+params: {height: 2.5, text: HIGH}
+states:
+  - WAIT: {template: SleepState, time: TIME, transitions: {succeeded: SHOW, preempted: done}}
+  - SHOW: {template: ScriptedState, doc: [params, text], retry: RETRY, outcomes: [shown, missed],
+           transitions: {shown: done, exhausted: done, preempted: done}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("time", "retry", "found"),
+    [
+        ("[params, height]", "{on: [missed], max: 2}", []),
+        ("[height]", "{on: [missed], max: 2}",
+         [("SM004", "[height]", "write `[params, height]`")]),
+        ("[params, height]", "{on: [missed], max: [params, tries]}",
+         [("SM015", "tries", "add `tries: ...` to the `params` of the script; in scope are"
+           " `height`, `text`")]),
+    ],
+)  # fmt: skip
+def test_a_look_up_that_is_none(time: str, retry: str, found: list[Row]) -> None:
+    text = LOOK_UPS.replace("TIME", time).replace("RETRY", retry)
+    assert reported({"main.yml": text}) == found
