@@ -13,7 +13,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, StateMachine
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -25,8 +25,9 @@ class UnknownRemap(NamedTuple):
     certain: str | None
 
 
-def unknown_remaps(node: Node) -> list[UnknownRemap]:
-    """The remaps of keys that a state does not have."""
+def unknown_remaps(node: Node, around: Container | None = None) -> list[UnknownRemap]:
+    """The remaps of keys that a state does not have. With the container `around` it, one that is
+    like none of its keys means the only key of the state that can be meant."""
     if is_open(node) or not node.remaps:
         return []
     own = {key.name for key in (*node.inputs, *node.outputs)}
@@ -38,7 +39,38 @@ def unknown_remaps(node: Node) -> list[UnknownRemap]:
         return []
     taken = {remap.key for remap in node.remaps}
     guess = guesser(sorted(own - taken))
-    return [UnknownRemap(each, guess(each.key), guess.sure(each.key)) for each in wrong]
+    found = [UnknownRemap(each, guess(each.key), guess.sure(each.key)) for each in wrong]
+    if around is not None and len(found) == 1 and found[0].meant is None:
+        return [found[0]._replace(meant=_lone_key(node, found[0].remap, around))]
+    return found
+
+
+def _lone_key(node: Node, remap: Remap, around: Container) -> str | None:
+    """The key of a state that an unknown name in a remapping is meant for: its only input that
+    nothing in the container sets, if the container has the key that it is remapped to; its only
+    output that nothing reads, if another state reads that key and nothing sets it."""
+    taken = {each.key for each in node.remaps}
+    set_ = {preset.key for preset in around.userdata} | {key.name for key in around.inputs}
+    if isinstance(around, nodes.Iterator):
+        set_.add(around.item_key)
+    read = {key.name for key in around.outputs}
+    for child in around.children:
+        if is_open(child):
+            return None
+        names = remapping(child)
+        set_ |= {names.get(key.name, key.name) for key in child.outputs}
+        if child is not node:
+            read |= {names.get(key.name, key.name) for key in child.inputs}
+    if remap.to in {key.name for key in (*node.inputs, *node.outputs)}:
+        return None  # the entry is turned round
+    if remap.to in set_:
+        keys = [key.name for key in node.inputs if key.name not in set_]
+    elif remap.to in read:
+        keys = [key.name for key in node.outputs if key.name not in read]
+    else:
+        return None
+    left = [key for key in dict.fromkeys(keys) if key not in taken]
+    return left[0] if len(left) == 1 else None
 
 
 def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
@@ -101,7 +133,8 @@ def with_meant_keys(container: Container) -> Container:
     code of the script reads and writes in them."""
     raw = isinstance(container, nodes.Iterator)
     children = tuple(
-        _meant(child, raw=raw and isinstance(child, Leaf)) for child in container.children
+        _meant(child, container, raw=raw and isinstance(child, Leaf))
+        for child in container.children
     )
     if all(new is old for new, old in zip(children, container.children, strict=True)):
         return container
@@ -126,10 +159,10 @@ def _with_meant_writes(leaf: Leaf, wrong: tuple[str, ...]) -> Leaf:
     return replace(leaf, variables=variables)
 
 
-def _meant(node: Node, *, raw: bool) -> Node:
-    """A state with its remaps corrected and its keys declared. `raw`: it sees the keys of its
-    container without remapping, as the child of an iterator does."""
-    remaps = unknown_remaps(node)
+def _meant(node: Node, around: Container, *, raw: bool) -> Node:
+    """A state in a container with its remaps corrected and its keys declared. `raw`: it sees the
+    keys of its container without remapping, as the child of an iterator does."""
+    remaps = unknown_remaps(node, around) if node.remaps else []
     if remaps:
         own = {key.name for key in (*node.inputs, *node.outputs)}
         wrong = {

@@ -33,6 +33,7 @@ from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_mea
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes import meant_default
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
+from smachac.checks.remap_slips import keys_of_swapped
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code, lone_input
 from smachac.checks.unsent_keys import unsent_keys
@@ -48,6 +49,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
+from smachac.frontend.errors.references import short_value
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
@@ -195,6 +197,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
     found |= meant_by_types(context)  # SM301
+    found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302
     return found | keys_of_misplaced(context.misplaced)  # SM101
 
 
@@ -510,8 +513,8 @@ def _unused_word(unused: Unused, root: str) -> Finding:
     what, word, via, known, kept = unused
     outside = (call for call in via if call.source is not word.span.source)
     meant = _param_meant(word.text, known)
-    help = did_you_mean(meant)
-    if meant is None and known:
+    help = _turned_param_help(word, known) or did_you_mean(meant)
+    if help is None and known:
         help = f"the params that are used here are {listed(known)}"
         if len(known) == 1:
             meant = known[0]
@@ -532,6 +535,14 @@ def _unused_word(unused: Unused, root: str) -> Finding:
         ),
         node=root,
     )
+
+
+def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:
+    """The help for a param whose value is the name of one that is used."""
+    value = short_value(word)
+    if value not in known:
+        return None
+    return f"write `{value}: {word.text}`: the name of the param comes first"
 
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:

@@ -26,6 +26,12 @@ def with_output(node: Node, key: str) -> tuple[Edit, ...]:
     return _with_key(node, node.outputs, "output_keys", key)
 
 
+def with_key_list(node: Node, part: str, keys: Iterable[str]) -> tuple[Edit, ...]:
+    """The edit that begins a list of keys of a state which has none, where its place is certain."""
+    names = [*keys]
+    return _begun(node.span, part, ", ".join(names)) if all(map(is_plain, names)) else ()
+
+
 def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Edit, ...]:
     if not is_plain(key):
         return ()

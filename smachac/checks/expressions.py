@@ -13,6 +13,7 @@ from smachac.analysis.units import conversion
 from smachac.checks.class_values import wrong_operations, wrong_parts
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
+from smachac.checks.swapped_params import swapped_params_help
 from smachac.checks.types import written
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
@@ -319,7 +320,9 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     for site, fault in _faults(context, "operation"):
         does = "fails" if fault.always else "can fail"
         severity = None if fault.always else Severity.WARNING
-        yield _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
+        finding = _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
+        swapped = swapped_params_help(_places_of_values(site, fault), site.node.span.source)
+        yield replace(finding, help=swapped) if swapped else finding
     yield from wrong_parts(context)
     yield from wrong_operations(context)
 
@@ -397,6 +400,14 @@ def _in_other_unit(site: ExpressionSite, fault: Fault) -> str:
                 new = f"{{type: {each.type.name}<{wanted}>, value: {number}}}"
                 return f"or write `{name}: {new}` in the `userdata` of `{node.name}`"
     return ""
+
+
+def _places_of_values(site: ExpressionSite, fault: Fault) -> Iterator[Span]:
+    """The places of the literals that reach a fault."""
+    for key in fault.keys:
+        cell = site.cells.get(key)
+        for alike in cell.flows.values() if cell is not None else ():
+            yield from (flow.origin.span for flow in alike if flow.origin.how == "value")
 
 
 def _faults(context: Context, kind: FaultKind) -> Iterator[tuple[ExpressionSite, Fault]]:

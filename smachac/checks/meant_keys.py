@@ -9,7 +9,7 @@ from smachac.analysis.control_flow import is_open
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import misfit
-from smachac.analysis.unset_reads import Missing, Reader, reader_at
+from smachac.analysis.unset_reads import Missing, Reader, provided_keys, reader_at
 from smachac.checks.messages import other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Word
@@ -104,6 +104,8 @@ def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
         unread = [*words, *(word for word in inputs if word.text not in read)]
         guess = guesser([each.key])
         alike = turned or [word for word in unread if guess(word.text) is not None]
+        if not alike and each.cause == "outside":
+            alike = _unset_input(context, each, read)
         if len(alike) != 1:
             continue
         declared = each.cause == "outside" or bool(turned) or _uses_in_text(scope, each.key) > 1
@@ -116,6 +118,22 @@ def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
                 alike[0], each.key, reader, bool(turned), declared
             )
     return found
+
+
+def _unset_input(context: Context, missing: Missing, read: set[str]) -> list[Word]:
+    """The input of a container that nothing in it reads and that nothing around it sets, where it
+    has one such input and lacks one."""
+    scope, flow = missing.scope, context.corrected_flow
+    lacking = [each for each in context.missing_keys("outside") if each.scope is scope]
+    around = flow.scopes.get(scope.path.rpartition("/")[0])
+    if around is None or len(lacking) != 1 or scope.container.sugar or around.container.sugar:
+        return []
+    given, names = provided_keys(around), remapping(scope.container)
+    return [
+        Word(key.name, key.span)
+        for key in scope.container.inputs
+        if key.name not in read and not given.has(names.get(key.name, key.name))
+    ]
 
 
 def loop_in_a_body(missing: Missing) -> nodes.Iterator | None:

@@ -30,7 +30,15 @@ from smachac.checks.class_values import wrong_loops, wrong_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
 from smachac.checks.param_texts import look_up_help, params_as_text
+from smachac.checks.record_fields import (
+    missing_fields,
+    misspelt_fields,
+    misspelt_help,
+    swapped_fields_help,
+    without_fields,
+)
 from smachac.checks.rule import rule
+from smachac.checks.swapped_values import swapped_findings, swapped_values
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit, type_at
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -97,6 +105,11 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     clashes = [each for each in context.clashes["type"] if not _is_function(each)]
+    swapped = swapped_values(clashes) if len(clashes) > 1 else []
+    if swapped:
+        cells = {cell for pair in swapped for cell in (pair.one.cell, pair.other.cell)}
+        clashes = [each for each in clashes if each.cell not in cells]
+        yield from swapped_findings(swapped)
     params = {span: name for name, span in params_as_text(context).items()} if clashes else {}
     for found in clash_findings(clashes, context.machine.aliases):
         name = params.get(found.span)
@@ -293,7 +306,7 @@ def _finding(group: list[Clash], aliases: Mapping[str, str], *, at_origin: bool)
         declared = _in_interface(each.cell)
         if declared is not None:
             show(declared, f"the interface declares `{each.cell.key}` here")
-    lacking = _without_fields(clash)
+    lacking = without_fields(clash)
     first = lacking or written(origin) + _part(clash)
     second = _read(cell, aliases)
     message = f"{first}, but {second}" if at_origin else f"{second}, but {first}"
@@ -331,7 +344,7 @@ def _field_type_help(clash: Clash, aliases: Mapping[str, str]) -> str | None:
 def _effect(clash: Clash) -> str | None:
     """What the type leads to in Python, where that is certain."""
     wanted, given = present(clash.misfit.wanted), clash.misfit.given
-    for name in _missing_fields(clash):
+    for name in missing_fields(clash):
         return f"Python raises a KeyError where code reads the field `{name}`"
     if wanted.name == "one_of":
         return "the interface allows these values only: the code may fail with another one"
@@ -355,19 +368,8 @@ def _place(clash: Clash) -> Span:
     if not isinstance(value, (tuple, Struct)):
         return origin.span
     steps = steps_to_misfit(value, clash.cell.declared)
-    near = next((near for _, near in _misspelt_fields(clash)), None)
+    near = next((near for _, near in misspelt_fields(clash)), None)
     return place_of_part(origin.span, (*steps, *([near] if near else ())), key=near is not None)
-
-
-def _misspelt_fields(clash: Clash) -> Iterator[tuple[str, str]]:
-    """The missing fields of a record, each with the field that is likely meant for it."""
-    given, wanted = clash.misfit.given, clash.misfit.wanted
-    missing = _missing_fields(clash)
-    others = [each for each in fields(given) if each not in fields(wanted)] if missing else []
-    for name in missing:
-        near = guesser(others)(name)
-        if near is not None:
-            yield name, near
 
 
 def _in_interface(cell: Cell) -> Span | None:
@@ -475,7 +477,7 @@ def _wrong_part(clash: Clash, aliases: Mapping[str, str]) -> str:
     """The message for a literal of which a part does not fit; empty for other clashes."""
     value, (given, wanted) = clash.flow.value, (clash.misfit.given, clash.misfit.wanted)
     is_part = isinstance(value, (tuple, Struct)) and clash.flow.origin is clash.flow
-    if not is_part or not _part(clash) or _missing_fields(clash):
+    if not is_part or not _part(clash) or missing_fields(clash):
         return ""
     steps = steps_to_misfit(value, clash.cell.declared)
     data = part_at(value, steps)
@@ -488,25 +490,6 @@ def _wrong_part(clash: Clash, aliases: Mapping[str, str]) -> str:
     if owner in aliases:
         return f"{first}, but `{owner}` has `{steps[-1]}: {wanted}`"
     return f"{first}, but {_read(clash.cell, aliases)}"
-
-
-def _without_fields(clash: Clash) -> str:
-    """The fields that a record lacks, as part of a message; empty if it lacks none."""
-    missing = _missing_fields(clash)
-    if not missing:
-        return ""
-    key = f"`{clash.flow.origin.cell.key}`"
-    whose = key if clash.misfit.given == clash.flow.type else f"an item of {key}"
-    return f"{whose} has no field{'s' if len(missing) > 1 else ''} {listed(missing)}"
-
-
-def _missing_fields(clash: Clash) -> list[str]:
-    """The fields of a record that a mapping or another record lacks."""
-    given, wanted = clash.misfit.given, clash.misfit.wanted
-    if wanted.name != "record" or given.name not in ("mapping", "record"):
-        return []
-    return [name for name, type_ in fields(wanted).items()
-            if name not in fields(given) and type_.name != "optional"]  # fmt: skip
 
 
 FLAGS = {
@@ -534,9 +517,10 @@ def _help(clash: Clash) -> str:
         choices, word = [str(choice) for choice in wanted.args], str(given.args[0])
         meant = of_same_meaning(word, choices) or guesser(choices)(word)
         return did_you_mean(meant) or f"use one of {', '.join(f'`{choice}`' for choice in choices)}"
-    for name, near in _misspelt_fields(clash):
-        return f"did you mean `{name}` in place of `{near}`?"
-    for name in _missing_fields(clash):
+    meant = misspelt_help(clash) or swapped_fields_help(clash)
+    if meant is not None:
+        return meant
+    for name in missing_fields(clash):
         type_ = fields(wanted)[name]
         return f"add `{name}`, or make it optional where it is read: `{name}: {type_}?`"
     if clash.flow.how == "value":

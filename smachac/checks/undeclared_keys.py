@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Literal
 
 from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
 from smachac.analysis.code_slots import undeclared_slot_reads
@@ -10,7 +11,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
 from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.code_slots import unknown_function_reads
-from smachac.checks.edits import with_output
+from smachac.checks.edits import with_key_list, with_output
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.checks.unlisted_keys import unlisted_reads, unlisted_writes
@@ -18,11 +19,12 @@ from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, StateType, Struct
+from smachac.ir.traversal import remapping
 
 
 @rule("SM308", "lossy-write", Severity.ERROR)
@@ -64,7 +66,11 @@ def lossy_write(context: Context) -> Iterator[Finding]:
 
 def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
     for inner, leaf in leaves_with_code(path, container):
-        for key in undeclared_writes(leaf):
+        dropped = undeclared_writes(leaf)
+        if len(dropped) > 1 and not leaf.outputs:
+            yield _without_list(inner, leaf, "output", dropped, _place_of_write(leaf, dropped[0]))
+            continue
+        for key in dropped:
             only = any(each.name == key for each in leaf.inputs)
             what = "only an input key" if only else "not one of its output keys"
             span = _place_of_write(leaf, key)
@@ -85,6 +91,24 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
                 # With an edit, a state that reads the key that is not set would fail in the run.
                 edits=with_output(leaf, key) if not meant and not unset else (),
             )
+
+
+def _without_list(
+    path: str, leaf: Leaf, role: Literal["input", "output"], keys: Sequence[str], span: Span
+) -> Finding:
+    """The finding on a state without `output_keys` or `input_keys` whose code uses several keys."""
+    part, verb = f"{role}_keys", "sets" if role == "output" else "reads"
+    who = f"`{leaf.name}`" if role == "output" else f"the code of `{leaf.name}`"
+    lost = ": the values are discarded" if role == "output" else ""
+    return Finding(
+        span=span,
+        message=f"{who} {verb} {both(keys)}, but `{leaf.name}` has no `{part}`{lost}",
+        arguments=tuple(keys),
+        help=f"add `{part}: [{', '.join(keys)}]` to `{leaf.name}`",
+        related=calls(leaf, span),
+        node=path,
+        edits=with_key_list(leaf, part, keys),
+    )
 
 
 def leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
@@ -189,6 +213,17 @@ def lone_input(leaf: Leaf, container: Container) -> str | None:
     return left[0].name if sure else None
 
 
+def _keys_around(container: Container) -> set[str]:
+    """The keys of a container that it gets, or that a state in it sets."""
+    found = {preset.key for preset in container.userdata} | {key.name for key in container.inputs}
+    if isinstance(container, nodes.Iterator):
+        return found - {container.item_key}
+    for child in container.children:
+        names = remapping(child)
+        found |= {names.get(key.name, key.name) for key in child.outputs}
+    return found
+
+
 def _undeclared_accesses(
     path: str, container: Container, types: Mapping[str, StateType]
 ) -> Iterator[Finding]:
@@ -196,6 +231,11 @@ def _undeclared_accesses(
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
         lone = lone_input(leaf, container) if len(read) == 1 else None
         guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
+        names = [key for key, _ in read]
+        if len(read) > 1 and not leaf.inputs and _keys_around(container).issuperset(names):
+            place = key_place(read[0][1], names[0])
+            yield _without_list(inner, leaf, "input", names, place)
+            continue
         for key, code in read:
             if isinstance(container, nodes.Iterator) and key == container.item_key:
                 continue

@@ -28,6 +28,7 @@ from smachac.checks.initial_presets import (
 from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.races import raced_keys
+from smachac.checks.remap_slips import swapped_remap
 from smachac.checks.rule import rule
 from smachac.checks.unset_read_findings import Guesses, unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
@@ -261,7 +262,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
               remapping: {pose: block_pose}
               transitions: {succeeded: held}
     """
-    yield from context.at_states(_unknown_remaps)
+    yield from context.at_containers(_unknown_remaps)
     guesses = Guesses()
     for missing in context.missing_keys("remapped"):
         yield from _remapped(missing, guesses)
@@ -280,11 +281,15 @@ def _ignored(node: Node, meant: str | None, outer: str) -> str:
     return f"SMACH ignores the entry: `{node.name}` {verb} the key `{meant}`, not `{outer}`"
 
 
-def _unknown_remaps(path: str, node: Node) -> Iterator[Finding]:
-    if not node.remaps or path == node.name:  # the machine has no userdata around it
-        return
+def _unknown_remaps(path: str, container: Container) -> Iterator[Finding]:
+    for node in container.children:
+        if node.remaps:
+            yield from _unknown_remaps_of(f"{path}/{node.name}", node, container)
+
+
+def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
-    unknown = unknown_remaps(node)
+    unknown = unknown_remaps(node, container)
     turned = [remap for remap, _, _ in unknown if remap.to in own]
     for remap, meant, certain in unknown:
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
@@ -319,13 +324,17 @@ def _remapped(missing: Missing, guesses: Guesses) -> Iterator[Finding]:
                 continue
             guess = guesses.of(scope)(key)
             unread = unread_output(scope, key) if guess is None else None
+            help = did_you_mean(guess) or (unread.help if unread is not None else None)
+            other = swapped_remap(missing, child, remap)
+            if other is not None:
+                help = f"the keys of `{remap.key}` and `{other.key}` have changed places: write"
+                help += f" `{remap.key}: {other.to}, {other.key}: {remap.to}`"
             yield Finding(
                 span=remap.to_span,
                 message=f"`{remap.key}` of `{child.name}` is remapped to `{key}`, which nothing in"
                 f" {container_name(scope, remap.span)} sets",
                 arguments=(remap.key, key),
-                help=did_you_mean(guess)
-                or (unread.help if unread is not None else None)
+                help=help
                 or f"set `{key}` before this state, or give it an initial value in `{around}`:"
                 f" `userdata: {{{key}: ...}}`",
                 effect=UNSET,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 MOST_LISTED = 12
 """Limit on the names in a message; the others are counted."""
@@ -14,6 +14,21 @@ def listed(names: Iterable[str]) -> str:
     text = ", ".join(f"`{name}`" for name in every[:MOST_LISTED])
     more = len(every) - MOST_LISTED
     return f"{text} and {more} more" if more > 0 else text
+
+
+MOST_POSSIBLE = 6
+"""The most names in a list of those that fit best."""
+
+
+def possible(names: Collection[str], fitting: Collection[str]) -> str:
+    """The end of a help that lists names: all of them, or, if that is much, only those `fitting`,
+    which are not given yet."""
+    if not fitting or len(names) <= MOST_POSSIBLE:
+        return f": {listed(names)}"
+    shown = sorted(fitting)
+    more = len(shown) - MOST_POSSIBLE
+    text = ", ".join(f"`{name}`" for name in shown[:MOST_POSSIBLE])
+    return f" that are not given yet: {text}{f' and {more} more' if more > 0 else ''}"
 
 
 def both(names: Iterable[str]) -> str:

@@ -142,6 +142,8 @@ def _has_unknown(base: State) -> bool:
         ends = {name for name, _ in _ends(state)}
         if not state.type.open and any(word.text not in ends for word in _own_words(state)):
             return True
+        if state.owner == "state" and _misspells_implied(state, ends):
+            return True
         names = {each.name.text for each in state.states}
         exits = {each.name for each in state.outcomes}
         for word in _inner_words(state):
@@ -165,6 +167,14 @@ def _has_unknown_atom(script: Script) -> bool:
     parts = {name for each in script.properties for atom in atoms(each.form)
              if atom.subject == "path" for name in atom.name.split("/")}  # fmt: skip
     return bool(parts) and not parts <= {state.name.text for _, state in _walk(script.base)}
+
+
+def _misspells_implied(state: State, ends: set[str]) -> bool:
+    """Whether an outcome in the list of a state that its transitions do not use is like one that it
+    has without its list."""
+    listed = {each.name for each in state.outcomes}
+    unused = listed.difference(word.text for word in _own_words(state))
+    return bool(unused) and any(guesser(ends - listed).sure(name) for name in unused)
 
 
 def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
@@ -522,10 +532,11 @@ def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str,
     """The names that are meant by misspelt ones of a declarer, and the names that it lacks.
     `pairs`: names that are not alike can belong together."""
     unknown = [name for name in found.used if name not in found.declared and name.isidentifier()]
-    if not unknown:
-        return {}, ()
     unused = [word.text for word in found.listed if word.text not in found.used]
-    renamed: dict[str, str] = {}
+    renamed = _implied(found, unused)
+    if not unknown:
+        return renamed, ()
+    unused = [name for name in unused if name not in renamed]
     for name in unknown:
         near = guesser(unused)(name) if unused and _is_strong(found, name) else None
         if near is None and name in _COMMON:
@@ -542,6 +553,17 @@ def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str,
         return renamed | {unused[0]: left[0]}, ()
     empty = not found.declared or {*found.declared} <= {ERROR}
     return renamed, tuple(name for name in left if name in strong or empty)
+
+
+def _implied(found: _Declarer, unused: Iterable[str]) -> dict[str, str]:
+    """The outcomes in the list of a state that nothing uses, and that misspell one that the state
+    has without its list, such as its default outcome."""
+    if found.kind != "state":
+        return {}
+    listed = {word.text for word in found.listed}
+    names = [name for name in found.declared if name not in listed and name in found.used]
+    near = {name: guesser(names).sure(name) for name in unused} if names else {}
+    return {name: meant for name, meant in near.items() if meant is not None}
 
 
 def _is_strong(found: _Declarer, name: str) -> bool:

@@ -25,6 +25,7 @@ from smachac.frontend.yaml_tree import (
     known_wrong,
 )
 from smachac.ir.nodes import FixedParam, Param, StateType
+from smachac.ir.types import Type
 
 SERVER_NAMES = frozenset(["service_namespace", "action_server_namespace"])
 """Variables of built-in types that are texts, without a type: code may compute them."""
@@ -122,12 +123,37 @@ def texts_meant(
     found: dict[str, Entry] = {}
     for key, entry in own.items() if scope else ():
         held = type_.variables.get(key) if isinstance(entry.value, Seq) else None
+        word = _lone_word(entry.value, scope) if held is not None else None
+        if held is not None and word is not None and _is_single(held.type):
+            message = f"`{entry.value.span.text}` is a list of one text, not a look-up"
+            help, arguments = f"write `[params, {word}]`", ("look-up", key, word)
+            report.append(wrong_shape(entry.value.span, message, help, arguments=arguments))
+            found[key] = Entry(entry.key, scope[word])
+            continue
         if held is None or not (held.type.name == "str" or key in SERVER_NAMES):
             continue
         text = _text_meant(entry.value, scope, report)
         if text is not None:
             found[key] = Entry(entry.key, text)
     return found
+
+
+_SINGLE = frozenset(["float", "int", "bool", "str", "one_of"])
+"""The types whose values are no lists."""
+
+
+def _is_single(type_: Type) -> bool:
+    while type_.name == "optional" and isinstance(type_.args[0], Type):
+        type_ = type_.args[0]
+    return type_.name in _SINGLE
+
+
+def _lone_word(tree: Tree, scope: Scope) -> str | None:
+    """The name of a param in scope that is the only item of a list."""
+    match tree:
+        case Seq(items=(Scalar(value=str(name), plain=True),)) if name in scope:
+            return name
+    return None
 
 
 def _text_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:

@@ -63,10 +63,7 @@ from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Script, State, Sugar, no_states, unknown_state
 from smachac.frontend.script_functions import functions_of
 from smachac.frontend.state_fields import (
-    FIELDS_OF_STATES,
-    TEMPLATE_WORDS,
     Entries,
-    accepts,
     another_state,
     has_unknown_outcomes,
     has_wrong_transitions,
@@ -82,6 +79,7 @@ from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import (
     SUB_SCRIPT_HELP,
     one_for_all_calls,
+    one_for_all_lacking,
     one_for_all_look_ups,
     overridden,
     params_at_call,
@@ -90,6 +88,7 @@ from smachac.frontend.sub_scripts import (
 )
 from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
 from smachac.frontend.unknown_templates import (
+    meant_template,
     missing_template,
     missing_template_help,
     one_for_each_template,
@@ -214,8 +213,10 @@ class _Resolver:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
-        report = one_for_all_look_ups(one_for_all_calls(self.report))
-        self.report[:] = one_for_each_template(report)
+        if self.report:
+            lacking = one_for_all_lacking(one_for_all_calls(self.report), "params" in entries)
+            self.report[:] = one_for_all_look_ups(lacking)
+        self.report[:] = one_for_each_template(self.report)
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
@@ -626,30 +627,13 @@ class _Resolver:
             self.others[name] = find_state_type(name, self.library, [])
         return self.found_types.get(name) or self.others[name]
 
-    def meant_template(self, entries: Entries) -> Entry | None:
-        """The field with another name that is meant for `template`, if it names a type that does
-        not have the field: then the name is reported as unknown."""
-        sure = guesser_of(FIELDS_OF_STATES).sure
-        for key, entry in entries.items():
-            if key in schema.VARIABLES or not (key in TEMPLATE_WORDS or sure(key) == "template"):
-                continue
-            word = name_of(entry.value)
-            if word is None or not word.text:
-                continue
-            if word.text in schema.CONTAINERS:
-                return entry
-            found = self.state_type(word.text)
-            if found is not None and not found.open and not accepts(found, key):
-                return entry
-        return None
-
     def type_of(
         self, name: Word, entries: Entries, role: Literal["", "base"], around: _Environment
     ) -> tuple[StateType, FieldOwner]:
         """The state type of a state, and its owner in the schema."""
         entry = entries.get("template")
         if entry is None and role != "base":
-            entry = self.meant_template(entries)
+            entry = meant_template(entries, self.state_type)
         word = as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)

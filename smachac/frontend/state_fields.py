@@ -11,9 +11,9 @@ from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser_of
+from smachac.diagnostics.spelling import guesser_of, written_name
 from smachac.diagnostics.wording import listed
-from smachac.frontend import schema
+from smachac.frontend import schema, value_facts
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import (
     READERS,
@@ -24,7 +24,7 @@ from smachac.frontend.fields import (
     wrong,
 )
 from smachac.frontend.missing_outcomes import outcomes_used
-from smachac.frontend.paired_fields import paired_fields, paired_help
+from smachac.frontend.paired_fields import fitting_fields, paired_fields, paired_help
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, Pairs, State
@@ -290,11 +290,14 @@ def _known_fields(
             as_key = _as_key(word, entry, entries, type_)
             stray = target is not None
             certain = paired_help(word.text, sure, [*known, *own])
+            fitting = fitting_fields(entry.value, [*known, *own], entries, type_)
+            if sure is None and len(fitting) == 1 and not own:
+                certain = f"did you mean `{fitting[0]}`?"
             needed = sure if sure is not None and _is_required(sure, owner, type_) else None
             report.append(
                 unknown_variable(
                     word, whose, known, own=own, meant=sure, outcome=stray, key=as_key,
-                    certain=certain, required=needed,
+                    certain=certain, fitting=fitting, required=needed,
                 )
             )  # fmt: skip
             if as_key is not None:
@@ -460,9 +463,11 @@ def _example(variable: VariableType) -> str:
         names = ("ud" if each == "userdata" else each for each in variable.arguments)
         return f"'lambda {', '.join(names)}: True'"
     if variable.type.name == "one_of":
-        return str(variable.type.args[0])
+        return written_name(str(variable.type.args[0]))
     if limits is not None and limits.choices:
         return str(limits.choices[0])
+    if variable.role in value_facts.NAMES:
+        return "..."  # an example that is no name of the robot is wrong
     text = EXAMPLES.get(variable.type.name, "")
     if limits is None or variable.type.name not in ("float", "int"):
         return text
@@ -471,7 +476,11 @@ def _example(variable: VariableType) -> str:
     low = limits.least if math.isfinite(limits.least) else limits.most - 2
     high = limits.most if math.isfinite(limits.most) else low + 2
     middle = low / 2 + high / 2
-    return str(round(middle) if variable.type.name == "int" else middle)
+    shown = str(round(middle)) if variable.type.name == "int" else f"{middle:.4g}"
+    if variable.type.name == "float" and "." not in shown:
+        shown += ".0"
+    inside = low < float(shown) < high or (float(shown) in (low, high) and not limits.exclusive)
+    return shown if inside and "e" not in shown else "..."
 
 
 def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:

@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import smacha_meta
 from smachac.frontend.class_reader import PARAMETERS
-from smachac.frontend.errors.script import Owner, unknown_variable, wrong_shape
+from smachac.frontend.errors.script import Owner, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.interface_code import (
     Section,
@@ -25,8 +25,10 @@ from smachac.frontend.interface_code import (
     declared_in,
     python_code,
 )
+from smachac.frontend.interface_fields import interface_fields
+from smachac.frontend.interface_slips import swapped_facts, with_lost_outputs
 from smachac.frontend.loader import Library
-from smachac.frontend.schema import INTERFACE_FIELDS, KEY_FACTS, VARIABLE_FACTS
+from smachac.frontend.schema import KEY_FACTS, VARIABLE_FACTS
 from smachac.frontend.turned_entries import with_turned, with_turned_types
 from smachac.frontend.type_annotations import as_record, read_type
 from smachac.frontend.type_classes import (
@@ -58,21 +60,6 @@ from smachac.ir.types import ANY, Type, optional
 
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
 """The file names that the Python template of a state type may have."""
-
-
-_OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
-    "inputs": ("input_keys",),
-    "io_keys": ("output_keys",),
-    "outputs": ("output_keys",),
-    "arguments": ("variables",),
-    "parameters": ("variables",),
-    "params": ("variables",),
-    "ends": ("outcomes",),
-    "exits": ("outcomes",),
-    "results": ("outcomes",),
-    "transitions": ("outcomes",),
-}
-"""Fields that other tools have, with those of interfaces that they are meant for."""
 
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
@@ -128,7 +115,7 @@ def _read_interface(
         help = "write it with fields such as `outcomes:`"
         report.append(wrong_shape(span, message, help, arguments=("interface", name)))
         return StateType(name=name, open=True)
-    fields = _fields(tree, report)
+    fields = interface_fields(name, tree, library, report)
     unclear = tree.get("io_keys") is not None  # reported; which keys are inputs is not known
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
@@ -140,6 +127,11 @@ def _read_interface(
     given = frozenset(part for part in parts if _is_starred(sections[part]))
     optional = _optional_outcomes(sections["outcomes"])
     claims = as_names(fields["claims"], report) if "claims" in fields else ()
+    facts = None
+    if not built_in and not unclear:
+        all_given = given | ({"optional"} if optional else set())
+        facts = class_facts(name, python_code(sections["code"], code, source), all_given, library)
+        sections = with_lost_outputs(sections, facts, report)
 
     def flag(name: str) -> bool:
         return name in fields and as_flag(fields[name], report)
@@ -170,39 +162,11 @@ def _read_interface(
         code=code,
         classes=classes_by_language(sections["code"], report),
         class_spans=class_spans(sections["code"]),
-        class_facts=None
-        if built_in or unclear
-        else class_facts(
-            name,
-            python_code(sections["code"], code, source),
-            given | ({"optional"} if optional else set()),
-            library,
-        ),
+        class_facts=facts,
         prints_itself=prints_itself(code.get("python", ""), library),
         optional=optional,
         secret_keys=_secret_keys(sections, report),
     )
-
-
-def _fields(tree: Map, report: Report) -> dict[str, Tree]:
-    """The fields of an interface. One with an unknown name is also the field that it is certainly
-    meant for: then it is one finding."""
-    fields: dict[str, Tree] = {}
-    meant: dict[str, Tree] = {}
-    sure = guesser_of(tuple(INTERFACE_FIELDS)).sure
-    for entry in as_map(tree, report):
-        key = str(entry.key.value)
-        if key in INTERFACE_FIELDS:
-            fields[key] = entry.value
-            continue
-        near = sure(key)
-        names = _OTHER_FIELDS.get(key, (near,) if near is not None else ())
-        for name in names:
-            meant[name] = entry.value
-        word, owner = Word(key, entry.key.span), Owner("interface", "an interface", "field")
-        one = names[0] if names and key != "io_keys" else None
-        report.append(unknown_variable(word, owner, INTERFACE_FIELDS, meant=one))
-    return meant | fields
 
 
 def _outcomes_place(tree: Map, fields: Mapping[str, Tree]) -> Span | None:
@@ -382,6 +346,16 @@ def _variables(section: Section, report: Report) -> dict[str, VariableType]:
 
 
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
+    before = len(report)
+    found = _described_variable(name, tree, report)
+    swapped = swapped_facts(tree) if len(report) > before else None
+    if swapped is None:
+        return found
+    report[before:] = [swapped.finding]
+    return _described_variable(name, swapped.tree, report)
+
+
+def _described_variable(name: str, tree: Tree, report: Report) -> VariableType:
     whose = f"the variable `{name}`"
     tree = with_turned(tree, VARIABLE_FACTS, Owner(whose, whose, "field"), report)
     meant = check_fields(tree, whose, VARIABLE_FACTS, report)
@@ -473,6 +447,16 @@ def _with_turned_facts(entry: Entry, report: Report) -> Entry:
 
 
 def _key(name: Word, tree: Tree, report: Report) -> Key:
+    before = len(report)
+    found = _described_key(name, tree, report)
+    swapped = swapped_facts(tree) if len(report) > before else None
+    if swapped is None:
+        return found
+    report[before:] = [swapped.finding]
+    return _described_key(name, swapped.tree, report)
+
+
+def _described_key(name: Word, tree: Tree, report: Report) -> Key:
     role = _role(tree, _KEY_ROLES, report)
     type_ = described(_type(tree, report), tree, role, report)
     limits = limits_of(tree, type_, role, report)

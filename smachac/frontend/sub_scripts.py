@@ -11,6 +11,7 @@ from smachac.frontend.errors.references import (
     bad_sub_script,
     look_up_of_all_calls,
     look_up_of_call,
+    param_of_no_call,
     unresolved_look_up,
 )
 from smachac.frontend.fields import as_name, kind_of
@@ -172,6 +173,30 @@ def one_for_all_calls(found: Sequence[Diagnostic]) -> Report:
             calls = [each.span for each in groups[place, given]]
             item = replace(item, finding=look_up_of_all_calls(item.finding, place, given, calls))
         kept.append(item)
+    return kept
+
+
+def one_for_all_lacking(found: Sequence[Diagnostic], has_params: bool) -> Report:
+    """The findings, with one for all calls that do not give the same param. `has_params`: the
+    script has `params`."""
+    groups: dict[str, list[Diagnostic]] = {}
+    for item in found:
+        arguments = item.finding.arguments
+        if item.kind is unresolved_look_up.code and len(arguments) == 3:
+            groups.setdefault(arguments[0], []).append(item)
+    kept: Report = []
+    for item in found:
+        group = groups.get(item.finding.arguments[0]) if item.finding.arguments else None
+        if group is None or len(group) < 2 or all(item is not each for each in group):
+            kept.append(item)
+        elif item is group[0]:
+            states = [each.finding.arguments[1] for each in group]
+            more = tuple(
+                Related(span=each.span, message="this call does not give it either")
+                for each in group[1 : 1 + MOST_LOOK_UPS]
+            )
+            one = param_of_no_call(item.finding, states, has_params)
+            kept.append(replace(item, finding=replace(one, related=(*one.related, *more))))
     return kept
 
 

@@ -448,6 +448,8 @@ def _tries(tree: Tree, report: Report) -> int:
     number = tree.value if isinstance(tree, Scalar) and type(tree.value) is int else None
     if number is not None and 1 <= number <= MOST_TRIES:
         return number
+    if is_known_wrong(tree):
+        return UNKNOWN_TRIES
     message = f"`max`, the number of tries, must be a whole number from 1 to {MOST_TRIES:,}"
     help = "write a whole number, such as `3`"
     if isinstance(tree, Scalar) and isinstance(tree.value, str) and tree.value.isdecimal():

@@ -99,6 +99,7 @@ def with_wrong_interfaces(report: Report, machine: Machine, library: Library, lo
             names = {*wrong[0].more, *wrong[0].missing}
             names |= {each.to for one in used for each in one.remaps if each.key in names}
             rest = [item for item in report if not _follows(item, names, type_, source, paths)]
+            rest = [item for item in rest if not _is_empty(item, wrong[0].field, source)]
             field = next((item for item in rest if _is_field(item, source)), None)
             found = _finding(wrong[0], type_, code, used[0].leaf, source)
             if field is not None:
@@ -113,6 +114,13 @@ def _is_field(item: Diagnostic, source: Source) -> bool:
     """Whether a finding is about an unknown field of an interface."""
     here = item.span.source.name == source.name
     return here and item.code == "SM003" and item.finding.arguments[1:] == ("interface",)
+
+
+def _is_empty(item: Diagnostic, field: str, source: Source) -> bool:
+    """Whether a finding is that a field of an interface has no value."""
+    span = item.span
+    nothing = item.finding.arguments == ("map", "nothing") and span.source.name == source.name
+    return nothing and span.source.text[: span.start].rstrip(": \n").endswith(field)
 
 
 def _uses(machine: Machine) -> tuple[dict[str, list[_Use]], dict[str, str]]:
@@ -206,11 +214,12 @@ def _keys(container: Container) -> Iterator[str]:
 def _unset(type_: StateType, report: Report) -> set[str]:
     """The keys in `writes` that the interface does not declare."""
     return {
-        item.finding.arguments[1]
+        name
         for item in report
         if item.code == "SM004"
         and item.finding.arguments[:1] == ("output_keys",)
         and item.span.source.name.rpartition("/")[2] == f"{type_.name}.yml"
+        for name in item.finding.arguments[1:]
     }
 
 

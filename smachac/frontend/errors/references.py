@@ -362,7 +362,7 @@ def look_up_of_call(
             span=script.span,
             message=f"the sub-script `{script.text}` reads the param `{name}`, which `{state}` does"
             " not give",
-            arguments=(name,),
+            arguments=(name, state, script.text),
             help=f"add `{name}: ...` to the `params` of `{state}`, or of a container around it",
             effect=effect,
             related=related,
@@ -384,15 +384,33 @@ def look_up_of_all_calls(found: Finding, place: Span, given: str, calls: Sequenc
     )
 
 
+def param_of_no_call(found: Finding, states: Sequence[str], has_params: bool) -> Finding:
+    """SM015 at the first of several calls of sub-scripts that do not give a param: the script can
+    give it to all. `has_params`: the script has `params`."""
+    name, _, script = found.arguments
+    help = f"add `{name}: ...` to the `params` of the script"
+    return replace(
+        found,
+        message=f"the sub-script `{script}` reads the param `{name}`, which {both(states)} do not"
+        " give",
+        help=help if has_params else f"add `params: {{{name}: ...}}` to the script",
+    )
+
+
 def _renamed_param(wrong: Word, name: str) -> str:
     """The help for a param of a call that has another name in the sub-script."""
-    source, end = wrong.span.source, wrong.span.end
-    value = _SHORT_VALUE.match(source.text, end)
-    if value is not None and value[1] == name:
+    value = short_value(wrong)
+    if value == name:
         return f"write `{name}: {wrong.text}`: the name of the param comes first"
     if value is None:
         return f"write `{name}:` in place of `{wrong.text}:`"
-    return f"write `{name}: {value[1]}` in place of `{wrong.text}: {value[1]}`"
+    return f"write `{name}: {value}` in place of `{wrong.text}: {value}`"
+
+
+def short_value(key: Word) -> str | None:
+    """The value after a key of YAML, if it is one word or number."""
+    found = _SHORT_VALUE.match(key.span.source.text, key.span.end)
+    return found[1] if found is not None else None
 
 
 def _with_value(wrong: Word, name: str) -> str:

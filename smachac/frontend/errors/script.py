@@ -6,7 +6,7 @@ The arguments of a code with several faults begin with a word for the fault, whi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from difflib import SequenceMatcher
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import listed, possible
 from smachac.frontend.schema import VARIABLES
 
 
@@ -171,6 +171,7 @@ def unknown_variable(
     type_name: str | None = None,
     certain: str | None = None,
     required: str | None = None,
+    fitting: Collection[str] = (),
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -194,7 +195,7 @@ def unknown_variable(
     """
     own = sorted(own)
     names = sorted({*known, *own})
-    owned = f"use one of its {owner.part}s: {listed(names)}"
+    owned = f"use one of its {owner.part}s{possible(names, fitting)}"
     variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
     sure = meant or Guesser(names).sure(word.text)
     number = _number_before(word)

@@ -1,0 +1,511 @@
+"""Values that have changed places, and names or fields that are lost, are one finding, which names
+the repair."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+
+Row = tuple[str, str, str | None]
+
+GRIP = """\
+name: Grip
+variables:
+  force: FORCE
+  speed: {type: float<m/s>, min: 0, exclusive: true, default: 0.5}
+input_keys: {width: WIDTH}
+outcomes: [held, slipped]
+code: {cpp: {header: grip.hpp, class: Grip}}
+"""
+USE = """\
+name: sm
+outcomes: [done, failed]
+userdata: {width: 0.05}
+states:
+  - GRIP: {template: Grip, force: 600, transitions: {held: done, slipped: failed}}
+"""
+
+
+def grip(force: str = "{type: int, min: 500}", width: str = "{type: float}") -> list[Row]:
+    interface = GRIP.replace("FORCE", force).replace("WIDTH", width)
+    return reported({"main.yml": USE, "templates/Grip.yml": interface})
+
+
+@pytest.mark.parametrize(
+    ("force", "width", "at", "help"),
+    [
+        ("{type: 500, min: int}", "float", "500", "write `type: int, min: 500`"),
+        ("{min: 500, type: 900, max: int}", "float", "900", "write `type: int, max: 900`"),
+        ("{type: float, min: true, exclusive: 0}", "float", "true",
+         "write `min: 0, exclusive: true`"),
+        ("{type: N, unit: float}", "float", "N", "write `type: float, unit: N`"),
+        ("{type: 700, default: int}", "float", "700", "write `type: int, default: 700`"),
+        ("{type: int, min: 500}", "{type: 0, min: float}", "0", "write `type: float, min: 0`"),
+        ("{type: int, min: 500}", "{type: float, unit: [1, 2], one_of: m}", "[1, 2]",
+         "write `unit: m, one_of: [1, 2]`"),
+    ],
+)  # fmt: skip
+def test_two_facts_that_have_changed_places(force: str, width: str, at: str, help: str) -> None:
+    found = grip(force, width)
+    assert found[:1] == [("SM004", at, help)]
+    assert {each[0] for each in found[1:]} <= {"SM401", "SM304", "SM520"}
+
+
+@pytest.mark.parametrize(
+    "force", ["{type: int, min: 500}", "{type: float, unit: N, max: 900}", "{type: Force}"]
+)
+def test_facts_in_their_places(force: str) -> None:
+    assert [each for each in grip(force) if each[0] == "SM004"] == []
+
+
+DETECT = """\
+name: Detect
+FIELD
+code: {CODE}
+"""
+LOOK = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - LOOK:
+      template: Detect
+      transitions: {found: SHOW, lost: failed}
+  - SHOW:
+      template: ConditionalOutcomeState
+      input_keys: [part]
+      outcomes: [big]
+      default_outcome: small
+      callbacks: {big: 'lambda ud: ud.part > 2'}
+      transitions: {big: done, small: done}
+"""
+CLASS = """\
+import smach
+
+class Detect(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["found", "lost"], output_keys=["part"])
+
+    def execute(self, userdata):
+        part = len("abc")
+        userdata.part = part
+        return "found" if part else "lost"
+"""
+
+
+def detect(*fields: str, python: bool = True) -> list[Row]:
+    code = 'python: "cell:Detect"' if python else "cpp: {header: cell.hpp, class: Detect}"
+    text = DETECT.replace("FIELD", "\n".join(fields)).replace("CODE", code)
+    return reported({"main.yml": LOOK, "templates/Detect.yml": text, "cell.py": CLASS})
+
+
+OUTPUT, OUTCOMES = "output_keys: {part: int}", "outcomes: {found: {}, lost: {failure: true}}"
+
+
+@pytest.mark.parametrize(
+    ("fields", "at", "meant"),
+    [
+        ([OUTPUT, "lost: {found: {}, lost: {failure: true}}"], "lost", "outcomes"),
+        ([OUTPUT, "lost: [found, lost]"], "lost", "outcomes"),
+        ([OUTPUT, "variables: {}", "input_keys: {}", "doc: x", "states: {found: {}, lost: {}}"],
+         "states", "outcomes"),
+        (["part: {part: int}", OUTCOMES], "part", "output_keys"),
+        (["things: [part]", OUTCOMES], "things", "output_keys"),
+        (["things: [part]", OUTCOMES, "writes: {found: [part], lost: [part]}"], "things",
+         "output_keys"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("python", [True, False])
+def test_a_field_of_an_interface_under_another_name(
+    fields: list[str], at: str, meant: str, python: bool
+) -> None:
+    found = detect(*fields, python=python)
+    if not python and meant == "output_keys" and "writes" not in str(fields):
+        assert found[0][:2] == ("SM003", at)  # nothing tells which keys they are
+        return
+    assert found == [("SM003", at, f"did you mean `{meant}`?")]
+
+
+def test_a_field_that_can_be_several_ones_lists_these() -> None:
+    found = detect(OUTPUT, OUTCOMES, "here: true")
+    flags = "`blocking`, `checks_grasp`, `simulation`, `stand_in`"
+    help = f"use one of its fields that are not given yet: {flags}"
+    assert found == [("SM003", "here", help)]
+
+
+@pytest.mark.parametrize(
+    ("fields", "help"),
+    [
+        ([OUTCOMES, "writes: {found: [part]}"], "add `output_keys: [part]`"),
+        ([OUTCOMES, "writes: {found: [part], lost: [part]}"], "add `output_keys: [part]`"),
+        (["output_keys: [score]", OUTCOMES, "writes: {found: [part, score], lost: [part]}"],
+         "write `output_keys: [score, part]`"),
+        (["output_keys: {score: float}", OUTCOMES, "writes: {found: [part], lost: [part]}"],
+         "add `part: any` to `output_keys`, or its type in place of `any`"),
+    ],
+)  # fmt: skip
+def test_an_output_that_only_writes_has(fields: list[str], help: str) -> None:
+    assert detect(*fields, python=False) == [("SM004", "part", help)]
+
+
+@pytest.mark.parametrize("field", ["output_keys:", "output_keys: {}"])
+def test_a_field_of_an_interface_that_has_lost_its_only_row(field: str) -> None:
+    found = detect(field, OUTCOMES)
+    assert found == [("SM603", "output_keys", "add `part: {}` to `output_keys`")]
+
+
+def test_an_output_that_writes_misspells() -> None:
+    found = detect(OUTPUT, OUTCOMES, "writes: {found: [prat]}", python=False)
+    assert found == [("SM004", "prat", "did you mean `part`?")]
+
+
+SEAMS = """\
+name: sm
+outcomes: [done]
+userdata:
+  seam_a: [1.0, 2.0]
+states:
+  - SEAM_A:
+      template: Glue
+      remapping: REMAPPING
+      transitions: {glued: CHECK}
+  - CHECK:
+      template: ConditionalOutcomeState
+      input_keys: [volume_a]
+      outcomes: [much]
+      default_outcome: little
+      callbacks: {much: 'lambda ud: ud.volume_a > 2'}
+      transitions: {much: done, little: done}
+"""
+GLUE = """\
+name: Glue
+input_keys: {seam: "list[float]"}
+output_keys: {volume: float}
+outcomes: [glued]
+code: {cpp: {header: glue.hpp, class: Glue}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("remapping", "found"),
+    [
+        ("{seam: seam_a, volume: volume_a}", []),
+        ("{line: seam_a, volume: volume_a}", [("SM302", "line", "did you mean `seam`?")]),
+        ("{seam: seam_a, result: volume_a}", [("SM302", "result", "did you mean `volume`?")]),
+        ("{seam: volume_a, volume: seam_a}",
+         [("SM302", "volume_a", "the keys of `seam` and `volume` have changed places: write"
+           " `seam: seam_a, volume: volume_a`")]),
+    ],
+)  # fmt: skip
+def test_the_key_that_an_entry_of_a_remapping_means(remapping: str, found: list[Row]) -> None:
+    files = {"main.yml": SEAMS.replace("REMAPPING", remapping), "templates/Glue.yml": GLUE}
+    assert reported(files) == found
+
+
+INNER = """\
+name: sm
+outcomes: [done]
+userdata: {seam: [1.0], speed: 2.0}
+states:
+  - WORK:
+      template: StateMachine
+      outcomes: [glued]
+      input_keys: KEYS
+      transitions: {glued: done}
+      states:
+        - GLUE: {template: Glue, transitions: {}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("keys", "found"),
+    [("[seam]", []), ("[right]", [("SM306", "right", "did you mean `seam`?")]),
+     ("{right: any}", [("SM306", "right", "did you mean `seam`?")])],
+)  # fmt: skip
+def test_an_input_that_no_state_in_a_container_reads(keys: str, found: list[Row]) -> None:
+    text = INNER.replace("KEYS", keys).replace("speed: 2.0", "")
+    files = {"main.yml": text.replace("[1.0], }", "[1.0]}"), "templates/Glue.yml": GLUE}
+    assert reported(files) == found
+
+
+JUDGE = """\
+name: sm
+outcomes: [done, rejected]
+userdata: {torque: 2.0}
+states:
+  - JUDGE:
+      template: ConditionalOutcomeState
+      input_keys: [torque]
+      outcomes: OUTCOMES
+      default_outcome: bad
+      callbacks: {good: 'lambda ud: 1.0 < ud.torque and ud.torque < 1.4'}
+      transitions: {good: done, bad: rejected}
+"""
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "found"),
+    [("[good, bad]", []), ("[good]", []),
+     ("[good, Bad]", [("SM101", "Bad", "did you mean `bad`?")]),
+     ("[Good, bad]", [("SM101", "Good", "did you mean `good`?")])],
+)  # fmt: skip
+def test_an_outcome_that_misspells_the_default_one(outcomes: str, found: list[Row]) -> None:
+    rows = reported({"main.yml": JUDGE.replace("OUTCOMES", outcomes)})
+    assert [(code.replace("SM102", "SM101"), *rest) for code, *rest in rows] == found
+
+
+FEEDERS = """\
+name: sm
+outcomes: [done]
+PARAMS
+states:
+  - LEFT: {script: feed, params: {side: left}, transitions: {fed: RIGHT}}
+  - RIGHT: {script: feed, params: {side: right}, transitions: {fed: AGAIN}}
+  - AGAIN: {script: ANOTHER, params: {side: right}, transitions: {fed: done}}
+"""
+FEED = """\
+- FEED:
+    template: ScriptedState
+    doc: [[params, side], ' at ', [params, speed]]
+    outcomes: [fed]
+"""
+
+
+@pytest.mark.parametrize(
+    ("params", "another", "states", "help"),
+    [
+        ("", "feed", "`AGAIN`, `LEFT` and `RIGHT`", "add `params: {speed: ...}` to the script"),
+        ("params: {fast: 2}", "feed2", "`AGAIN`, `LEFT` and `RIGHT`",
+         "add `speed: ...` to the `params` of the script"),
+    ],
+)  # fmt: skip
+def test_a_param_that_several_calls_lack(params: str, another: str, states: str, help: str) -> None:
+    main = FEEDERS.replace("PARAMS\n", f"{params}\n" if params else "").replace("ANOTHER", another)
+    found = reported({"main.yml": main, "feed.yml": FEED, "feed2.yml": FEED})
+    assert [each for each in found if each[0] == "SM015"] == [("SM015", "script: feed", help)]
+
+
+def test_a_param_of_a_call_that_is_turned_round() -> None:
+    feed = FEED.replace("template", "params: {side: left}\n    template")
+    main = FEEDERS.replace("PARAMS", "params: {speed: 2}").replace("ANOTHER", "feed")
+    main = main.replace("{side: left}", "{left: side}")
+    help = "write `side: left`: the name of the param comes first"
+    assert reported({"main.yml": main, "feed.yml": feed}) == [("SM306", "left", help)]
+
+
+RECORDS = """\
+name: sm
+outcomes: [done]
+types: {Seam: {name: str, length: float}}
+userdata:
+  seams: {type: "list[Seam]", value: [{name: left, length: 2.5}, ITEM]}
+states:
+  - GLUE: {template: ScriptedState, input_keys: [seams], outcomes: [done]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("item", "found"),
+    [
+        ("{name: right, length: 3.5}", []),
+        ("{right: name, length: 3.5}",
+         [("SM304", "right", "write `name: right`: the name of the field comes first")]),
+        ("{nmae: right, length: 3.5}",
+         [("SM304", "nmae", "did you mean `name` in place of `nmae`?")]),
+        ("{name: 3.5, length: right}",
+         [("SM304", "3.5", "write `name: right, length: 3.5`: the values have changed places")]),
+    ],
+)  # fmt: skip
+def test_an_item_of_data_with_a_slip(item: str, found: list[Row]) -> None:
+    assert reported({"main.yml": RECORDS.replace("ITEM", item)}) == found
+
+
+PRESS = """\
+name: sm
+outcomes: [done]
+userdata: {label: abc, number: 3}
+states:
+  - PRESS: {template: Press, VARIABLES, remapping: REMAPPING, transitions: {pressed: done}}
+"""
+PRESS_TYPE = """\
+name: Press
+variables: {side: str, limit: int}
+input_keys: {text: str, count: int}
+outcomes: [pressed]
+code: {cpp: {header: press.hpp, class: Press}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("variables", "remapping", "found"),
+    [
+        ("side: left, limit: 4", "{text: label, count: number}", []),
+        ("side: 4, limit: left", "{text: label, count: number}",
+         [("SM304", "4", "write `side: left, limit: 4`")]),
+        ("limit: left, side: 4", "{text: label, count: number}",
+         [("SM304", "left", "write `limit: 4, side: left`")]),
+        ("side: left, limit: 4", "{text: number, count: label}",
+         [("SM304", "number", "write `text: label, count: number`, or `text: int, count: str` in"
+           " the interface `Press`")]),
+    ],
+)  # fmt: skip
+def test_two_values_of_a_state_that_have_changed_places(
+    variables: str, remapping: str, found: list[Row]
+) -> None:
+    text = PRESS.replace("VARIABLES", variables).replace("REMAPPING", remapping)
+    assert reported({"main.yml": text, "templates/Press.yml": PRESS_TYPE}) == found
+
+
+@pytest.mark.parametrize(
+    ("type_", "example"),
+    [
+        ("{type: float<m/s>, min: 0, exclusive: true}", "1.5"),
+        ("{type: float, min: 0, max: 0.11}", "0.055"),
+        ("{type: int, min: 10, max: 11}", "10"),
+        ("{type: int, min: 0, max: 1, exclusive: true}", "..."),
+        ("{type: float, min: 0.1, max: 0.3}", "0.2"),
+        ("{type: str, names: joint}", "..."),
+        ("{one_of: ['off', 'on']}", '"off"'),
+        ("{type: int, one_of: [4, 8]}", "4"),
+    ],
+)
+def test_the_example_of_a_missing_variable_is_one_that_it_can_have(
+    type_: str, example: str
+) -> None:
+    interface = GRIP.replace("FORCE", type_).replace("WIDTH", "float")
+    main = USE.replace("force: 600, ", "")
+    found = reported({"main.yml": main, "templates/Grip.yml": interface})
+    assert found == [("SM005", "GRIP", f"add `force: {example}`")]
+
+
+@pytest.mark.parametrize(
+    ("row", "help"),
+    [
+        ("lamp: [{at_most: {LOOK: 2}}]", "did you mean `properties`?"),
+        ("lamp: true", "did you mean `forever`?"),
+    ],
+)
+def test_an_unknown_variable_of_the_script(row: str, help: str) -> None:
+    text = f"name: sm\n{row}\noutcomes: [done]\nstates:\n  - LOOK: {{template: ScriptedState,"
+    found = reported({"main.yml": f"{text} outcomes: [done]}}\n"})
+    assert found == [("SM003", "lamp", help)]
+
+
+LISTS = """\
+name: sm
+outcomes: [done, failed]
+userdata: {count: 1, most: 3}
+states:
+  - COUNT:
+      template: CallbacksState
+      INPUTS
+      OUTPUTS
+      callbacks:
+        more: 'lambda ud: ud.count + 1'
+        left: 'lambda ud: ud.most - ud.count'
+      transitions: {succeeded: JUDGE}
+  - JUDGE:
+      template: ConditionalOutcomeState
+      input_keys: [more, left]
+      outcomes: [few, many]
+      default_outcome: many
+      callbacks: {few: 'lambda ud: ud.more < 2 and ud.left > 1'}
+      transitions: {few: done, many: failed}
+"""
+
+
+@pytest.mark.parametrize(
+    ("inputs", "outputs", "found"),
+    [
+        ("input_keys: [count, most]", "output_keys: [more, left]", []),
+        ("input_keys: [count, most]", "tags: []",
+         [("SM308", "left", "add `output_keys: [left, more]` to `COUNT`")]),
+        ("tags: []", "output_keys: [more, left]",
+         [("SM310", "most", "add `input_keys: [most, count]` to `COUNT`")]),
+        ("state_data: [count, most]", "output_keys: [more, left]",
+         [("SM003", "state_data", "did you mean `input_keys`?")]),
+        ("input_keys: [count, most]", "state_data: [more, left]",
+         [("SM003", "state_data", "did you mean `output_keys`?")]),
+        ("input_keys: [count, most]", "output_keys: [more]",
+         [("SM308", "left", "add `left` to the `output_keys` of `COUNT`")]),
+    ],
+)  # fmt: skip
+def test_a_state_that_has_lost_its_list_of_keys(
+    inputs: str, outputs: str, found: list[Row]
+) -> None:
+    text = LISTS.replace("INPUTS", inputs).replace("OUTPUTS", outputs)
+    assert reported({"main.yml": text}) == found
+
+
+TWO_CALLS = """\
+name: sm
+outcomes: [done, full]
+userdata: {count: 3}
+states:
+  - LEFT: {script: serve, params: PARAMS, transitions: {served: RIGHT}}
+  - RIGHT: {script: serve, params: {side: right, limit: 6}, transitions: {served: done}}
+"""
+SERVE = """\
+- SERVE:
+    template: StateMachine
+    DEFAULTS
+    doc: ['Serves ', [params, side]]
+    userdata: {most: [params, limit]}
+    input_keys: [count]
+    outcomes: [full, served]
+    states:
+      - FULL:
+          template: ConditionalOutcomeState
+          input_keys: [count, most]
+          outcomes: [full]
+          default_outcome: served
+          callbacks: {full: 'lambda ud: ud.count >= ud.most'}
+"""
+
+
+@pytest.mark.parametrize("defaults", ["params: {side: left, limit: 4}", "tags: []"])
+@pytest.mark.parametrize(
+    ("params", "help"),
+    [
+        ("{side: left, limit: 4}", []),
+        ("{side: 4, limit: left}",
+         ["write `side: left, limit: 4` in the `params` of the call: the values have changed"
+          " places"]),
+        ("{side: up, limit: left}",
+         ["convert a text that contains a number with `float(...)`"]),
+    ],
+)  # fmt: skip
+def test_two_params_of_a_call_that_have_changed_places(
+    params: str, help: list[str], defaults: str
+) -> None:
+    files = {"main.yml": TWO_CALLS.replace("PARAMS", params),
+             "serve.yml": SERVE.replace("DEFAULTS", defaults)}  # fmt: skip
+    found = [each for each in reported(files) if each[0] == "SM311"]
+    assert [each[2] for each in found] == help
+
+
+LOOK_UPS = """\
+name: sm
+outcomes: [done]
+params: {height: 2.5, text: HIGH}
+states:
+  - WAIT: {template: SleepState, time: TIME, transitions: {succeeded: SHOW, preempted: done}}
+  - SHOW: {template: ScriptedState, doc: [params, text], retry: RETRY, outcomes: [shown, missed],
+           transitions: {shown: done, exhausted: done, preempted: done}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("time", "retry", "found"),
+    [
+        ("[params, height]", "{on: [missed], max: 2}", []),
+        ("[height]", "{on: [missed], max: 2}",
+         [("SM004", "[height]", "write `[params, height]`")]),
+        ("[params, height]", "{on: [missed], max: [params, tries]}",
+         [("SM015", "tries", "add `tries: ...` to the `params` of the script; in scope are"
+           " `height`, `text`")]),
+    ],
+)  # fmt: skip
+def test_a_look_up_that_is_none(time: str, retry: str, found: list[Row]) -> None:
+    text = LOOK_UPS.replace("TIME", time).replace("RETRY", retry)
+    assert reported({"main.yml": text}) == found
