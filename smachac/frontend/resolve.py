@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from pathlib import PurePath
 from typing import Literal
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, has_errors
@@ -638,7 +639,9 @@ class _Resolver:
         if entry is None and role == "base":
             word = Word("Base", name.span)
         if entry is None and role != "base":
-            scripts = self.library.script_names(around.source.name)
+            caller = around.source.name
+            open_ = {PurePath(each).stem for each in (caller, *(name for name, _ in around.calls))}
+            scripts = [n for n in self.library.script_names(caller) if n not in open_]
             types = self.known_templates()[1]
             shown, calls = around.inner or name, around.via if around.inner is not None else ()
             help = missing_template_help(shown.text, entries, scripts, types, self.other_type)
