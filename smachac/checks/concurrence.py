@@ -21,6 +21,7 @@ from smachac.checks.rule import rule
 from smachac.checks.rule_slips import (
     UNKNOWN_BRANCH,
     copied_rule_help,
+    lost_condition,
     turned_finding,
     turned_rules,
 )
@@ -99,7 +100,8 @@ def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -
     """The finding on a rule that is empty, or lists states with `any` only."""
     name = written_name(entry.outcome)
     what = " beside `any`, which stands for every outcome" if entry.ignored else ""
-    help = f"write conditions, as in `{name}: {{{_example(container)}}}`, or remove the rule"
+    condition = lost_condition(container) or _example(container)
+    help = f"write conditions, as in `{name}: {{{condition}}}`, or remove the rule"
     if entry.ignored and container.default_outcome in ("", entry.outcome):
         help = f"write `default_outcome: {name}` in place of the rule"
     return Finding(

@@ -16,9 +16,12 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.ir import nodes
 from smachac.ir.graph import START
-from smachac.ir.nodes import Leaf
+from smachac.ir.nodes import Data, Leaf
 from smachac.ir.traversal import remapping
-from smachac.ir.types import ANY
+from smachac.ir.types import ANY, Type
+
+SHORTEST_WORD = 3
+"""Shorter words of two names say nothing about them."""
 
 
 class MeantKey(NamedTuple):
@@ -62,7 +65,9 @@ def meant_keys(context: Context) -> dict[str, MeantKey]:
         if len(unread) != 1 or reader.key != first.key or reader.node is scope.container:
             continue
         word, given, data = unread[0]
-        looped = isinstance(data, tuple) and not isinstance(reader.node, nodes.Iterator)
+        looped = not isinstance(reader.node, nodes.Iterator) and _has_items_of(
+            data, word.text, first.key, wanted
+        )
         alike = not set(word.text.split("_")).isdisjoint(first.key.split("_"))
         fits = alike if ANY in (wanted, given) else misfit(given, wanted) is None
         if not fits:
@@ -71,6 +76,20 @@ def meant_keys(context: Context) -> dict[str, MeantKey]:
         else:
             found[path] = MeantKey(first, word, reader.path, looped=False)
     return found
+
+
+def _has_items_of(data: Data, name: str, key: str, wanted: Type) -> bool:
+    """Whether a value is a list whose items a key is probably meant for: `parts` for `part`, or
+    items of the type of the key that are no numbers."""
+    if not isinstance(data, tuple) or not data:
+        return False
+    words = [word for word in name.split("_") if len(word) >= SHORTEST_WORD]
+    others = [word for word in key.split("_") if len(word) >= SHORTEST_WORD]
+    if any(one.startswith(other) or other.startswith(one) for one in words for other in others):
+        return True
+    item = type_of_data(data[0])
+    unknown = ANY in (item, wanted) or item.name in ("int", "float")
+    return not unknown and misfit(item, wanted) is None
 
 
 class Misnamed(NamedTuple):

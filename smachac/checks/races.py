@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from smachac.analysis.accesses import Accesses, callback_names
 from smachac.analysis.context import Context
+from smachac.analysis.control_flow import children_names
 from smachac.analysis.raced_outputs import RacedOutput, raced_output
 from smachac.analysis.resource_claims import Held, prefixes
 from smachac.analysis.type_lattice import present
@@ -253,7 +254,11 @@ def resource_clash(context: Context) -> Iterator[Finding]:
                 - UP: {template: MoveToJointPositionsState, limb: right, remapping: {positions: up}}
               transitions: {succeeded: succeeded, aborted: aborted}
     """
-    concurrences = [(path, one) for path, one in context.containers if isinstance(one, Concurrence)]
+    concurrences = [
+        (path, one)
+        for path, one in context.containers
+        if isinstance(one, Concurrence) and len(children_names(one)) == len(one.children)  # SM106
+    ]
     held = context.claims if concurrences else {}
     for path, container in concurrences:
         for clash in _clashes(path, container, held):

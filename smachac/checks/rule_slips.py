@@ -102,3 +102,18 @@ def copied_rule_help(
         f"no rule is about `{first}: {second}`: write it in one of the two rules, as in"
         f" `{_text(wrong.outcome, free)}`"
     )
+
+
+def lost_condition(container: Concurrence) -> str | None:
+    """The condition that a rule without conditions has probably lost: the only state that no rule
+    names, with the outcome by which the other rules name states of its type, or its only one."""
+    used = {part.child: part.outcome for rule in container.rules for part in rule.when}
+    left = [each for each in container.children if each.name not in used]
+    if len(left) != 1 or is_open(left[0]):
+        return None
+    (child,) = left
+    names = [name for name in outcome_names(child) if name not in (PREEMPTED, child.catches)]
+    alike = {used[each.name] for each in container.children
+             if each.name in used and each.type == child.type}  # fmt: skip
+    likely = [name for name in names if name in alike] or names
+    return f"{child.name}: {written_name(likely[0])}" if len(likely) == 1 else None

@@ -212,7 +212,7 @@ _START = re.compile(
 _END = re.compile(r"(?<=\{)(?=,)|(?<=[^\s\[{,])(?=\s*(?:[,\]}]|$))|(?<=\w)(?=: )", re.M)
 _EQUALS = re.compile(r"(?<=[\w\"'\0]) ?(?<![=<>!])=(?!=) ?(?=[\w\[{\"'.\0-])")
 _NO_SPACE = re.compile(r"(?<=\w):(?=[\w\[{\"'.\0-])(?<!::)")
-_GAP = re.compile(r"(?<=[\w\]})\"'\0])(?= +[\w\[{\"'.\0-])")
+_GAP = re.compile(r"(?<=[\w\]})>?\"'\0])(?= +[\w\[{\"'.\0-])")
 
 
 def _mends(part: str) -> Iterator[_Mend]:
