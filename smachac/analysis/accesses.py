@@ -6,14 +6,14 @@ The accesses of a leaf follow from its interface and from the functions and step
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
-from smachac.ir.nodes import Leaf, Node, Struct
+from smachac.ir.nodes import Expression, Leaf, Node, Struct
 from smachac.ir.outcome_names import fails
 from smachac.ir.traversal import PREEMPTED, remapping
 
@@ -42,8 +42,9 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
     """The keys, under the leaf's names, that must be set when it is entered.
 
     These are its declared inputs except optional ones; keys with the role `argument` only if a
-    function of the script reads them. `raw`: the leaf sees every key of its container, as the child
-    of an iterator does (docs/semantics.md, Iterator).
+    function of the script reads them, or can read them because its code is not known. `raw`: the
+    leaf sees every key of its container, as the child of an iterator does (docs/semantics.md,
+    Iterator).
     """
     if leaf.open or not (leaf.inputs or raw):
         return ()
@@ -58,6 +59,9 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
     order += [(name, conditions[name]) for name in _names(leaf) if name in conditions]
     found: dict[str, None] = {}
     written: set[str] = set()
+    for fields in _fields_of_functions(leaf) if arguments else ():
+        read = needed if fields is None else [key for key in fields.read if key in needed]
+        found |= {key: None for key in read if fields is None or key not in fields.tested}
     for name, code in order:
         fields = userdata_fields(code.text)
         reads = needed if fields is None else fields.read
@@ -71,6 +75,21 @@ def leaf_reads(leaf: Leaf, *, raw: bool = False) -> tuple[str, ...]:
             written.add(name)
     found |= {key: None for key in needed if key not in written and key not in arguments}
     return tuple(found)
+
+
+def _fields_of_functions(leaf: Leaf) -> Iterator[Fields | None]:
+    """The keys that each function of a leaf reads, other than callbacks and conditions; None if
+    they are not known."""
+    for held in leaf.variables:
+        data = held.value.data
+        if held.takes_userdata and isinstance(data, str | Expression):
+            text = data if isinstance(data, str) else data.text
+            tree = python_tree(text.strip().strip("`"))
+            known: Fields | None = None
+            if isinstance(tree, ast.Lambda):
+                names = [each.arg for each in (*tree.args.posonlyargs, *tree.args.args)]
+                known = fields_of(tree.body, names[:1]) if names else None
+            yield known
 
 
 def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:

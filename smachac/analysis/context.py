@@ -330,8 +330,9 @@ class Context:
 
     @cached_property
     def judgements(self) -> tuple[Judgement, ...]:
-        """The properties of the script with their verdicts."""
-        if not self.machine.properties:
+        """The properties of the script with their verdicts; none where two states have one name
+        (SM106), because it is not known which of them a property means."""
+        if not self.machine.properties or len(dict(self.states)) < len(self.states):
             return ()
         from smachac.analysis.properties import judge
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import pairwise
+from operator import is_
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
@@ -25,7 +26,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, is_failure
+from smachac.ir.outcome_names import GOOD, PREEMPTED, STOPS, SUCCESSES, TIMEOUTS, fails, is_failure
 from smachac.ir.traversal import leads_to_child, outcome_names
 
 if TYPE_CHECKING:
@@ -58,7 +59,8 @@ class MeantTarget(NamedTuple):
 
 def meant_targets(container: Linear) -> dict[str, MeantTarget]:
     """The names that are meant by the unknown targets of transitions in a container: the nearest
-    one, first of those to which nothing leads; or the only one to which nothing leads."""
+    one, first of those to which nothing leads; or the only one to which nothing leads. None for a
+    state that is missing (`_missing_states`)."""
     names, exits = children_names(container), frozenset(outcome_names(container))
     lost = [step.target for child in container.children for step in strays(child, names, exits)]
     if not lost:
@@ -83,8 +85,10 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
         if len(choices) == 1 and not are_opposite(left[0], choices[0]):
             found[left[0]] = MeantTarget(choices[0], free(left[0]) != choices[0])
             left = []
+    shouted = all(name.isupper() for name in names)
     for target in left:
-        near = free(target) or every(target)
+        # A state to which other transitions lead is hardly meant by a name that is not near to it.
+        near = free(target) or (None if shouted and target.isupper() else every(target))
         if near is not None:
             found[target] = MeantTarget(near)
     return found
@@ -120,11 +124,15 @@ def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
         left = [name for name in outcome_names(child) if name not in used and name != child.catches]
         others = [name for name in others if name not in alike]
         if others and left:
-            alike |= _of_one_meaning(child, others, [name for name in left if name != PREEMPTED])
+            alike |= _of_one_meaning(child, others, left)
         stops = left == [PREEMPTED] and "implicit" in origins
-        if stops and len(others) == 1 and others[0] not in GOOD | SUCCESSES:
+        if stops and len(others) == 1 and others[0] not in _NO_STOPS:
             alike.setdefault(others[0], PREEMPTED)
     return [(step, near[step.outcome] or alike.get(step.outcome)) for step in unknown]
+
+
+_NO_STOPS = GOOD | SUCCESSES | TIMEOUTS | {"exhausted"}
+"""Outcomes that do not mean the one after a stop request."""
 
 
 def missing_default(node: Node) -> tuple[Transition, str] | None:
@@ -143,27 +151,27 @@ def missing_default(node: Node) -> tuple[Transition, str] | None:
 
 
 def outcome_of_one_meaning(child: Node, name: str) -> str | None:
-    """The outcome of a state that is probably meant by an unknown one: the only success or the only
-    failure."""
-    left = [each for each in outcome_names(child) if each != PREEMPTED]
+    """The outcome of a state that is probably meant by an unknown one: the only success, the only
+    failure or the only one after a stop."""
     meaning = _meaning(name, is_failure(name))
-    alike = [each for each in left if _meaning(each, fails(child, each)) == meaning]
-    return alike[0] if meaning in ("success", "failure") and len(alike) == 1 else None
+    alike = [each for each in outcome_names(child)
+             if _meaning(each, fails(child, each)) == meaning]  # fmt: skip
+    return alike[0] if meaning in _MEANINGS and len(alike) == 1 else None
 
 
 def _of_one_meaning(child: Node, others: list[str], left: list[str]) -> dict[str, str]:
     """For unknown outcomes the ones in `left` that are probably meant: the only success, the only
-    failure, the only one that remains."""
+    failure, the only one after a stop, the only one that remains."""
     found: dict[str, str] = {}
-    means = {name: _meaning(name, is_failure(name)) for name in others if name != PREEMPTED}
+    means = {name: _meaning(name, is_failure(name)) for name in others}
     known = {name: _meaning(name, fails(child, name)) for name in left}
-    for meaning in ("success", "failure"):
+    for meaning in _MEANINGS:
         wrong = [name for name in means if means[name] == meaning]
         right = [name for name in known if known[name] == meaning]
         if len(wrong) == len(right) == 1:
             found[wrong[0]] = right[0]
-    wrong = [name for name in means if name not in found]
-    right = [name for name in known if name not in found.values()]
+    wrong = [name for name in means if name not in found and name != PREEMPTED]
+    right = [name for name in known if name not in found.values() and name != PREEMPTED]
     if len(wrong) == len(right) == 1 and {means[wrong[0]], known[right[0]]} != {
         "success",
         "failure",
@@ -172,9 +180,15 @@ def _of_one_meaning(child: Node, others: list[str], left: list[str]) -> dict[str
     return found
 
 
+_MEANINGS = ("success", "failure", "stop")
+
+
 def _meaning(outcome: str, failure: bool) -> str:
+    """One of `_MEANINGS`, or empty for other outcomes."""
     if failure:
         return "failure"
+    if outcome.lower() in STOPS:
+        return "stop"
     return "success" if outcome.lower() in GOOD | SUCCESSES else ""
 
 
@@ -190,7 +204,9 @@ def is_catch_all(step: Transition) -> bool:
 def corrected(container: Linear) -> Linear:
     """A container with misspelt targets and outcomes corrected, where a near name exists.
 
-    A state gets the unknown outcomes of its transitions for which no known one is meant.
+    A state gets the unknown outcomes of its transitions for which no known one is meant. An unknown
+    target that is written like the names of the states is a missing state: an open one stands for
+    it.
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
@@ -220,10 +236,25 @@ def corrected(container: Linear) -> Linear:
         outcomes = (*node.outcomes, *added)
         return replace(node, outcomes=outcomes, transitions=tuple(map(target, steps)))
 
-    children = tuple(map(child, container.children))
-    if all(new is old for new, old in zip(children, container.children, strict=True)):
+    children = (*map(child, container.children), *_missing_states(container, names, exits, meant))
+    if len(children) == len(container.children) and all(map(is_, children, container.children)):
         return container
     return replace(container, children=children)
+
+
+def _missing_states(
+    container: Linear,
+    names: frozenset[str],
+    exits: frozenset[str],
+    meant: Mapping[str, MeantTarget],
+) -> list[Leaf]:
+    """Open states for the unknown targets of transitions in a container of states in upper case."""
+    lost = [step for child in container.children for step in strays(child, names, exits)]
+    if not lost or not all(name.isupper() for name in names):
+        return []
+    spans = {step.target: step.span for step in reversed(lost)}
+    missing = [name for name in spans if name.isupper() and name not in meant]
+    return [Leaf(name=name, type="", span=spans[name], open=True) for name in reversed(missing)]
 
 
 def _catches_itself(node: Node, step: Transition) -> bool:

@@ -10,6 +10,7 @@ from smachac.analysis.def_use import around, place_in
 from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
 from smachac.analysis.unset_reads import MOST_LEVELS, MOST_STEPS, Missing, Reader, reader_at
 from smachac.diagnostics.spelling import guesser
+from smachac.ir import nodes
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node
 from smachac.ir.script_paths import sugared_child
@@ -62,9 +63,12 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
             left -= sum(len(each.scope.steps) + len(each.scope.reads) for each in levels)
             if not is_named and levels:
                 left -= len(scope.steps) + len(scope.reads)
-                if not _is_dead(scope, writer, own):
+                if not (_is_dead(scope, writer, own) or _accumulates(scope, writer, own)):
                     continue
+            whole = not _is_leaf(writer)
             for level, vertex in chain(_after(levels), _again(scope, own, writer, levels)):
+                if whole and not _is_leaf(level.scope.children[str(vertex)]):
+                    continue  # a container can count on its own
                 reader = reader_at(level.scope, vertex, level.key)
                 reported.add((scope.path, own))
                 yield Lost(scope, own, writer, written, reader, level.key, False)
@@ -74,12 +78,21 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
 class _Kept(NamedTuple):
     """A key that a state of a container writes, and the name of the key in the container, of which
     it is no output. `is_named`: the script lists or renames it; if not, it is an input of the
-    container, and only the interface of the state type lists it."""
+    container, or the state is one, and only the interface of the state type lists it."""
 
     writer: Node
     written: Key
     own: str
     is_named: bool
+
+
+def _accumulates(scope: UserdataScope, writer: Node, own: str) -> bool:
+    """Whether a loop changes a key from item to item, and has no other state that reads it."""
+    names = remapping(writer)
+    read = {names.get(key.name, key.name) for key in writer.inputs}
+    return (
+        isinstance(scope.container, nodes.Iterator) and own in read and scope.container.sugar == ""
+    )
 
 
 class _Level(NamedTuple):
@@ -130,7 +143,7 @@ def _set_by(child: Node) -> set[str]:
 def _is_dead(scope: UserdataScope, writer: Node, own: str) -> bool:
     """Whether no state in the container reads a key after the writer has set it."""
     if isinstance(scope.container, Concurrence):
-        return not any(own in keys for keys in scope.reads.values())
+        return not any(own in keys for vertex, keys in scope.reads.items() if vertex != writer.name)
     return _read_after(scope, writer.name, own, again=True, written=True) is None
 
 
@@ -185,7 +198,7 @@ def _read(scope: UserdataScope) -> frozenset[str]:
 
 
 def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
-    """The keys that leaves of a container write and that are no outputs of it. A key that is also
+    """The keys that states of a container write and that are no outputs of it. A key that is also
     read in the container counts only if it is an input, because then it has one name outside."""
     container = scope.container
     read = {
@@ -197,13 +210,30 @@ def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
     found: list[_Kept] = []
     for child in container.children:
         renamed = {remap.key for remap in child.remaps} - {key.name for key in child.inputs}
-        for key in child.outputs if _is_leaf(child) else ():
+        whole = not _is_leaf(child)
+        for key in child.outputs:
             own = remapping(child).get(key.name, key.name)
-            is_local = own in read and own not in scope.inputs
+            if own in scope.outputs or (own in read and own not in scope.inputs):
+                continue
             is_named = key.span.source is child.span.source or key.name in renamed
-            if own not in scope.outputs and not is_local and (is_named or own in scope.inputs):
+            if whole:
+                is_named = False
+                if not _is_set_in(child, key.name):
+                    continue
+            if is_named or whole or own in scope.inputs:
                 found.append(_Kept(child, key, own, is_named))
     return tuple(found)
+
+
+def _is_set_in(node: Node, key: str) -> bool:
+    """Whether a leaf in a node has an output that becomes an output of the node."""
+    if isinstance(node, Leaf):
+        return any(each.name == key for each in node.outputs)
+    return any(
+        remapping(child).get(each.name, each.name) == key and _is_set_in(child, each.name)
+        for child in node.children
+        for each in child.outputs
+    )
 
 
 def _is_leaf(node: Node) -> bool:

@@ -15,7 +15,7 @@ from smachac.analysis.code_slots import (
     results,
     swapped,
 )
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Span
 from smachac.ir.argument_parts import argument_uses, result_of
 from smachac.ir.code_places import node_place
 from smachac.ir.function_facts import ArgumentUses, FunctionFacts, Part, Result
@@ -38,10 +38,10 @@ Content: TypeAlias = "tuple[Message | FieldType, ...]"
 
 
 class FieldRead(NamedTuple):
-    """A field that code uses: the messages that can be there, and the name at its place."""
+    """A part of an argument that code uses, and the messages that can have its last field."""
 
     messages: tuple[Message, ...]
-    name: Word
+    part: Part
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +87,7 @@ def field_reads(code: MessageCode, found: Definitions) -> Iterator[FieldRead]:
     for part in code.uses.parts:
         messages = owners(part, code, found)
         if messages:
-            yield FieldRead(tuple(messages), part.name)
+            yield FieldRead(tuple(messages), part)
 
 
 def owners(part: Part, code: MessageCode, found: Definitions) -> list[Message]:
@@ -156,7 +156,7 @@ def _lambda_uses(slot: CodeSlot, tree: ast.Lambda) -> tuple[ArgumentUses, tuple[
 
     uses = argument_uses(nodes, names, place)
     if tested:
-        uses = uses._replace(parts=())
+        uses = uses._replace(parts=(), operands=())
     return uses, tuple(result_of(each, names, place) for each in results(tree))
 
 

@@ -105,7 +105,9 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     exits = frozenset(outcome_names(whole))
     ends: dict[str, tuple[str, ...]] = {}
     states: dict[str, Node] = {}
-    for old, child in zip(container.children, whole.children, strict=True):
+    for child in whole.children[len(container.children) :]:  # missing states
+        states[child.name], ends[child.name] = child, ()
+    for old, child in zip(container.children, whole.children, strict=False):
         states[child.name] = child
         # The corrected leaf has more information than the misspelt one.
         is_known = old.outcomes or is_open(old)

@@ -6,12 +6,14 @@ from __future__ import annotations
 from itertools import chain
 from typing import NamedTuple
 
+from smachac.analysis.context import Context
+from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, widened
-from smachac.analysis.unset_reads import Reader
+from smachac.analysis.unset_reads import Reader, reader_at
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import words_of
+from smachac.diagnostics.spelling import guesser, words_of
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
 
@@ -66,3 +68,34 @@ def fitting_keys(types: Types, scope: UserdataScope, reader: Reader, wanted: Typ
     read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
     found.sort(key=lambda key: (key in read, key in scope.held))
     return found if len(found) <= MOST_FITTING else []
+
+
+def written_place(scope: UserdataScope, key: str) -> Span | None:
+    """Where the script names a key that nothing in a container reads: in its presets, or at the
+    state that sets it; None if something reads it."""
+    if key in {*chain.from_iterable(scope.reads.values()), *scope.outputs}:
+        return None
+    for preset in scope.container.userdata:
+        if preset.key == key:
+            return preset.span
+    for child in scope.container.children:
+        names = remapping(child)
+        for each in child.outputs:
+            if names.get(each.name, each.name) == key:
+                return place_of(child, each)
+    return None
+
+
+def meant_by_types(context: Context) -> set[tuple[str, str]]:
+    """The keys that nothing reads and that SM301 names as the only ones of the type that a state
+    reads from a key that nothing sets, each with the path of its container."""
+    found: set[tuple[str, str]] = set()
+    for missing in context.missing_keys("nowhere"):
+        scope = missing.scope
+        reader = reader_at(scope, missing.vertices[0], missing.key)
+        wanted = context.types.inputs.get((reader.path, reader.key), ANY)
+        known = sorted({key for path, key in context.types.keys if path == scope.path})
+        if unread_output(scope, missing.key) is None and guesser(known)(missing.key) is None:
+            keys = fitting_keys(context.types, scope, reader, wanted)
+            found.update((scope.path, key) for key in keys if len(keys) == 1)
+    return found

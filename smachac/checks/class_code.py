@@ -6,6 +6,7 @@ of a class is reported once, with the first state of its type as a related place
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
@@ -13,6 +14,7 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
@@ -160,7 +162,7 @@ def _wrong_returns(
     path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]
 ) -> Iterator[Finding]:
     guess = guesser(outcomes)
-    known = _known(leaf, outcomes)
+    known, alone = _known(leaf, outcomes), _only_left(leaf, facts, outcomes)
     for ending in facts.endings:
         word = ending.outcome
         if word.text not in outcomes:
@@ -170,6 +172,10 @@ def _wrong_returns(
             near = near or _without_tuple(word.text, outcomes)
             if ending.silent:
                 near = f"end each path of `{ending.silent}` with a `return`; {known}"
+            elif near is None and alone is not None:
+                text = f'"{alone}"' if ending.defined else f'return "{alone}"'
+                near = f"write `{text}`, as no path returns `{alone}`"
+                near += "" if ending.possible else _or_declare(ending, leaf)
             returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
                 span=ending.defined or word.span,
@@ -180,6 +186,18 @@ def _wrong_returns(
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
+
+
+def _only_left(leaf: Leaf, facts: ClassFacts, outcomes: Collection[str]) -> str | None:
+    """The only outcome but `preempted` that `execute` does not return, if it returns one unknown
+    outcome; else None."""
+    returned = {word.text for word in facts.returns}
+    known = {PREEMPTED, leaf.catches, *returned}
+    left = [name for name in outcomes if name not in known]
+    wrong = [*returned.difference(outcomes)]
+    if not facts.complete or facts.silent or len(wrong) != 1 or len(left) != 1:
+        return None
+    return None if is_negation(wrong[0], left[0]) else left[0]
 
 
 def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[str, ...]) -> Finding:
@@ -360,6 +378,10 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             if renamed and renamed[0] in inputs:
                 help = f"write `{_owner(word)}.{renamed[0]}`: `{word.text}` is the name of this key"
                 help += f" around `{leaf.name}`"
+            lone = _lone_input(facts, inputs, known) if word.text not in outputs else None
+            if lone is not None and guesser(inputs)(word.text) is None and not renamed:
+                message += f", and it never reads its input key `{lone}`"
+                help = f"write `{_owner(word)}.{lone}`" if _owner(word) else f"write `{lone}`"
             if word.text in outputs:
                 message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
                 message += " key of its interface"
@@ -406,13 +428,19 @@ def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
 
 def _local_variable(word: Word) -> str:
     """The help for a read of a key that the code itself sets: the way to do without it."""
-    after = word.span.source.text[word.span.end :][:20].lstrip(" ]")
+    after = word.span.source.text[word.span.end :][:60].lstrip(" ]")
     what = "compute the value" if after.startswith(("+=", "-=", "*=", "/=")) else "keep the value"
+    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
+    whole = _WHOLE.match(after)
+    if whole is not None:
+        return f"write `{key} = {whole[1]}`"
     if after.startswith(COLLECTS):
         what = "collect the items"
-    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
     return f"{what} in a local variable, and set `{key}` once, before the return"
 
+
+_WHOLE = re.compile(r"\.(?:extend|update)\((\w+)\)\s*\n")
+"""A call that adds all items of a variable."""
 
 COLLECTS = (".append(", ".extend(", ".insert(", ".add(", ".update(")
 """The calls by which code collects items in a list, a set or a dictionary."""
@@ -433,6 +461,10 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
             unset = [key for key in outputs if key not in written and key not in inputs]
             near = guesser(unset if only else outputs)(word.text)
             guess = did_you_mean(near)
+            lone = lone_output(facts, inputs, outputs)
+            if near is None and lone is not None and lone[0] == word.text:
+                near = lone[1]
+                guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
             never = f", and `{near}` is never set" if near in unset and sure else ""
             yield Finding(
                 span=word.span,
@@ -445,6 +477,38 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 related=used_here(leaf),
                 node=path,
             )
+
+
+def lone_output(
+    facts: ClassFacts, inputs: Collection[str], outputs: Collection[str]
+) -> tuple[str, str] | None:
+    """The only key that a class sets without an output in its interface, and the only output key
+    that it never sets: both are one slip. None if that is not certain."""
+    listed_ = {word.text for word in facts.outputs or ()}
+    local = {key for key, _ in facts.unused}
+    written = {word.text for word in facts.writes}
+    wrong = written - {*inputs, *outputs, *(word.text for word in facts.reads)}
+    unset = [key for key in outputs if key not in written and key not in inputs]
+    known = facts.endings and all(each.written is not None for each in facts.endings)
+    if not known or len(wrong) != 1 or len(unset) != 1 or local & {*unset} or listed_ & wrong:
+        return None
+    return min(wrong), unset[0]
+
+
+def _lone_input(facts: ClassFacts, inputs: Collection[str], known: Collection[str]) -> str | None:
+    """The only input key that the code of a class does not read, where it reads exactly one key
+    that is none of the `known` ones."""
+    read = {word.text for word in facts.reads}
+    wrong = read - {*known} - DICTIONARY_METHODS
+    unread = [key for key in inputs if key not in read]
+    sure = facts.endings and all(each.written is not None for each in facts.endings)
+    listed_ = {word.text for word in facts.inputs or ()}
+    written = {word.text for word in facts.writes}
+    return (
+        unread[0]
+        if sure and len(wrong) == len(unread) == 1 and not wrong & (listed_ | written)
+        else None
+    )
 
 
 def first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:

@@ -18,6 +18,12 @@ from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place
 from smachac.checks.outcomes import inverted_rules
 from smachac.checks.rule import rule
+from smachac.checks.rule_slips import (
+    UNKNOWN_BRANCH,
+    copied_rule_help,
+    turned_finding,
+    turned_rules,
+)
 from smachac.checks.timeouts import missing_joins
 from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -89,9 +95,6 @@ def dead_rule(context: Context) -> Iterator[Finding]:
             yield from _rules_for_both(each)
 
 
-UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
-
-
 def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -> Finding:
     """The finding on a rule that is empty, or lists states with `any` only."""
     name = written_name(entry.outcome)
@@ -116,9 +119,13 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
         return  # SM106: a rule can be about a state that has the name of another one
     guess = guesser(children)
     states = f"use one of its states: {listed(children)}" if children else "add states to it"
-    inverted = inverted_rules(container)
+    inverted = [each.rule for each in inverted_rules(container)]
+    turned = turned_rules(container)
+    if turned:
+        yield turned_finding(path, container, turned)
+    inverted += [each.rule for each in turned]
     for entry in container.rules:
-        if entry in inverted:  # SM103 reports them
+        if entry in inverted:  # SM103 reports those that begin with a state
             continue
         for word in entry.ignored:
             if word.text not in children:
@@ -590,6 +597,7 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
     first, last = _ends(each.concurrence, tie)
     above, below = each.concurrence.written[first], each.concurrence.written[last]
     here = each.concurrence.written[number]
+    copied = copied_rule_help(each.concurrence.node, above, below, here)
     conditions = ", ".join(f"{child}: {outcome}" for child, outcome in tie.items())
     return Finding(
         span=here.span,
@@ -597,7 +605,8 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
         f" {written(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
         f" `{below.outcome}`",
         arguments=(above.outcome, below.outcome, *_names(tie)),
-        help="add a condition to the rule that must win, as in"
+        help=copied
+        or "add a condition to the rule that must win, as in"
         f" `{above.outcome}: {{{conditions}}}`: the rule with more conditions wins",
         related=(
             *other_place(above.span, "the other rule"),

@@ -16,6 +16,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
+from smachac.checks.candidate_keys import meant_by_types
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.empty_remaps import meant_by_empty_remaps
@@ -52,7 +53,7 @@ from smachac.frontend.errors.references import short_value
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Node, Remap
+from smachac.ir.nodes import Container, Key, Leaf, Node, Remap, Unused
 from smachac.ir.traversal import remapping
 
 
@@ -196,6 +197,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
     found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302
+    found |= meant_by_types(context)  # SM301
     return found | keys_of_misplaced(context.misplaced)  # SM101
 
 
@@ -475,6 +477,10 @@ def _param_meant(name: str, known: Sequence[str]) -> str | None:
     return guesser(known).sure(name) or (alike[0] if len(alike) == 1 else None)
 
 
+MOST_SHOWN = 40
+"""The longest value that a message shows, in characters."""
+
+
 def _unused_by_the_script(context: Context) -> Iterator[Finding]:
     """The params and types of the script that nothing uses."""
     machine = context.machine
@@ -483,7 +489,7 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
     in_code = params_in_code(machine)
     as_text = params_as_text(context)
     wrong = {each.flow.origin.span for each in context.clashes["type"]} if as_text else set()
-    for what, word, via, known in machine.unused:
+    for what, word, via, known, kept in machine.unused:
         if what == "param" and word.text in in_code:  # SM019
             continue
         if what == "param" and (place := as_text.get(word.text)) is not None:
@@ -499,20 +505,37 @@ def _unused_by_the_script(context: Context) -> Iterator[Finding]:
                 node=machine.root.name,
             )
             continue
-        outside = (call for call in via if call.source is not word.span.source)
-        yield Finding(
-            span=word.span,
-            message=f"the {what} `{word.text}` is defined, but nothing uses it",
-            arguments=(what, word.text),
-            help=_turned_param_help(word, known)
-            or did_you_mean(_param_meant(word.text, known))
-            or (f"write `{known[0]}`, the param that is used here" if len(known) == 1 else None)
-            or (f"the params that are used here are {listed(known)}" if known else None)
-            or "remove it, or correct its name",
-            effect="its value has no effect" if what == "param" else None,
-            related=tuple(Related(span=call, message=CALLED_HERE) for call in outside),
-            node=machine.root.name,
-        )
+        yield _unused_word(Unused(what, word, via, known, kept), machine.root.name)
+
+
+def _unused_word(unused: Unused, root: str) -> Finding:
+    """SM306 for a param or type of the script that nothing uses."""
+    what, word, via, known, kept = unused
+    outside = (call for call in via if call.source is not word.span.source)
+    meant = _param_meant(word.text, known)
+    help = did_you_mean(meant)
+    if meant is None and known:
+        help = f"the params that are used here are {listed(known)}"
+        if len(known) == 1:
+            meant = known[0]
+            help = f"write `{meant}`, the param that is used here"
+    effect = "its value has no effect" if what == "param" else None
+    help = _turned_param_help(word, known) or help
+    default = kept.get(meant or "")
+    if default is not None and "\n" not in default.text and len(default.text) <= MOST_SHOWN:
+        effect = f"its value has no effect: the sub-script keeps `{meant}: {default.text}`"
+    return Finding(
+        span=word.span,
+        message=f"the {what} `{word.text}` is defined, but nothing uses it",
+        arguments=(what, word.text),
+        help=help or "remove it, or correct its name",
+        effect=effect,
+        related=(
+            *(other_place(default, f"the value of `{meant}` in the sub-script") if default else ()),
+            *(Related(span=call, message=CALLED_HERE) for call in outside),
+        ),
+        node=root,
+    )
 
 
 def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:

@@ -17,6 +17,7 @@ from smachac.checks.swapped_params import swapped_params_help
 from smachac.checks.types import written
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
+from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, in_quotes, respelt
 from smachac.diagnostics.wording import listed
@@ -29,7 +30,7 @@ from smachac.ir.code_places import (
 )
 from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
-from smachac.ir.leaf import functions, variable_of
+from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct, is_number
 from smachac.ir.traversal import expressions, outcome_names, values
 
@@ -186,15 +187,15 @@ def _is_deeper(tree: ast.AST) -> bool:
 
 def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:
     """Entries of `callbacks` that are not code, such as a number or a list."""
-    for variable in leaf.variables:
-        if variable.role not in ("callbacks", "conditions") and variable.name != "callbacks":
+    for held in leaf.variables:
+        if held.role not in ("callbacks", "conditions") and held.name != "callbacks":
             continue
-        if not isinstance(variable.value.data, Struct):
+        if not isinstance(held.value.data, Struct):
             continue
-        for key, value in variable.value.data.entries:
+        for key, value in held.value.data.entries:
             if not isinstance(value, Expression):
                 yield Finding(
-                    span=place_of_part(variable.value.span, (key,)),
+                    span=place_of_part(held.value.span, (key,)),
                     message=f"the callback `{key}` of `{leaf.name}` is not a function",
                     arguments=(key,),
                     help=f"write a function, such as `{key}: 'lambda ud: {_example(leaf)}'`,"
@@ -216,7 +217,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
         return
     for word, what, effect in _endings(leaf):
         if word.text not in outcomes:
-            meant = did_you_mean(guesser(outcomes)(word.text))
+            meant = did_you_mean(guesser(outcomes)(word.text)) or _only_left(leaf, word.text)
             yield Finding(
                 span=word.span,
                 message=f"{what} `{word.text}`, which is not one of its outcomes",
@@ -228,6 +229,19 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
                 related=calls(leaf, word.span),
                 node=path,
             )
+
+
+def _only_left(leaf: Leaf, word: str) -> str | None:
+    """The help that names the only outcome of a leaf to which no condition leads, if one condition
+    leads to an unknown one."""
+    conditions = functions(leaf, "conditions") or {}
+    default = variable(leaf, "default_outcome")
+    names = outcome_names(leaf)
+    left = [name for name in names if name not in {*conditions, default, leaf.catches}]
+    unknown = [name for name in conditions if name not in names]
+    if unknown != [word] or len(left) != 1 or is_negation(word, left[0]):
+        return None
+    return f"write `{left[0]}` in place of `{word}`: no condition leads to `{left[0]}`"
 
 
 def _endings(leaf: Leaf) -> Iterator[tuple[Word, str, str]]:

@@ -102,7 +102,7 @@ def overwritten_keys(context: Context) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _is_condition(slot: CodeSlot) -> bool:
+def is_condition(slot: CodeSlot) -> bool:
     """Whether a state judges the result of its code as true or false."""
     return slot.role == "conditions" or (slot.name == "cond_cb" and slot.returns == "value")
 
@@ -111,7 +111,7 @@ def always_true(context: Context) -> Iterator[Finding]:
     """The conditions whose results are all constants that count as true, such as names of
     outcomes. One number, or `True`, is intended."""
     for path, node, slot, tree in readable_slots(context):
-        if not isinstance(tree, ast.Lambda) or slot.quoted or not _is_condition(slot):
+        if not isinstance(tree, ast.Lambda) or slot.quoted or not is_condition(slot):
             continue
         found = results(tree)
         values = [each.value for each in found if isinstance(each, ast.Constant)]
@@ -121,7 +121,7 @@ def always_true(context: Context) -> Iterator[Finding]:
         if texts or len(values) > 1:
             yield _true_condition(path, node, slot, slot.code.span, len(values), texts, tree.body)
     for path, node, slot, facts in named_functions(context):
-        if facts.texts and _is_condition(slot):
+        if facts.texts and is_condition(slot):
             number = len(facts.texts)
             yield _true_condition(path, node, slot, facts.texts[0].span, number, True, None)
 

@@ -4,50 +4,58 @@ from __future__ import annotations
 
 import ast
 import re
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from smachac.analysis.code_slots import CodeSlot, code_slots
+from smachac.analysis.code_slots import code_slots
 from smachac.analysis.context import Context
 from smachac.analysis.message_code import (
-    MOST_CODE,
-    MessageCode,
-    content_of,
-    field_reads,
     leaf_definitions,
     message_code,
-    owners,
 )
 from smachac.analysis.type_lattice import fits, present
+from smachac.checks.class_messages import faults_in_classes
+from smachac.checks.message_reads import (
+    code_places,
+    described,
+    field_finding,
+    near_field,
+    operands_of,
+    unknown_field_finding,
+    wrong_comparisons,
+    wrong_operands,
+    wrong_reads,
+)
+from smachac.checks.message_types import (
+    call_of,
+    meant_type,
+    missing_types,
+    no_type,
+    type_in_place_of_part,
+    word_in,
+)
 from smachac.checks.message_values import (
-    an_example,
-    constants_for,
     in_field_order,
     is_time,
-    named_constants,
     value_faults,
     value_help,
     with_levels,
 )
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.robot import at
 from smachac.checks.rule import rule
 from smachac.checks.value_places import place_of_part
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, listed
 from smachac.ir.leaf import given_fields, key_names, type_text, variable, variable_of
 from smachac.ir.message_types import (
     FLOATS,
     INTEGERS,
     PARTS,
-    TEXTS,
     DefinitionKind,
     Definitions,
-    FieldType,
     Message,
     MissingDefinitions,
     userdata_type,
@@ -75,10 +83,7 @@ NUMBERS = frozenset([*INTEGERS, *FLOATS, "bool"])
 
 SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
-METHODS = frozenset(
-    ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy"]  # ROS 1
-) | {"SLOT_TYPES", "get_fields_and_field_types"}
-"""The names of a message in Python that are no fields."""
+SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
 _TYPE_NAME = re.compile(r"[a-z]\w*[/.](msg[/.])?[A-Z]\w*")
 """The name of a message type with its package: `std_msgs/Bool`."""
@@ -113,10 +118,13 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of `code` in the
     project file, in the folder of the script and in those above it up to the root of the
     repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs smachac.
-    The common types of std_msgs, std_srvs and geometry_msgs are known without their files. Without
-    a definition, nothing is checked; but a type is reported if its package has other types of its
-    kind, or its name is that of another kind. Where several are found, such as those of ROS
-    1 and ROS 2, a finding holds for all of them.
+    The types of common packages, such as std_msgs, std_srvs, geometry_msgs, sensor_msgs, nav_msgs
+    and trajectory_msgs, are known without their files. Without a definition, nothing is checked;
+    but a type is reported if its package has other types of its kind, or its name is that of
+    another kind. Where several are found, such as those of ROS 1 and ROS 2, a finding holds for all
+    of them. In the classes of state types, imports of messages are checked, and the fields of new
+    messages and of the arguments of callbacks. A function that calculates with a whole message, or
+    compares it with a number or a text, is also found.
 
     Wrong:
         name: sm
@@ -156,11 +164,11 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     """
     found, missing = context.machine.definitions, context.machine.missing_definitions
     for path, node in context.leaves_with_variables:
-        yield from _missing_types(path, node, missing)
-        yield from _type_in_place_of_part(path, node)
+        yield from missing_types(path, node, missing)
+        yield from type_in_place_of_part(path, node)
+        yield from _wrong_messages(context, path, node, found, missing)
         if not found:
             continue
-        yield from _wrong_messages(context, path, node, found)
         for kind, definitions in leaf_definitions(node, found):
             for held in node.variables:
                 if held.role in PARTS[kind]:
@@ -171,8 +179,11 @@ def unknown_field(context: Context) -> Iterator[Finding]:
         for slot in code_slots(node, context.machine.state_types):
             code = message_code(slot, node, found, context.machine.functions)
             if code is not None:
-                yield from _wrong_reads(path, node, slot, code, found)
-                yield from _wrong_comparisons(path, node, slot, code, found)
+                here = code_places(node, slot, code)
+                yield from wrong_reads(path, node, code, found, here)
+                yield from wrong_comparisons(path, node, code, found, here)
+                yield from wrong_operands(path, node, operands_of(slot, code), code, found, here)
+    yield from faults_in_classes(context, found, missing)
 
 
 @rule(
@@ -285,100 +296,15 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
                 yield at(flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,))
 
 
-def _missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterator[Finding]:
-    """Types that a state names and that their packages do not have."""
-    for role, kind in DEFINITION_KINDS.items():
-        named = variable_of(leaf, role)
-        if named is None:
-            continue
-        parts = re.split(r"[/.]", type_text(named).strip())
-        absent = missing.get((kind, type_text(named)))
-        other = absent.other if absent is not None else _other_kind(parts, kind)
-        if other is not None:
-            message = f"`{type_text(named)}` is {KIND_WORDS[other]}, not {KIND_WORDS[kind]}"
-        elif absent is not None:
-            message = f"the package `{parts[0]}` has no {kind_word(kind)} `{parts[-1]}`"
-        else:
-            continue
-        names = absent.names if absent is not None else ()
-        known = (
-            f"write one of {listed(names)}" if names else f"write the name of {KIND_WORDS[kind]}"
-        )
-        word = parts[-1]
-        if absent is None and other is not None and "/" in type_text(named):
-            word = "/".join(parts[1:])
-            known = f"write `{parts[0]}/{kind}/{parts[-1]}` if the package has this"
-            known += f" {kind_word(kind)}, or the name of another one"
-        yield Finding(
-            span=_word(word, named.value.span).span,
-            message=message,
-            arguments=(parts[0], parts[-1]),
-            help=did_you_mean(guesser(names)(parts[-1])) or known,
-            effect="the program stops when it imports the type",
-            related=calls(leaf, named.value.span),
-            node=path,
-        )
-
-
-def _type_in_place_of_part(path: str, leaf: Leaf) -> Iterator[Finding]:
-    """Calls of the class of a service or an action where its request or its goal is needed:
-    `SetBool(data=True)`. In Python this class of a service takes no arguments."""
-    for role, kind in DEFINITION_KINDS.items():
-        named = variable_of(leaf, role)
-        parts = re.split(r"[/.]", type_text(named).strip()) if named is not None else []
-        if kind == "msg" or len(parts) < 2:
-            continue
-        part = PARTS[kind][0]
-        name = parts[-1].removesuffix("Action") if kind == "action" else parts[-1]
-        for held in leaf.variables:
-            code = held.value.data
-            if held.role != part or not isinstance(code, Expression):
-                continue
-            call = _call(code.text)
-            if call is None or not isinstance(call.func, ast.Name | ast.Attribute):
-                continue
-            called = ast.unparse(call.func).rpartition(".")[2]
-            if called not in (name, parts[-1]):
-                continue
-            new = f"{name}.{part.capitalize()}" if len(parts) > 2 else f"{name}{part.capitalize()}"
-            given = ", ".join(ast.unparse(each) for each in (*call.args, *call.keywords))
-            what = kind_word(kind)
-            yield Finding(
-                span=_word(called, held.value.span).span,
-                message=f"`{called}` is the class of the {what}, not of its {part}",
-                arguments=(held.name, called),
-                help=f"write `{new}({given})`",
-                effect=f"it has no fields of the {part}: the program stops when it makes the state",
-                related=calls(leaf, held.value.span),
-                node=path,
-            )
-
-
-KIND_WORDS: Mapping[DefinitionKind, str] = {
-    "msg": "a message",
-    "srv": "a service",
-    "action": "an action",
-}
-
-
-def kind_word(kind: DefinitionKind) -> str:
-    """The word for a kind, without its article."""
-    return KIND_WORDS[kind].partition(" ")[2]
-
-
-def _other_kind(parts: Sequence[str], kind: DefinitionKind) -> DefinitionKind | None:
-    """The kind of a type whose name has another folder: `std_msgs/msg/Bool`. In ROS 1 an action
-    can be named by its message; ROS 2 has messages such as `Drive_FeedbackMessage`."""
-    if len(parts) != 3 or (kind == "action" and parts[1] == "msg") or "_" in parts[2]:
-        return None
-    return next((each for each in KIND_WORDS if each == parts[1] and each != kind), None)
-
-
 def _wrong_messages(
-    context: Context, path: str, leaf: Leaf, found: Definitions
+    context: Context,
+    path: str,
+    leaf: Leaf,
+    found: Definitions,
+    missing: MissingDefinitions,
 ) -> Iterator[Finding]:
-    """Mappings in the userdata whose fields the message of the state's key `msg_type` does not
-    have, or whose values do not fit."""
+    """Types in the key `msg_type` that do not exist, and mappings in the userdata whose fields the
+    message of this type does not have, or whose values do not fit."""
     names = key_names(leaf.inputs, "message")
     typed = context.types.cells.get((path, TYPE_KEY))
     if not names or typed is None or variable(leaf, "action") in NO_MESSAGE:
@@ -387,7 +313,13 @@ def _wrong_messages(
     texts = {each.value for each in given if each.how == "value" and isinstance(each.value, str)}
     if len(texts) != 1 or any(each.how != "value" for each in given):
         return
-    messages = [each.part("message") for each in found.get(("msg", texts.pop()), ())]
+    type_ = texts.pop()
+    absent = missing.get(("msg", type_))
+    if absent is not None and absent.other is None:
+        package, *_, name = re.split(r"[/.]", type_)
+        meant = meant_type(name, "msg", absent)
+        yield at(given[0], no_type(package, name, "msg"), meant, (package, name))
+    messages = [each.part("message") for each in found.get(("msg", type_), ())]
     for name in sorted(names) if messages else ():
         cell = context.types.cells.get((path, name))
         flows = [each for alike in cell.flows.values() for each in alike] if cell else []
@@ -398,12 +330,12 @@ def _wrong_messages(
             levels = with_levels(flow.value, faults[0] if all(faults) else (), found)
             for (steps, message, wanted, value), level in levels:
                 fields = sorted(each.name for each in message.fields)
-                text = f"{_described(message)} has no field `{steps[-1]}`"
-                help = level or did_you_mean(guesser(fields)(steps[-1]))
+                text = f"{described(message)} has no field `{steps[-1]}`"
+                help = level or did_you_mean(near_field(steps[-1], fields))
                 help = help or f"use one of its fields: {listed(fields)}"
                 if wanted is not None:
                     text = f"the value of `{steps[-1]}` does not fit: the field of"
-                    text += f" {_described(message)} is `{wanted}`"
+                    text += f" {described(message)} is `{wanted}`"
                     help = value_help(value, wanted)
                 yield at(
                     flow,
@@ -414,63 +346,6 @@ def _wrong_messages(
                     key=wanted is None,
                     effect=f"`{leaf.name}` ends with `aborted`: the message is never used",
                 )
-
-
-def _wrong_comparisons(
-    path: str, leaf: Leaf, slot: CodeSlot, code: MessageCode, found: Definitions
-) -> Iterator[Finding]:
-    """Comparisons of a number in a message with a text, or the reverse."""
-    for part, operator, value, span in code.uses.comparisons:
-        content = content_of(part, code, found)
-        fields = [each for each in content if isinstance(each, FieldType) and not each.array]
-        wrong = NUMBERS if isinstance(value, str) else TEXTS
-        if not fields or len(fields) != len(content) or {each.name for each in fields} - {*wrong}:
-            continue
-        constants = constants_for(part.name.text, fields[0], owners(part, code, found)[:1])
-        meant = [each for each in constants if each.name == value]
-        help = f"compare it with a value of the type `{fields[0]}`{an_example(fields[0])}"
-        if meant and operator in ("==", "!="):
-            help = f"write `{part.text} {operator} {meant[0].value}`: `{value}` is a constant of"
-            help += f" the message with the value {meant[0].value}"
-        elif constants:
-            help = f"compare it with a constant of the message: {named_constants(constants)}"
-        yield Finding(
-            span=span,
-            message=f"`{part.text}` is `{fields[0]}`: it never equals `{value!r}`",
-            arguments=(part.text, repr(value)),
-            help=help,
-            effect="the condition always has the same result, or the function fails",
-            related=_code_places(leaf, slot, code),
-            node=path,
-        )
-
-
-def _code_places(leaf: Leaf, slot: CodeSlot, code: MessageCode) -> tuple[Related, ...]:
-    """Where the script names a function with a fault, and where it calls its file."""
-    named = code.function is not None
-    first = other_place(slot.code.span, f"`{leaf.name}` calls it here") if named else ()
-    return (*first, *calls(leaf, slot.code.span))
-
-
-def _wrong_reads(
-    path: str, leaf: Leaf, slot: CodeSlot, code: MessageCode, found: Definitions
-) -> Iterator[Finding]:
-    """Fields that a function uses and that its messages do not have."""
-    for messages, word in field_reads(code, found):
-        name = word.text
-        known = {each.name for message in messages for each in message.fields}
-        constants = {each.name for message in messages for each in message.constants}
-        if (
-            name.startswith("_")
-            or name in METHODS
-            or {name, name.rstrip("_")} & (known | constants)
-        ):
-            continue
-        finding = _unknown_field(path, leaf, word, messages)
-        if code.function is not None:
-            here = other_place(slot.code.span, f"`{leaf.name}` calls it here")
-            finding = replace(finding, related=(*here, *finding.related))
-        yield finding
 
 
 def _wrong_values(
@@ -487,10 +362,10 @@ def _wrong_values(
         return  # the names of keys
     if isinstance(data, tuple) and all(len(data) != len(each.fields) for each in messages):
         first = messages[0]
-        counts = f"{len(data)} values, but {_described(first)} has {len(first.fields)} fields"
+        counts = f"{len(data)} values, but {described(first)} has {len(first.fields)} fields"
         form = ", ".join(f"{each.name}: ..." for each in first.fields)
         help = f"write a mapping of the fields: `{{{form}}}`"
-        yield _finding(path, leaf, Word("", span), f"the list has {counts}", help, messages)
+        yield field_finding(path, leaf, Word("", span), f"the list has {counts}", help, messages)
         return
     faults = [list(value_faults(data, each, found)) for each in messages]
     effect = f"the program stops when it makes the state: the {held.role} is never sent"
@@ -498,45 +373,23 @@ def _wrong_values(
     if order is not None:
         fields = ", ".join(f"`{each.name}`" for each in messages[0].fields)
         text = f"a list gives the fields in their order ({fields}), but these values do not fit it"
-        yield _finding(path, leaf, Word("", span), text, f"write `{order}`", messages, effect)
+        yield field_finding(path, leaf, Word("", span), text, f"write `{order}`", messages, effect)
         return
     levels = with_levels(data, faults[0] if all(faults) else (), found)
     for (names, message, wanted, value), level in levels:
         if wanted is None:
             word = _field_word(names, span)
             also = other if len(names) == 1 else ""
-            finding = _unknown_field(path, leaf, word, (message,), effect=effect, other=also)
+            finding = unknown_field_finding(path, leaf, word, (message,), effect=effect, other=also)
             yield replace(finding, help=level or finding.help)
             continue
-        text = f"the value of `{names[-1]}` does not fit: the field of {_described(message)} is"
+        text = f"the value of `{names[-1]}` does not fit: the field of {described(message)} is"
         place = _value_span(_field_word(names, span).span, span)
         if isinstance(data, tuple) and len(names) == 1:
             numbers = [number for number, each in enumerate(message.fields) if each.name in names]
             place = place_of_part(span, numbers)
         word, help = Word(names[-1], place), value_help(value, wanted)
-        yield _finding(path, leaf, word, f"{text} `{wanted}`", help, (message,), effect)
-
-
-def _unknown_field(
-    path: str,
-    leaf: Leaf,
-    word: Word,
-    messages: Sequence[Message],
-    also: str = "",
-    effect: str | None = None,
-    other: str = "",
-) -> Finding:
-    """`also`: the other place of the script that has the name; `other`: another type."""
-    names = sorted({each.name for message in messages for each in message.fields})
-    known = f"use one of its fields: {listed(names)}" if names else "remove it: it has no fields"
-    if len(names) == 1 and not other:
-        known = f"write `{names[0]}`, its only field, in place of `{word.text}`"
-    guess = guesser(names)(word.text)
-    help = did_you_mean(guess) or f"{known}{other}"
-    if guess and also:
-        help += f" Write it here{also}, and remap it: `remapping: {{{guess}: {word.text}}}`"
-    message = f"{_described(messages[0])} has no field `{word.text}`"
-    return _finding(path, leaf, word, message, help, messages, effect)
+        yield field_finding(path, leaf, word, f"{text} `{wanted}`", help, (message,), effect)
 
 
 def _other_type(context: Context, leaf: Leaf, kind: DefinitionKind, role: str) -> str:
@@ -555,7 +408,7 @@ def _field_word(names: Sequence[str], span: Span) -> Word:
     """The last of the names of nested fields, in its place inside the others."""
     place, whole = span, span
     for name in names:
-        word = _word(name, place, ":")
+        word = word_in(name, place, ":")
         if word.span == place:  # the values are a list
             return Word(names[-1], whole)
         whole = word.span
@@ -590,16 +443,16 @@ def _faults(
             lists = (("input_keys", leaf.inputs), ("output_keys", leaf.outputs))
             named = [part for part, keys in lists if name in [key.name for key in keys]]
             also = f", in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
-            yield _unknown_field(path, leaf, use.word, messages, also, other=other)
+            yield unknown_field_finding(path, leaf, use.word, messages, also, other=other)
         elif use.key and name in inputs:
             given = present(context.types.inputs[path, name])
             fields = [message.field(name) for message in messages]
             wanted = [userdata_type(each.type) for each in fields if each is not None]
             if not any(_can_fit(given, each) for each in wanted):
                 type_ = next(each.type for each in fields if each is not None)
-                message = f"`{name}` is `{given}`, but the field of {_described(messages[0])} is"
+                message = f"`{name}` is `{given}`, but the field of {described(messages[0])} is"
                 help = f"remap `{name}` to a key whose values are `{wanted[0]}`"
-                yield _finding(path, leaf, use.word, f"{message} `{type_}`", help, messages)
+                yield field_finding(path, leaf, use.word, f"{message} `{type_}`", help, messages)
 
 
 def _can_fit(given: Type, wanted: Type) -> bool:
@@ -617,40 +470,6 @@ def _can_fit(given: Type, wanted: Type) -> bool:
     return (given.name in truths and wanted.name in truths) or fits(given, wanted)
 
 
-def _described(message: Message) -> str:
-    """The name of a message in a sentence."""
-    definition, _, part = message.name.partition(".")
-    return f"the {part} of `{definition}`" if part else f"`{definition}`"
-
-
-def _finding(
-    path: str,
-    leaf: Leaf,
-    word: Word,
-    message: str,
-    help: str | None,
-    messages: Sequence[Message],
-    effect: str | None = None,
-) -> Finding:
-    label = "its fields are defined here"
-    places = [each.fields[0].span for each in messages if each.fields][:1]
-    field = messages[0].field(word.text)
-    if field is not None:
-        label, places = f"`{word.text}` is defined here", [field.span]
-    return Finding(
-        span=word.span,
-        message=message,
-        arguments=(messages[0].name, word.text),
-        help=help,
-        related=(
-            *(each for span in places for each in other_place(span, label)),
-            *calls(leaf, word.span),
-        ),
-        node=path,
-        effect=effect,
-    )
-
-
 def _uses(held: Variable, messages: Sequence[Message]) -> Iterator[_Use]:
     """The names of fields in the value of a variable: a list of keys, or a call of the class of
     the message."""
@@ -658,16 +477,16 @@ def _uses(held: Variable, messages: Sequence[Message]) -> Iterator[_Use]:
     match held.value.data:
         case tuple() as names if all(isinstance(each, str) for each in names):
             for name in names:
-                yield _Use(_word(str(name), span), key=True)
+                yield _Use(word_in(str(name), span), key=True)
         case Expression(text=text):
             for name in _keywords(text, messages):
-                yield _Use(_word(name, span, "="), key=False)
+                yield _Use(word_in(name, span, "="), key=False)
 
 
 def _keywords(text: str, messages: Sequence[Message]) -> Iterator[str]:
     """The names of the arguments in a call of the class of a message: `TestGoal(goal=1)` in ROS 1,
     `Test.Goal(goal=1)` in ROS 2."""
-    tree = _call(text)
+    tree = call_of(text)
     if tree is None or tree.args:
         return
     definition, _, part = messages[0].name.rpartition("/")[2].partition(".")
@@ -675,24 +494,3 @@ def _keywords(text: str, messages: Sequence[Message]) -> Iterator[str]:
     joined = f"{definition}{part.capitalize()}"
     if called[-1] == joined or called[-2:] == [definition, part.capitalize()]:
         yield from (each.arg for each in tree.keywords if each.arg is not None)
-
-
-def _call(text: str) -> ast.Call | None:
-    """The call that code is; None for other code."""
-    if len(text) > MOST_CODE:
-        return None
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
-    return tree if isinstance(tree, ast.Call) else None
-
-
-def _word(name: str, span: Span, after: str = "") -> Word:
-    """A name inside a span, before some text; the whole span if it is not written there."""
-    found = re.search(rf"(?<!\w){re.escape(name)}(?=\s*{re.escape(after)})(?!\w)", span.text)
-    if found is None:
-        return Word(name, span)
-    return Word(name, Span(span.source, span.start + found.start(), span.start + found.end()))

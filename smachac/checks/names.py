@@ -22,10 +22,13 @@ from smachac.analysis.control_flow import (
 )
 from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.expressions import unknown_endings
+from smachac.checks.loop_targets import WORDS as LOOP_WORDS
+from smachac.checks.loop_targets import loop_target
 from smachac.checks.meant_keys import meant_keys
-from smachac.checks.messages import calls, did_you_mean, ends_of, other_place, own_name
+from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.misdeclared import misdeclared
 from smachac.checks.misplaced_states import misplaced_finding
+from smachac.checks.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
@@ -33,7 +36,6 @@ from smachac.diagnostics.spelling import Guesser, guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
-from smachac.ir.outcome_names import GOOD, SUCCESSES
 from smachac.ir.traversal import PREEMPTED, outcome_names
 
 EXCEPTIONS = "error"
@@ -107,7 +109,13 @@ def unknown_target(context: Context) -> Iterator[Finding]:
         if (fault.path, target) not in causes and f"{fault.path}/{fault.child.name}" not in moved:
             alike.setdefault((fault.path, target or at, fault.child.via), []).append(fault)
     for first, *others in alike.values():
-        yield _with_others(_nowhere(first, paths.get(first.step.target)), others)
+        loop = None
+        if first.step.target.casefold() in LOOP_WORDS:
+            whole = dict(context.containers)
+            loop = loop_target(
+                first.path, first.container, first.child, first.step, first.meant, whole
+            )
+        yield _with_others(_nowhere(first, paths.get(first.step.target), loop), others)
     for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
             yield from _idle_transitions(context, path, container, moved)
@@ -169,7 +177,16 @@ def _targets(container: Linear) -> str:
     return listed([*(child.name for child in container.children), *outcome_names(container)])
 
 
-def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
+def _add_or_use(container: Linear, target: str) -> str:
+    """The help for an unknown target that no name resembles: a state that is missing, if it is
+    written like one."""
+    known = f"use a state or an outcome of `{container.name}`: {_targets(container)}"
+    is_state = target.isupper() and all(child.name.isupper() for child in container.children)
+    return f"add the state `{target}`, or {known}" if is_state else known
+
+
+def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
+    """SM101 for a transition; `loop` is the help if its target is a word for a loop."""
     path, container, child, step, meant, sure, paired = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
@@ -192,7 +209,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
             step.target,
             *(() if step.target else (step.outcome,)),
         ),
-        help=help or f"use a state or an outcome of `{container.name}`: {_targets(container)}",
+        help=loop or help or _add_or_use(container, step.target),
         effect="SMACH refuses to run such a container: none of its states runs",
         related=(*_unentered(container, step.target, fault.sure), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",
@@ -353,7 +370,6 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
     unknown = unknown_outcomes(child)
     if not unknown:
         return
-    known = _known_outcomes(child)
     guess = guesser([*outcome_names(child), EXCEPTIONS])
     default = missing_default(child)
     for step, known_meant in unknown:
@@ -373,7 +389,7 @@ def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
             or retried
             or _catch_all(child, step)
             or did_you_mean(meant)
-            or known,
+            or other_outcome(child, step),
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=()
@@ -401,13 +417,6 @@ def _retried(child: Node, outcome: str) -> str | None:
     return None
 
 
-def _known_outcomes(child: Node) -> str:
-    names = outcome_names(child)
-    if not names:
-        return f"remove the transition: `{child.name}` has no outcomes"
-    return ends_of(child) or f"use one of its outcomes: {listed(names)}"
-
-
 def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     if any(is_open(child) for child in container.children):
         return
@@ -432,11 +441,11 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
 
 def _loop_help(name: str, container: nodes.Iterator, known: list[str]) -> str:
     """The help for an entry of `loop_outcomes` that the child does not end with: the outcome that
-    is near it, or the only success of the child, where the list has none of its outcomes."""
+    is near it, or the only one that can start the next item."""
     near = did_you_mean(guesser(known)(name))
-    good = [each for each in known if each.lower() in SUCCESSES | GOOD]
-    if near is None and len(good) == 1 and good[0] not in container.loop_outcomes:
-        return f"write `{good[0]}` in place of `{name}`"
+    meant = continuing_outcome(container) if near is None else None
+    if meant is not None:
+        return f"write `{meant}` in place of `{name}`"
     return near or f"use one of {listed(known)}"
 
 

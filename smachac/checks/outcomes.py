@@ -100,7 +100,7 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
     inverted = inverted_rules(container)
     if inverted:
         yield _inverted(path, container, inverted)
-    reported = {entry.outcome for entry in inverted}
+    reported = {each.rule.outcome for each in inverted}
     for source, name, span in results:
         if name not in declared and name not in reported:
             meant = guess(name)
@@ -125,30 +125,42 @@ def _added(container: Container, name: str) -> str:
     )
 
 
-def inverted_rules(container: Concurrence) -> tuple[OutcomeRule, ...]:
-    """The rules `STATE: {outcome of the state: outcome of the concurrence}` of an outcome map, in
-    which outcomes and states have changed places."""
+class Inverted(NamedTuple):
+    """A rule of an outcome map that begins with a state, and what is meant: pairs of an outcome of
+    the concurrence and one of the state."""
+
+    rule: OutcomeRule
+    meant: tuple[tuple[str, str], ...]
+
+
+def inverted_rules(container: Concurrence) -> tuple[Inverted, ...]:
+    """The rules of an outcome map in which outcomes and states have changed places: `STATE:
+    {outcome of the state: outcome of the concurrence}`, or with the two outcomes in the other
+    order."""
     declared = frozenset(outcome_names(container))
     children = {child.name: child for child in container.children}
-
-    def is_inverted(entry: OutcomeRule) -> bool:
+    found = []
+    for entry in container.rules:
         child = children.get(entry.outcome)
-        return (
-            child is not None
-            and entry.outcome not in declared
-            and bool(entry.when)
-            and all(part.child not in children and part.outcome in declared for part in entry.when)
-        )
+        if child is None or entry.outcome in declared or not entry.when:
+            continue
+        if any(part.child in children for part in entry.when):
+            continue
+        pairs = [(part.child, part.outcome) for part in entry.when]
+        own = frozenset(outcome_names(child))
+        if not is_open(child) and all(one in declared and two in own for one, two in pairs):
+            found.append(Inverted(entry, tuple(pairs)))
+        elif all(two in declared for _, two in pairs):
+            found.append(Inverted(entry, tuple((two, one) for one, two in pairs)))
+    return tuple(found)
 
-    return tuple(entry for entry in container.rules if is_inverted(entry))
 
-
-def _inverted(path: str, container: Concurrence, inverted: tuple[OutcomeRule, ...]) -> Finding:
-    first = inverted[0]
+def _inverted(path: str, container: Concurrence, inverted: tuple[Inverted, ...]) -> Finding:
+    first = inverted[0].rule
     rules: dict[str, list[str]] = {}
     for entry in inverted:
-        for part in entry.when:
-            rules.setdefault(part.outcome, []).append(f"{entry.outcome}: {part.child}")
+        for result, end in entry.meant:
+            rules.setdefault(result, []).append(f"{entry.rule.outcome}: {end}")
     shown = ", ".join(f"{name}: {{{', '.join(parts)}}}" for name, parts in rules.items())
     return Finding(
         span=first.span,

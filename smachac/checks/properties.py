@@ -8,24 +8,23 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import children_names, strays
+from smachac.analysis.control_flow import children_names, strays, unknown_outcomes
+from smachac.analysis.misplaced_states import stray_transitions
+from smachac.checks.event_names import name_fault, own_work, work
 from smachac.checks.messages import other_place
 from smachac.checks.outcomes import unhandled
 from smachac.checks.property_turns import Turn, turn_of
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, Related, Severity, did_you_mean
-from smachac.diagnostics.negation import are_opposite
-from smachac.diagnostics.source import Span, Word, assert_never
-from smachac.diagnostics.spelling import guesser, respelt, written_name
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.source import Span, assert_never
+from smachac.diagnostics.spelling import written_name
 from smachac.ir.graph import reachable
-from smachac.ir.nodes import Concurrence, Data, Leaf, Node
+from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.properties import (
     After,
     AlwaysEnds,
     AtMost,
-    Atom,
     Atoms,
     Before,
     Form,
@@ -35,12 +34,15 @@ from smachac.ir.properties import (
     in_words,
 )
 from smachac.ir.script_paths import sugared_child, walk_script
-from smachac.ir.traversal import outcome_names, walk
+from smachac.ir.traversal import outcome_names
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit
     from smachac.analysis.property_events import NameFault
     from smachac.interpreter.counterexample import Replay
+
+_MOST_ALIKE = 5
+"""The most further places of one unknown name that a finding shows."""
 
 LONGEST_SCENARIO = 200
 """Limit on the characters of a scenario in a help line."""
@@ -58,6 +60,9 @@ def property_fails(context: Context) -> Iterator[Finding]:
     The path shows how the robot comes to do what the property forbids. All outcomes are followed,
     exceptions that the script catches, stop requests and time limits. The scenario in the help line
     replays the path with `smachac run --mock`.
+
+    Exactly: the finding is at the property; or at the transition that leads past the only state
+    that the property requires after an event, if no transition leads to that state.
 
     Wrong:
         name: sm
@@ -102,12 +107,19 @@ def property_fails(context: Context) -> Iterator[Finding]:
         swapped = _swap_help(context, given)
         longer = _longer_list(context, given, example) if swapped is None else None
         first = swapped or f"{longer[1] if longer else ''}{_cure(given.form, example, turn)}\n"
+        span, related = given.span if longer is None else longer[0], _turn_place(turn)
+        message = f"{_named(given)} does not hold: {_violation(given.form, example)}"
+        if swapped is None and longer is None and turn is not None and _leads_past(given, turn):
+            span = turn.step.target_span
+            related = other_place(given.span, f"{_named(given)} does not hold")
+            message = f"this transition leads past {_named_states(turn.missed)}:"
+            message += f" {_violation(given.form, example)}"
         yield Finding(
-            span=given.span if longer is None else longer[0],
-            message=f"{_named(given)} does not hold: {_violation(given.form, example)}",
+            span=span,
+            message=message,
             arguments=(given.name, in_words(given.form)),
             help=f"{first}{_replayed(shown, number, script)}",
-            related=_turn_place(turn),
+            related=related,
             path=witness(example._replace(visits=_shown(context, example))),
             node=example.node or context.machine.root.name,
         )
@@ -138,13 +150,17 @@ def _failures(context: Context) -> Iterator[_Failure]:
 
 
 def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
-    """The outcomes of states that lead nowhere (SM101, SM104), each with the path of the state."""
+    """The outcomes of states that lead nowhere or may lack their transition (SM101, SM102, SM104),
+    each with the path of the state."""
     found: set[tuple[str, str]] = set()
     for path, container in context.linear:
         names, exits = children_names(container), frozenset(outcome_names(container))
         for child in container.children:
             ends = [step.outcome for step in strays(child, names, exits)]
             ends += [each.name for each in unhandled(child)]
+            if unknown_outcomes(child):  # SM102: a transition of these is probably meant
+                handled = {step.outcome for step in child.transitions if step.origin == "written"}
+                ends += [name for name in outcome_names(child) if name not in handled]
             found.update((f"{path}/{child.name}", end) for end in ends)
     return frozenset(found)
 
@@ -242,11 +258,11 @@ def _longer_list(
     nodes = context.routes.nodes
     names = tuple(f"/{each.name}" for each in ends if each.outcome is None)
     triggers = tuple(f"/{each.name}" for each in begins)
-    alike = [_work(node) for path, node in nodes.items()
+    alike = [work(node) for path, node in nodes.items()
              if isinstance(node, Leaf) and f"/{path}".endswith(names)]  # fmt: skip
     for visit in example.visits:
         node = nodes.get(visit.path)
-        if not isinstance(node, Leaf) or not _own_work(context, node) or _work(node) not in alike:
+        if not isinstance(node, Leaf) or not own_work(context, node) or work(node) not in alike:
             continue
         if any(f"{trigger}/" in f"/{visit.path}/" for trigger in triggers):
             continue  # the property would always hold
@@ -268,19 +284,6 @@ def _with_ends(form: Form, ends: Atoms) -> Form:
         case Before():
             return replace(form, earlier=ends)
     return form
-
-
-def _own_work(context: Context, leaf: Leaf) -> bool:
-    """Whether a state sets a variable to another value than its default."""
-    type_ = context.machine.state_types.get(leaf.type)
-    known = type_.variables if type_ is not None else {}
-    defaults = {name: each.default.data for name, each in known.items() if each.default}
-    return any(each.value.data != defaults.get(each.name) for each in leaf.variables)
-
-
-def _work(leaf: Leaf) -> tuple[str, list[tuple[str, Data]]]:
-    """The type of a state and the values of its variables."""
-    return leaf.type, sorted(((each.name, each.value.data) for each in leaf.variables), key=repr)
 
 
 def _names(events: Atoms) -> str:
@@ -331,6 +334,12 @@ def _shown(context: Context, example: Counterexample) -> tuple[Visit, ...]:
         shown.append(visit._replace(path=path, outcome=outcome))
         skipped = path if ended else ""
     return tuple(shown)
+
+
+def _leads_past(given: Property, turn: Turn) -> bool:
+    """Whether a transition of the same file leads past a state to which nothing leads."""
+    place = turn.step.target_span.source
+    return turn.unled and len(turn.missed) == 1 and place is given.span.source
 
 
 def _turn_place(turn: Turn | None) -> tuple[Related, ...]:
@@ -514,75 +523,21 @@ def unknown_event(context: Context) -> Iterator[Finding]:
           - GRASP: {template: ScriptedState, outcomes: [done], transitions: {done: LIFT}}
           - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    for judgement in _with(context, "unclear"):
-        for fault in judgement.faults:
-            yield _name_fault(fault, context)
-
-
-def _name_fault(fault: NameFault, context: Context) -> Finding:
-    atom = fault.atom
-    if fault.kind == "ambiguous":
-        return Finding(
-            span=atom.span,
-            message=f"`{atom.name}` may be any of {listed(fault.known)}",
-            arguments=("ambiguous", atom.name),
-            help="write more of its path",
-        )
-    if fault.kind == "outcome":
-        outcome = atom.outcome or ""
-        return Finding(
-            span=atom.span,
-            message=f"`{atom.name}` has no outcome `{outcome}`",
-            arguments=("outcome", atom.name, outcome),
-            help=did_you_mean(outcome, fault.known)
-            or f"use one of its outcomes: {listed(fault.known) or 'it has none'}",
-        )
-    what = {"path": "state", "tag": "state with the tag", "type": "state of the type"}
-    subject = what.get(atom.subject, "state with a claim of")
-    known: Sequence[str] = fault.known
-    if atom.subject == "path":  # without the states that a retry or a time limit adds
-        written = [each.plain.rpartition("/")[2] for each in walk_script(context.machine.root)
-                   if not each.added]  # fmt: skip
-        known = [name for name in known if name in written]
-    sure = guesser(known).sure(atom.name)
-    edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
-    names = listed(known)
-    return Finding(
-        span=atom.span,
-        message=f"there is no {subject} `{atom.name}`",
-        arguments=("unknown", atom.subject, atom.name),
-        help=_other_subject(atom, context)
-        or did_you_mean(atom.name, known)
-        or _by_words(atom, known)
-        or (f"use one of {names}" if names else f"add `{atom.subject}s:` to a state"),
-        edits=edits,
-    )
-
-
-def _by_words(atom: Atom, known: Sequence[str]) -> str | None:
-    """The guess for the path of a state whose first words are the name of one state only."""
-    words = atom.name.split("_")
-    begins = ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
-    meant = [name for name in begins if name in known]
-    fits = atom.subject == "path" and meant and not are_opposite(atom.name, meant[0])
-    return f"did you mean `{meant[0]}`?" if fits else None
-
-
-def _other_subject(atom: Atom, context: Context) -> str | None:
-    """The help for a tag, type or claim that is written without its word."""
-    if atom.subject != "path":
-        return None
-    states = [node for _, node in walk(context.machine.root)]
-    subjects = {
-        "tag": (name for node in states for name in node.tags),
-        "type": (node.type for node in states if isinstance(node, Leaf)),
-        "claim": (name for names in context.claims.values() for name in names),
-    }
-    for subject, names in subjects.items():
-        if atom.name in names:
-            outcome = f":{atom.outcome}" if atom.outcome else ""
-            return f"`{atom.name}` is a {subject}: write `{subject} {atom.name}{outcome}`"
-    return None
+    faults = [(each.property, fault) for each in _with(context, "unclear") for fault in each.faults]
+    if not faults:
+        return
+    lost = {each.step.target for each in context.at_containers(stray_transitions)}  # SM101
+    alike: dict[tuple[str, ...], list[tuple[Property, NameFault]]] = {}
+    for given, fault in faults:
+        atom = fault.atom
+        if atom.subject != "path" or atom.name.rpartition("/")[2] not in lost:
+            which = fault.kind, atom.subject, atom.name, atom.outcome or ""
+            alike.setdefault(which, []).append((given, fault))
+    for first, *others in alike.values():
+        found = name_fault(first[1], first[0], context)
+        spans = [*dict.fromkeys(fault.atom.span for _, fault in others)][:_MOST_ALIKE]
+        more = [part for span in spans for part in other_place(span, "and here")]
+        yield replace(found, related=(*found.related, *more))
 
 
 @rule("SM704", "property-undecided", Severity.WARNING)

@@ -7,7 +7,7 @@ and stop requests lead where they lead in a run.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import takewhile
+from itertools import pairwise, takewhile
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.ir.nodes import Leaf, Node, Transition
@@ -21,11 +21,13 @@ if TYPE_CHECKING:
 
 class Turn(NamedTuple):
     """A transition of the script with its state. `missed` are the states beside it that the
-    property requires, if no transition behind this one leads to any of them."""
+    property requires, if no transition behind this one leads to any of them; `unled`: no transition
+    at all leads to them."""
 
     node: Node
     step: Transition
     missed: tuple[Node, ...] = ()
+    unled: bool = False
 
 
 class _Taken(NamedTuple):
@@ -37,9 +39,10 @@ class _Taken(NamedTuple):
 
 def turn_of(form: Form, replayed: Replay, visits: int, nodes: Mapping[str, Node]) -> Turn | None:
     """The turn of a counterexample with a number of visits; None if there is none. `nodes` are all
-    nodes by path. For an `after` it is the first transition behind which no required state comes,
-    otherwise the one that follows its first event; for the other forms it is the last transition,
-    and of repeated states the last one for a failure.
+    nodes by path. For an `after` it is the transition that leads past a required state, or the
+    first one behind which no required state comes, otherwise the one that follows its first event;
+    for the other forms it is the last transition, and of repeated states the last one for a
+    failure.
     """
     steps = list(_steps(replayed, visits, nodes))
     if isinstance(form, After):
@@ -82,24 +85,50 @@ def _from_last(events: Atoms, steps: list[_Taken]) -> list[_Taken]:
 
 
 def _first_miss(answer: Atoms, steps: list[_Taken], nodes: Mapping[str, Node]) -> Turn | None:
-    """The first transition behind which no state of `answer` comes."""
+    """The first transition behind which no state of `answer` comes; where no transition leads to
+    such a state, the one that leads past it."""
     required: dict[str, _Required] = {}
-    for path, step in steps:
+    for at, (path, step) in enumerate(steps):
         around = path.rpartition("/")[0]
         if around not in required:
             required[around] = _required(nodes[around], answer)
         if required[around].states and step.target not in required[around].leading:
-            others = [each for each in required[around].states if each is not nodes[path]]
-            return Turn(nodes[path], step, tuple(others) or required[around].states)
+            states, unled = required[around].states, required[around].unled
+            past = _past(around, states, steps[at:], nodes) if unled else None
+            if past is not None:
+                return Turn(nodes[past.path], past.step, states, unled=True)
+            others = tuple(each for each in states if each is not nodes[path])
+            return Turn(nodes[path], step, others or states, unled=unled and others == states)
     return None
+
+
+def _past(
+    around: str, states: tuple[Node, ...], steps: list[_Taken], nodes: Mapping[str, Node]
+) -> _Taken | None:
+    """The transition on a path that leads past the only required state to which nothing leads: to a
+    target to which that one leads as well. It is that of the state before it in the script, or the
+    last one."""
+    container = nodes[around]
+    if len(states) != 1 or isinstance(container, Leaf):
+        return None
+    after = {step.target for step in states[0].transitions
+             if step.origin == "written" and not fails(states[0], step.outcome)}  # fmt: skip
+    found = [each for each in steps
+             if each.path.rpartition("/")[0] == around and each.step.target in after
+             and not fails(nodes[each.path], each.step.outcome)]  # fmt: skip
+    before = [one for one, each in pairwise(container.children) if each is states[0]]
+    near = [each for each in found if nodes[each.path] in before]
+    return next(iter([*near, *reversed(found)]), None)
 
 
 class _Required(NamedTuple):
     """The states of a container that a property requires, and the names from which transitions
-    lead to one of them. No states, where the container does not have all of them."""
+    lead to one of them. No states, where the container does not have all of them. `unled`: no
+    transition leads to any of these states."""
 
     states: tuple[Node, ...]
     leading: frozenset[str]
+    unled: bool = False
 
 
 def _required(container: Node, answer: Atoms) -> _Required:
@@ -129,7 +158,7 @@ def _required(container: Node, answer: Atoms) -> _Required:
         leading |= before
         todo += before
     unled = tuple(node for node in states if node.name not in sources)
-    return _Required(unled or states, frozenset(leading))
+    return _Required(unled or states, frozenset(leading), bool(unled))
 
 
 def _ends(container: Node, children: Sequence[Node], answer: Atoms) -> set[str] | None:

@@ -14,6 +14,7 @@ from smachac.analysis.control_flow import (
     strays,
 )
 from smachac.analysis.misplaced_states import ends_of_misplaced
+from smachac.checks.hidden_conditions import hidden_conditions
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
@@ -22,7 +23,7 @@ from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser, respelt, written_name
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
 from smachac.ir.nodes import (
@@ -94,28 +95,28 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
         before = _before(whole, frozenset(child.name for child in hidden))
         first = _first_hidden(container, hidden, before, seen)
         previous = {each.name: one for one, each in pairwise(container.children)}
-        names = children_names(container)
         led_twice = _led_twice(container, seen)
         for child in hidden:
             if child.name not in first or f"{path}/{child.name}" in (missed or ()):
                 continue  # SM701 reports the transition that must lead to it, SM101 its place
             alone, one = not before.get(child.name), previous.get(child.name)
             twice = led_twice if alone else None
-            past = _led_past(container, one, child, names, seen) if alone else None
+            others = first[child.name] - {child.name}
+            group = [child, *(each for each in hidden if each.name in others)]
+            past = _led_past(container, one, group, seen) if alone else None
             way_out = _way_out(container, one, seen) if past is None else None
             if past is not None:
-                yield _passed(path, container, child, past)
+                yield _passed(path, container, group, past)
                 continue
             yield Finding(
                 span=child.span,
-                message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial"
-                f" state of `{container.name}`",
+                message=_unreached(container, group),
                 arguments=(child.name,),
-                help=_led_help(child, twice)
+                help=_led_help(group, twice)
                 if twice is not None
                 else _out_help(child, *way_out)
                 if way_out is not None
-                else _why_unreachable(container, child),
+                else _why_unreachable(container, group),
                 related=(
                     *_led_places(twice),
                     *(_out_places(container, *way_out) if way_out is not None else ()),
@@ -127,54 +128,78 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
 
 def _first_hidden(
     container: Linear, hidden: list[Node], before: dict[str, list[str]], seen: Collection[str]
-) -> set[str]:
-    """The states by which the hidden ones are entered: those to which no other one leads, and the
-    first one of a circle. None if as many outcomes of states that can be entered have no
-    transitions (SM104)."""
+) -> dict[str, set[str]]:
+    """The states by which the hidden ones are entered, each with those that are entered by it:
+    those to which no other one leads, and the first one of a circle. None if as many outcomes of
+    states that can be entered have no transitions (SM104)."""
     after: dict[str, list[str]] = {}
     for name, sources in before.items():
         for source in sources:
             after.setdefault(source, []).append(name)
-    found: list[str] = []
+    found: dict[str, set[str]] = {}
     covered: set[str] = set()
     alone = [child.name for child in hidden if not before.get(child.name)]
     for name in (*alone, *(child.name for child in hidden)):
         if name not in covered:
-            found.append(name)
+            group = found[name] = set()
             todo = [name]
             while todo:
                 if (each := todo.pop()) not in covered:
                     covered.add(each)
+                    group.add(each)
                     todo += after.get(each, [])
     left = sum(len(unhandled(child)) for child in container.children if child.name in seen)
-    return set(found) if len(found) > left else set()
+    return found if len(found) > left else {}
+
+
+def _unreached(container: Linear, group: list[Node]) -> str:
+    return (
+        f"{both(each.name for each in group)} cannot be reached from `{container.initial}`, the"
+        f" initial state of `{container.name}`"
+    )
 
 
 class _LedPast(NamedTuple):
-    """The state before another one in the script, and its transition that leads past it."""
+    """A state with a transition that leads past other ones; `next`: it is the state before them in
+    the script."""
 
     child: Node
     step: Transition
+    next: bool
 
 
 def _led_past(
     container: Linear,
     before: Node | None,
-    child: Node,
-    names: Collection[str],
+    group: list[Node],
     seen: Collection[str],
 ) -> _LedPast | None:
-    """The transition of the state before a child in the script that leads to a state to which the
-    child leads as well, if it is the only one and not one of failure."""
-    if before is None or before.name not in seen or isinstance(container, Sequence):
+    """The transition that leads past a group of states, to a state to which one of them leads as
+    well: the only one of the state before them in the script that is not one of failure; else the
+    only one of failure of that state, or of all states."""
+    if isinstance(container, Sequence):
         return None
-    after = {step.target for step in child.transitions if step.target in names}
-    steps = [
-        step
-        for step in before.transitions
-        if step.target in after and step.origin == "written" and not fails(before, step.outcome)
+    after = {step.target for step in group[0].transitions if step.target in seen}
+    good = {step.target for each in group for step in each.transitions
+            if step.target in seen and not fails(each, step.outcome)
+            and step.outcome != PREEMPTED}  # fmt: skip
+    if before is not None and before.name in seen:
+        steps = [step for step in before.transitions if step.origin == "written"]
+        for found in (
+            [each for each in steps if each.target in after | good
+             and not fails(before, each.outcome)],
+            [each for each in steps if each.target in good and fails(before, each.outcome)],
+        ):  # fmt: skip
+            if found:
+                return _LedPast(before, found[0], True) if len(found) == 1 else None
+    others = [
+        _LedPast(child, step, False)
+        for child in container.children
+        if child.name in seen
+        for step in child.transitions
+        if step.target in good and step.origin == "written" and fails(child, step.outcome)
     ]
-    return _LedPast(before, steps[0]) if len(steps) == 1 else None
+    return others[0] if len(others) == 1 else None
 
 
 def _way_out(
@@ -198,18 +223,23 @@ def _out_places(container: Linear, before: Node, step: Transition) -> tuple[Rela
     return other_place(before.span, text)
 
 
-def _passed(path: str, container: Linear, child: Node, past: _LedPast) -> Finding:
-    """SM201 for a state past which the state before it leads."""
-    before, step = past
+def _passed(path: str, container: Linear, group: list[Node], past: _LedPast) -> Finding:
+    """SM201 for states past which the state before them leads, or another one."""
+    child, names = group[0], both(each.name for each in group)
+    before, step = past.child, past.step
+    several = len(group) > 1
+    where = ", the state before," if past.next else ""
     return Finding(
         span=child.span,
-        message=f"`{child.name}` cannot be reached from `{container.initial}`, the initial state of"
-        f" `{container.name}`",
+        message=_unreached(container, group),
         arguments=(child.name,),
         help=f"write `{written_name(step.outcome)}: {child.name}` in `{before.name}`, or remove"
-        f" `{child.name}` if its work is not needed",
+        f" {names} if {'their' if several else 'its'} work is not needed",
         related=(
-            *other_place(step.target_span, f"`{before.name}`, the state before, leads past it"),
+            *other_place(
+                step.target_span,
+                f"`{before.name}`{where} leads past {'them' if several else 'it'}",
+            ),
             *calls(child, child.span),
         ),
         node=f"{path}/{child.name}",
@@ -242,11 +272,11 @@ def _led_twice(container: Linear, seen: Collection[str]) -> _LedTwice | None:
     return found[0] if len(found) == 1 else None
 
 
-def _led_help(child: Node, twice: _LedTwice) -> str:
+def _led_help(group: list[Node], twice: _LedTwice) -> str:
     first, second = twice.steps
     return (
-        f"lead `{first.outcome}` or `{second.outcome}` of `{twice.child.name}` to `{child.name}`,"
-        f" or remove `{child.name}`"
+        f"lead `{first.outcome}` or `{second.outcome}` of `{twice.child.name}` to"
+        f" `{group[0].name}`, or remove {both(each.name for each in group)}"
     )
 
 
@@ -302,13 +332,14 @@ def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:
     return before
 
 
-def _why_unreachable(container: Linear, child: Node) -> str:
+def _why_unreachable(container: Linear, group: list[Node]) -> str:
     if isinstance(container, Sequence):
         return (
             f"give the state before it the outcome `{container.connector_outcome}` without a"
             " transition: a sequence continues with that outcome"
         )
-    return f"add a transition to `{child.name}`, or remove `{child.name}`"
+    names = both(each.name for each in group)
+    return f"add a transition to `{group[0].name}`, or remove {names}"
 
 
 @rule(
@@ -318,10 +349,13 @@ def _why_unreachable(container: Linear, child: Node) -> str:
     effect="a transition for this outcome is never taken",
 )
 def impossible_outcome(context: Context) -> Iterator[Finding]:
-    """A container declares an outcome with which it can never end.
+    """A container or a state of conditions has an outcome with which it can never end.
 
     What the script does after that outcome never happens. If the outcome is one of failure, a
     failure of the robot probably ends the container with another outcome.
+
+    Exactly: a condition of a state counts as hidden if it compares one key with numbers, and an
+    earlier one is true for each of these values: `ud.n > 3` before `ud.n > 5`.
 
     Wrong:
         name: sm
@@ -343,6 +377,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
+    yield from context.at_states(hidden_conditions)
     linear = iter(context.corrected)
     again = {found.stop.path for found in context.stop_paths.again}
     moved: set[tuple[str, str]] | None = None

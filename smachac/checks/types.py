@@ -245,6 +245,8 @@ def _wrong_defaults(type_: StateType) -> Iterator[Finding]:
         help = f"write a default that fits `{held.type}`, or correct the type"
         if found.given.name == "literal" and present(found.wanted).name in ("int", "float"):
             help = number_meant(str(found.given.args[0]), present(found.wanted)) or help
+        if isinstance(data, str) and data.lower() in ("none", "nil"):
+            help = f"write `null` for no value: `{data}` is a text"
         yield Finding(
             span=held.default.span,
             message=f"the default of `{held.name}` is {in_words(type_of_data(data))}, but its type"

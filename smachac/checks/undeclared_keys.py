@@ -247,7 +247,8 @@ def _undeclared_accesses(
                 arguments=(key,),
                 help=did_you_mean(guess(key))
                 or (
-                    f"its input key `{lone}` is read by nothing: did you mean `{lone}`?"
+                    f"write `{lone}` in place of `{key}`: it is the only input key of"
+                    f" `{leaf.name}` that its code does not read"
                     if lone
                     else None
                 )

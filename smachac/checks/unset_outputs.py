@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_lattice import present
-from smachac.checks.class_code import own_types, used_here
+from smachac.checks.class_code import lone_output, own_types, used_here
 from smachac.checks.messages import other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -106,10 +106,14 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
         yield from _unchanged_keys(path, leaf, type_, facts)
         guess = guesser(outputs)
         misspelt = {guess(word.text) for word in facts.writes if word.text not in outputs}
+        lone = lone_output(facts, kept, [key.name for key in type_.output_keys])
+        misspelt |= {lone[1]} if lone is not None else set()  # SM308
         unused = dict(facts.unused)
+        read = {word.text for word in facts.reads} if not facts.passed else set()
+        collected = read - {word.text for word in facts.writes}
         for key in outputs:
-            if key in misspelt:
-                continue
+            if key in misspelt or key in collected:
+                continue  # SM308, SM310
             found = [*_unwritten(path, leaf, type_, facts, key)]
             if found and key in unused:
                 found = [_local(path, leaf, key, unused[key])]

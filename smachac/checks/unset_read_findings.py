@@ -11,7 +11,7 @@ from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_open, misfit
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
-from smachac.checks.candidate_keys import fitting_keys, unread_output
+from smachac.checks.candidate_keys import fitting_keys, unread_output, written_place
 from smachac.checks.initial_presets import counts, initial_value
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -149,10 +149,15 @@ def _meant_key(
         help = f"write `remapping: {{{pair}}}` in `{node.name}`"
         if node.remaps:
             help = f"add `{pair}` to the `remapping` of `{node.name}`"
-        help += f", if it must read `{fitting[0]}`, which has this type"
+        help += f", if it must read `{fitting[0]}`"
+        if types.keys.get((scope.path, fitting[0])) == wanted:
+            help += f": both are of the type `{wanted}`"
     elif fitting and reader.key == missing.key:
         ways = " or ".join(f"`remapping: {{{reader.key}: {key}}}`" for key in fitting)
         help = f"write {ways} in `{node.name}`: these keys have its type"
+    if len(fitting) == 1 and missing.cause == "nowhere":
+        place = written_place(scope, fitting[0])
+        related = other_place(place, f"nothing reads `{fitting[0]}`") if place else ()
     if unread is not None:
         help = unread.help
         related = other_place(unread.place, f"nothing reads `{unread.key}`")
@@ -196,5 +201,5 @@ def _writers(users: list[Use]) -> Iterator[Related]:
         if not use.always and use.outcomes:
             text = f"`{name}` sets it only on {listed(use.outcomes)}"
         elif not use.always:
-            text = f"`{name}` can set it, but this is not guaranteed on any outcome"
+            text = f"`{name}` can set it, but no outcome guarantees that it does"
         yield from other_place(use.span, text)

@@ -197,7 +197,11 @@ def _swapped(missing: Missing, loop: nodes.Iterator) -> Finding:
     items, item = missing.key, loop.item_key
     names = ("item", "in") if loop.sugar else ("it_label", "it")
     right = f"{names[0]}: {items}, {names[1]}: {item}"
-    help = f"`for_each: {{{right}}}`" if loop.sugar else f"`{right}`".replace(", ", "` and `")
+    if loop.sugar:
+        on = f", on: [{', '.join(loop.loop_outcomes)}]" if loop.loop_spans else ""
+        help = f"`for_each: {{{right}{on}}}`"
+    else:
+        help = f"`{right}`".replace(", ", "` and `")
     return Finding(
         span=loop.item_span,
         message=f"`{names[0]}` and `{names[1]}` of `{loop.name}` are swapped: the states in it read"

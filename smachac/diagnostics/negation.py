@@ -46,6 +46,12 @@ def are_opposite(one: str, other: str) -> bool:
     return _negated(first, second) != _negated(second, first)
 
 
+def is_negation(one: str, other: str) -> bool:
+    """Whether one of two names negates the other and has a word of it: `not_found` and `found`, but
+    not `not_found` and `empty`."""
+    return are_opposite(one, other) and not {*_words(one)}.isdisjoint(_words(other))
+
+
 def _words(name: str) -> list[str]:
     return [word.lower() for word in _WORDS.findall(name)]
 

@@ -9,21 +9,26 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.frontend.python_functions import alternatives, returns_of
+from smachac.frontend.python_functions import access_of, alternatives, returns_of
 from smachac.frontend.python_modules import Module, Names, OwnClass
 from smachac.ir.class_facts import ClassFault
 
 
 class _Call(NamedTuple):
     """A call of the constructor of the class `owner` with the parameters `taken`, in the
-    constructor `maker` of a derived class. `arguments` are those without `self`."""
+    constructor `maker` of a derived class. `arguments` are those without `self`, `base` is the
+    constructor that is called."""
 
     module: Module
     maker: ast.FunctionDef
     node: ast.Call
     arguments: Sequence[ast.expr]
     owner: str
-    taken: ast.arguments
+    base: ast.FunctionDef
+
+    @property
+    def taken(self) -> ast.arguments:
+        return self.base.args
 
     @property
     def positional(self) -> list[str]:
@@ -39,7 +44,7 @@ def base_call_faults(own: OwnClass) -> Iterator[ClassFault]:
             continue
         faults = [*_name_faults(call)] or [*_count_faults(call)]
         if not faults and at == 0:
-            faults = [*_shifted(own, call)]
+            faults = [*_shifted(own, call)] or [*_exchanged(own, call)]
         yield from faults
 
 
@@ -72,7 +77,7 @@ def _base_call(own: OwnClass, at: int, names: Names) -> _Call | None:
     open_ = open_ or any(each.arg is None for each in call.keywords)
     if open_ or module.text.is_filled(module.text.span(call)):
         return None
-    return _Call(module, maker, call, arguments, own.classes[base][1].name, taken.args)
+    return _Call(module, maker, call, arguments, own.classes[base][1].name, taken)
 
 
 def _arguments(
@@ -209,3 +214,86 @@ def _texts(node: ast.expr) -> set[object] | None:
         return None
     texts = [each.value for each in node.elts if isinstance(each, ast.Constant)]
     return {*texts} if len(texts) == len(node.elts) else None
+
+
+# --- arguments that have changed places
+
+
+LISTS = ("outcomes", "input_keys", "output_keys")
+"""The parameters of `smach.State.__init__`, in their order."""
+
+
+def _exchanged(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
+    """Two arguments that have changed places: the names in each list are used by `execute` as those
+    of the other one, or an argument has the name of the parameter that gets the outcomes."""
+    roles = _roles(call)
+    uses = _uses(own) if len(roles) > 1 or "outcomes" in roles.values() else None
+    if uses is None:
+        return
+    arguments = [*zip(call.positional, call.arguments, strict=False)]
+    for at, (name, value) in enumerate(arguments):
+        for other, (other_name, other_value) in enumerate(arguments):
+            some, more = _texts(value), _texts(other_value)
+            mine, theirs = roles.get(name), roles.get(other_name)
+            if more is None or mine is None:
+                continue
+            if isinstance(value, ast.Name):
+                found = value.id == other_name and mine == "outcomes" and theirs is None
+                found = found and bool(more & uses[mine])
+            elif some is not None and theirs is not None and at < other:
+                found = some.isdisjoint(uses[mine]) and more.isdisjoint(uses[theirs])
+                found = found and bool(some & uses[theirs]) and bool(more & uses[mine])
+            else:
+                continue
+            if found:
+                yield _exchange(call, *sorted([at, other]))
+                return
+
+
+def _exchange(call: _Call, first: int, second: int) -> ClassFault:
+    text, written = call.module.text, _written(call)
+    shift = len(call.node.args) - len(call.arguments)  # behind `self`
+    some, more = first + shift, second + shift
+    names = written[some], written[more]
+    written[some], written[more] = written[more], written[some]
+    return ClassFault(
+        kind="exchanged arguments",
+        name=Word(names[0], text.span(call.arguments[first])),
+        near=f"{text.span(call.node.func).text}({', '.join(written)})",
+        owner=call.owner,
+        more=names[1],
+    )
+
+
+def _roles(call: _Call) -> dict[str, str]:
+    """The parameters that the constructor of the base class passes to `smach.State` as lists."""
+    found: dict[str, str] = {}
+    calls = [each for each in ast.walk(call.base) if isinstance(each, ast.Call)
+             and isinstance(each.func, ast.Attribute) and each.func.attr == "__init__"]  # fmt: skip
+    if len(calls) != 1:
+        return {}
+    (made,) = calls
+    through_super = isinstance(made.func, ast.Attribute) and isinstance(made.func.value, ast.Call)
+    given = [*zip(LISTS, made.args[0 if through_super else 1 :], strict=False)]
+    given += [(each.arg or "", each.value) for each in made.keywords]
+    for role, value in given:
+        if isinstance(value, ast.Name) and role in LISTS:
+            found[value.id] = role
+    return found
+
+
+def _uses(own: OwnClass) -> dict[str, set[object]] | None:
+    """The outcomes that `execute` returns, and the keys that it reads and writes itself."""
+    found = own.method("execute")
+    if found is None or len(found[1].args.args) != 2:
+        return None
+    userdata = found[1].args.args[1].arg
+    accesses = [access for each in ast.walk(found[1])
+                if (access := access_of(each, userdata)) is not None]  # fmt: skip
+    returned: set[object] = {each.value for line in returns_of(found[1].body) if line.value
+                for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
+    return {
+        "outcomes": returned,
+        "input_keys": {each.key for each in accesses if each.read},
+        "output_keys": {each.key for each in accesses if not each.read},
+    }

@@ -15,7 +15,9 @@ from typing import TypedDict
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.base_calls import base_call_faults
+from smachac.frontend.call_slips import call_slips
 from smachac.frontend.class_members import missing_constants
+from smachac.frontend.class_messages import class_messages
 from smachac.frontend.class_names import (
     STATE_METHODS,
     undefined_in_base,
@@ -163,6 +165,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         unused=_unused(own, execute) if execute is not None else (),
         loops=loops(own) if whole else (),
         hooks=_hooks(own),
+        messages=class_messages(own),
         parts=(*parts_read(_text_of(own, execute), execute), *parts_of_arguments(own, execute))
         if execute is not None and flow.reads
         else (),
@@ -257,6 +260,7 @@ def _undefined(
     yield from module_slips(own, library)
     yield from texts_as_lists(own)
     yield from silent_results(own, library)
+    yield from call_slips(own, library)
 
 
 def _is_userdata(fault: ClassFault, execute: ast.FunctionDef) -> bool:

@@ -134,7 +134,8 @@ def _loops(own: OwnClass, kept: dict[str, str]) -> Iterator[tuple[str, Word]]:
 
 
 def lost_results(own: OwnClass) -> Iterator[ClassFault]:
-    """A local variable that is a list, and becomes None: `names = names.sort()`."""
+    """A local variable or an attribute that becomes None: `names = names.sort()`, and
+    `userdata.names = names.sort()`."""
     for module, node in own.classes:
         for function in node.body:
             if isinstance(function, ast.FunctionDef):
@@ -147,10 +148,10 @@ def _lost(module: Module, function: ast.FunctionDef) -> Iterator[ClassFault]:
     for node in assigns:
         match node:
             case ast.Assign(
-                targets=[ast.Name(id=name)],
+                targets=[ast.Name() | ast.Attribute() | ast.Subscript() as target],
                 value=ast.Call(func=ast.Attribute(value=ast.Name(id=owner), attr=method)),
             ) if method in NOTHING_RETURNED:
-                pass
+                name = module.text.span(target).text
             case _:
                 continue
         values = [each.value for each in assigns
@@ -158,7 +159,8 @@ def _lost(module: Module, function: ast.FunctionDef) -> Iterator[ClassFault]:
                   and each is not node]  # fmt: skip
         stores = [each for each in every if isinstance(each, ast.Name) and each.id == owner
                   and isinstance(each.ctx, ast.Store)]  # fmt: skip
-        used = any(isinstance(each, ast.Name) and each.id == name
+        used = not isinstance(target, ast.Name)
+        used = used or any(isinstance(each, ast.Name) and each.id == name
                    and isinstance(each.ctx, ast.Load)
                    and (each.lineno, each.col_offset) > (node.end_lineno, node.end_col_offset)
                    for each in every)  # fmt: skip
@@ -166,7 +168,7 @@ def _lost(module: Module, function: ast.FunctionDef) -> Iterator[ClassFault]:
         span = module.text.span(node)
         if known and used and all(map(_is_collection, values)) and not module.text.is_filled(span):
             near = _changed(name, owner, method, node.value, module)
-            yield ClassFault(kind="no result", name=Word(method, span), near=near)
+            yield ClassFault(kind="no result", name=Word(method, span), near=near, owner=name)
 
 
 def _changed(name: str, owner: str, method: str, call: ast.expr, module: Module) -> str:

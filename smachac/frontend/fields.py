@@ -79,8 +79,15 @@ def wrong(tree: Tree, shape: str, report: Report, help: str | None = None) -> No
     if words and help is None:
         text = f"[{', '.join(word.text for word in words)}]"
         help, edits = f"write it as `{text}`", (Edit(span=tree.span, text=text),)
+    text = tree.span.text
+    shown = f"`{text}`" if 0 < len(text) <= _LONGEST_SHOWN and "\n" not in text else "the value"
+    effect = f"only {expected} has a meaning here; {shown} is {found}"
+    if found == "nothing":
+        effect = f"only {expected} has a meaning here; nothing is written"
     report.append(
-        wrong_shape(tree.span, message, help or example, arguments=arguments, edits=edits)
+        wrong_shape(
+            tree.span, message, help or example, arguments=arguments, edits=edits, effect=effect
+        )
     )
 
 
@@ -103,6 +110,9 @@ def _mapping_help(tree: Seq, value: str) -> str | None:
     return f"write one mapping: `{{{shown}}}`"
 
 
+_LONGEST_SHOWN = 40
+"""The longest value that a finding repeats."""
+
 _MOST_SHOWN = 6
 """The most entries that a help shows."""
 
@@ -122,17 +132,17 @@ def _entries_meant(tree: Seq) -> tuple[Entry, ...]:
     return tuple(entries)
 
 
-_ARROW = re.compile(r"\s*(\w+)\s*(?:->|=>|\u2192)\s*(\w+)\s*")
-"""A transition written as in a drawing: `held -> LIFT`."""
+_ARROW = re.compile(r"\s*(\w+)\s*(?:->|=>|\u2192|=|;|:)\s*(\w+)\s*")
+"""A transition written as in a drawing, `held -> LIFT`, or with another wrong sign."""
 
 
 def _arrows(tree: Tree) -> tuple[Entry, ...]:
-    """The entries meant by a plain text such as `held -> LIFT, slipped -> aborted`; none if a part
-    of it has another form."""
-    if not isinstance(tree, Scalar) or not tree.plain or tree.span.text != tree.value:
+    """The entries meant by a plain text such as `held -> LIFT, slipped -> aborted`, in one line or
+    several; none if a part of it has another form."""
+    if not isinstance(tree, Scalar) or not tree.plain or not isinstance(tree.value, str):
         return ()
     entries, start = [], tree.start
-    for part in tree.span.text.split(","):
+    for part in re.split("[,\n]", tree.span.text):
         found = _ARROW.fullmatch(part)
         if found is None:
             return ()
@@ -148,6 +158,8 @@ def _arrows(tree: Tree) -> tuple[Entry, ...]:
         )
         entries.append(Entry(key, value))
         start += len(part) + 1
+    if len(entries) == 1 and ":" in tree.span.text:
+        return ()  # only the space is missing
     return tuple(entries)
 
 
@@ -187,10 +199,20 @@ def as_name(tree: Tree, report: Report) -> Word | None:
     return Word(text, Span(tree.source, tree.start, tree.end))
 
 
+def _only_name(tree: Tree) -> Word | None:
+    """The name that is alone in brackets or braces."""
+    if isinstance(tree, Map) and len(tree.entries) == 1 and not tree.entries[0].value.span.text:
+        return name_of(tree.entries[0].key)
+    if isinstance(tree, Seq) and len(tree.items) == 1 and isinstance(tree.items[0], Scalar):
+        return name_of(tree.items[0])
+    return None
+
+
 def name_text(tree: Tree, report: Report) -> str | None:
     """The text of a name, without its span."""
     if not isinstance(tree, Scalar):
-        wrong(tree, "name", report)
+        only = _only_name(tree)
+        wrong(tree, "name", report, f"write `{only.text}` without brackets" if only else None)
         return None
     value = tree.value
     if isinstance(value, str) and (value not in YAML_1_1_BOOLEANS or not tree.plain):
@@ -223,7 +245,7 @@ def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ..
     found: dict[str, Word] = {}
     for item in tree.items:
         word = as_name(item, report)
-        if word is None:
+        if word is None or is_known_wrong(item):
             continue
         first = found.setdefault(word.text, word)
         if first is not word:
@@ -237,8 +259,28 @@ def as_outcomes(tree: Tree, report: Report) -> tuple[Outcome, ...]:
         return tuple(
             [Outcome(name=word.text, span=word.span) for word in as_names(tree, report, "outcomes")]
         )
+    if _is_list_in_braces(tree):
+        return tuple(Outcome(name=each.text, span=each.span)
+                     for each in _listed(tree, "outcomes", report))  # fmt: skip
     words = ((as_name(entry.key, report), entry.value) for entry in tree.entries)
     return tuple([as_outcome(word, value, report) for word, value in words if word is not None])
+
+
+def _is_list_in_braces(tree: Map) -> bool:
+    """Whether a mapping is a list of names in braces: `{a, b}`."""
+    if not tree.entries or not tree.span.text.startswith("{"):
+        return False
+    values = [entry.value for entry in tree.entries]
+    return all(isinstance(each, Scalar) and each.value is None and each.start == each.end
+               for each in values) and ":" not in tree.span.text  # fmt: skip
+
+
+def _listed(tree: Map, shape: str, report: Report) -> tuple[Word, ...]:
+    """The names of a list in braces, which is reported."""
+    words = tuple(Word(str(entry.key.value), entry.key.span) for entry in tree.entries)
+    text = f"[{', '.join(word.text for word in words)}]"
+    wrong(tree, shape, report, f"write the list in brackets: `{text}`")
+    return words
 
 
 def as_outcome(word: Word, tree: Tree, report: Report, *more: str) -> Outcome:
@@ -267,9 +309,14 @@ def as_map(tree: Tree, report: Report, value: str = "...") -> tuple[Entry, ...]:
         help = "write `{}`, or remove the key" if nothing else None
         if isinstance(tree, Seq):
             help = _mapping_help(tree, value)
-        if isinstance(tree, Scalar) and tree.plain and JOINED.fullmatch(str(tree.value)):
-            help = spaced(str(tree.value))
         arrows = _arrows(tree)
+        if (
+            isinstance(tree, Scalar)
+            and tree.plain
+            and not arrows
+            and JOINED.fullmatch(str(tree.value))
+        ):
+            help = spaced(str(tree.value))
         if arrows:
             shown = ", ".join(f"{each.key.span.text}: {each.value.span.text}" for each in arrows)
             help = f"write a mapping: `{{{shown}}}`"
@@ -291,12 +338,20 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
     becomes the empty name, as a look-up that fails does; so a key has a value all the same."""
     pairs = []
     entries = tree.entries if isinstance(tree, Map) else as_map(tree, report)
+    if isinstance(tree, Map) and tree.span.text.startswith("{"):
+        arrows = [_arrows(each.key) for each in entries if "\n" not in each.key.span.text]
+        if arrows and len(arrows) == len(entries) and all(len(each) == 1 for each in arrows):
+            entries = tuple(each[0] for each in arrows)
+            shown = ", ".join(f"{each.key.span.text}: {each.value.span.text}" for each in entries)
+            message, help = "a `:` is due between a name and its value", f"write `{{{shown}}}`"
+            report.append(wrong_shape(tree.span, message, help, arguments=("arrows",)))
     if isinstance(tree, Seq):  # it is not known what names alone mean
         entries = tuple(entry for entry in entries if not is_known_wrong(entry.value))
     for entry in entries:
         key = as_name(entry.key, report)
         if key is not None:
-            pairs.append((key, as_name(entry.value, report) or Word("", key.span)))
+            target = as_name(entry.value, report) or _only_name(entry.value)
+            pairs.append((key, target or Word("", key.span)))
     return tuple(pairs)
 
 
@@ -339,8 +394,21 @@ def as_rules(tree: Tree, report: Report) -> Rules:
 def as_keys(tree: Tree, report: Report) -> Keys:
     """Keys with their types where given: `[a, b]` or `{a: float, b: Pose}`."""
     if isinstance(tree, Seq):
-        return tuple((word, None) for word in as_names(tree, report))
+        entries = [item.entries[0] for item in tree.items if isinstance(item, Map) and item.entries]
+        if entries and len(entries) == len(tree.items):
+            rows = ", ".join(f"{each.key.span.text}: {each.value.span.text}" for each in entries)
+            wrong(
+                tree,
+                "keys",
+                report,
+                f"write one mapping: `{{{rows}}}`" if "\n" not in rows else None,
+            )
+            tree = Map(tuple(entries), tree.span)
+        else:
+            return tuple((word, None) for word in as_names(tree, report))
     if isinstance(tree, Map):
+        if _is_list_in_braces(tree):
+            return tuple((word, None) for word in _listed(tree, "keys", report))
         if any(isinstance(entry.value, Map) for entry in tree.entries):
             tree = Map(tuple([_of_type(entry, report) for entry in tree.entries]), tree.span)
         return tuple((key, parse_type(type_.text)) for key, type_ in as_pairs(tree, report))

@@ -17,6 +17,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.frontend.script import ANY_OUTCOME, ERROR, EXHAUSTED, TIMEOUT, Script, State
+from smachac.frontend.turned_transitions import with_turned_transitions
 from smachac.ir.nodes import DeclarationKind, Expression, Misdeclared, Outcome, StateType, Struct
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
 from smachac.ir.properties import atoms
@@ -29,6 +30,9 @@ _CPP_OUTCOMES = re.compile(r"enum class Outcome\b[^{;]*(\{[^}]*\})")
 """The outcomes of a class in C++ (docs/targets.md)."""
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
+
+_COMMON = frozenset(["succeeded", "aborted", PREEMPTED])
+"""The outcomes of SMACH: a declared name that is one slip away, which nothing uses, means them."""
 
 
 @dataclass(slots=True)
@@ -82,8 +86,10 @@ class _Repairs:
 def with_meant_declarations(script: Script, library: Library, report: Report) -> Script:
     """The script with its misspelt and incomplete declarations corrected, and these faults. What
     was reported about uses of their names is removed."""
-    if not _has_unknown(script.base):
+    if not _has_unknown(script.base) and not _has_unknown_atom(script):
         return script
+    base = with_turned_transitions(script.base, _ends, report)
+    script = script if base is script.base else replace(script, base=base)
     states = dict(_walk(script.base))
     reported: dict[Source, Report] = {}
     for item in report:
@@ -162,6 +168,13 @@ def _misspells_implied(state: State, ends: set[str]) -> bool:
     listed = {each.name for each in state.outcomes}
     unused = listed.difference(word.text for word in _own_words(state))
     return bool(unused) and any(guesser(ends - listed).sure(name) for name in unused)
+
+
+def _has_unknown_atom(script: Script) -> bool:
+    """Whether a property of the script names a state that does not exist."""
+    parts = {name for each in script.properties for atom in atoms(each.form)
+             if atom.subject == "path" for name in atom.name.split("/")}  # fmt: skip
+    return bool(parts) and not parts <= {state.name.text for _, state in _walk(script.base)}
 
 
 def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
@@ -456,7 +469,7 @@ def _judge_children(
     for each in script.properties:
         for atom in atoms(each.form):
             for name in atom.name.split("/") if atom.subject == "path" else ():
-                if name not in known:
+                if name not in known or name in texts:
                     found.use("properties", Word(name, atom.span))
     renamed, _ = _meant(found, pairs=False)
     for old, new in renamed.items():
@@ -526,6 +539,8 @@ def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str,
     unused = [name for name in unused if name not in renamed]
     for name in unknown:
         near = guesser(unused)(name) if unused and _is_strong(found, name) else None
+        if near is None and name in _COMMON:
+            near = guesser(unused).sure(name)
         if near is not None:
             renamed[near] = name
             unused.remove(near)

@@ -8,14 +8,15 @@ not valid gives no definition, because its package does not build either.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
-from smachac.frontend.standard_messages import STANDARD
+from smachac.frontend.standard_messages import packages_with, standard_package
+from smachac.ir.class_facts import ClassFacts
 from smachac.ir.leaf import given_fields, type_text
 from smachac.ir.message_types import (
     PARTS,
@@ -90,11 +91,13 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
     names = [word.name]
     if kind == "action" and word.name.endswith("Action"):
         names.append(word.name.removesuffix("Action"))
+    if not library.definition_names(f"{word.package}/{kind}"):
+        common = _standard(word.package, names, kind, library)
+        if common:
+            return common
     for name in names:
         path = f"{word.package}/{kind}/{name}.{kind}"
         sources = library.definitions(path)
-        if not sources and path in STANDARD:
-            return _standard(path, TypeName(word.package, name), kind)
         if sources:
             read = [read_definition(each, TypeName(word.package, name), kind) for each in sources]
             found = tuple(each for each in read if each is not None)
@@ -102,24 +105,36 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
     return ()
 
 
-def _standard(path: str, name: TypeName, kind: DefinitionKind) -> tuple[Definition, ...]:
-    """The definition of a type that every installation of ROS has. It is in no file, so its parts
-    have no places."""
-    read = read_definition(Source(path, STANDARD[path]), name, kind)
-    if read is None:
-        return ()
+def _standard(
+    package: str, names: Sequence[str], kind: DefinitionKind, library: Library
+) -> tuple[Definition, ...]:
+    """The definitions of a type of a common package with one of some names. They are in no file of
+    the user, so their parts have no places."""
+    texts = standard_package(package, library.ros).texts
+    for name in names:
+        path = f"{package}/{kind}/{name}.{kind}"
+        sources = [Source(path, text) for text in texts.get(f"{kind}/{name}", ())]
+        read = [read_definition(each, TypeName(package, name), kind) for each in sources]
+        if read:
+            return tuple(_without_places(each) for each in read if each is not None)
+    return ()
+
+
+def _without_places(definition: Definition) -> Definition:
     messages = [
         replace(each, fields=tuple(replace(one, span=NOWHERE) for one in each.fields))
-        for each in read.messages
+        for each in definition.messages
     ]
-    return (replace(read, messages=tuple(messages), span=NOWHERE),)
+    return replace(definition, messages=tuple(messages), span=NOWHERE)
 
 
-def definitions_of(base: State, library: Library) -> Definitions:
-    """The definitions of the types that the states of a script name, and those of the messages in
-    their fields."""
+def definitions_of(base: State, classes: Iterable[ClassFacts], library: Library) -> Definitions:
+    """The definitions of the types that the states of a script and the classes of their types name,
+    and those of the messages in their fields."""
     found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
     todo: list[tuple[DefinitionKind, str]] = list(_named_types(base))
+    for facts in classes:
+        todo += [(kind, text) for kind, text, _ in _readings(facts)]
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:
@@ -134,12 +149,8 @@ def with_fields(
 ) -> Definition | None:
     """The only other type of the same package and kind whose message `part` has some fields; None
     if there are none or several, or a definition of the package cannot be read."""
-    kind, folder = definition.kind, f"{definition.package}/{definition.kind}"
-    files = [*library.definition_names(folder), *(
-        path.removeprefix(f"{folder}/") for path in STANDARD if path.startswith(f"{folder}/")
-    )]  # fmt: skip
-    ends = f".{kind}"
-    names = {each.removesuffix(ends) for each in files if each.endswith(ends)} - {definition.name}
+    kind = definition.kind
+    names = {*_names_in(definition.package, kind, library)} - {definition.name}
     if not fields or len(names) > MOST_OTHERS:
         return None
     fitting: list[Definition] = []
@@ -202,9 +213,18 @@ def _nested(definition: Definition) -> list[str]:
     return [each.type.name for each in fields if each.type.name not in PRIMITIVES]
 
 
-def missing_definitions_of(base: State, found: Definitions, library: Library) -> MissingDefinitions:
-    """The types in the states of a script whose package has types of their kind, but not these, or
-    types of these names, but of another kind.
+def _readings(facts: ClassFacts) -> Iterator[tuple[DefinitionKind, str, str]]:
+    """The types and messages that a class can mean."""
+    if facts.messages is not None:
+        for ref, _ in facts.messages.named:
+            yield from ref.readings()
+
+
+def missing_definitions_of(
+    base: State, classes: Iterable[ClassFacts], found: Definitions, library: Library
+) -> MissingDefinitions:
+    """The types in the states of a script, or in the classes of their types, whose package has
+    types of their kind, but not these, or types of these names, but of another kind.
 
     Types that ROS 1 makes of an action, such as `TestActionGoal`, and those with a definition in
     the format of the OMG (`.idl`) are not missing.
@@ -212,19 +232,59 @@ def missing_definitions_of(base: State, found: Definitions, library: Library) ->
     missing: dict[tuple[DefinitionKind, str], Missing] = {}
     for kind, text in _named_types(base):
         word = type_name(text, kind)
-        if (kind, text) in found or word is None or (kind != "srv" and _MADE.search(word.name)):
+        if (kind, text) in found or word is None:
             continue
-        files = library.definition_names(f"{word.package}/{kind}")
-        names = {each.removesuffix(f".{kind}") for each in files if each.endswith(f".{kind}")}
-        if word.name in names or f"{word.name}.idl" in files:
-            continue
-        others: list[DefinitionKind] = [
-            each for each in PARTS if find_definitions(str(word), each, library)
-        ]
-        other = others[0] if others else None
-        if names or other is not None:
-            missing[kind, text] = Missing(tuple(sorted(names)), other)
+        absent = missing_type(word, kind, library)
+        if absent is not None:
+            missing[kind, text] = absent
+    for facts in classes:
+        for ref, _ in facts.messages.named if facts.messages is not None else ():
+            readings = ref.readings()
+            if not any((kind, text) in found for kind, text, _ in readings):
+                kind, text, _ = readings[0]
+                absent = missing_type(TypeName(ref.package, ref.name), kind, library)
+                if absent is not None:
+                    missing[kind, text] = absent
     return missing
+
+
+def missing_type(word: TypeName, kind: DefinitionKind, library: Library) -> Missing | None:
+    """What is known about a type that its package does not have; None if it can exist."""
+    made = _MADE.search(word.name) if kind != "srv" else None
+    names = _names_in(word.package, kind, library)
+    if made is not None:
+        action = TypeName(word.package, word.name[: made.start()])
+        if not is_listed(word.package, library) or find_definitions(str(action), "action", library):
+            return None
+        names += [f"{each}{made[1]}" for each in _names_in(word.package, "action", library)]
+    files = library.definition_names(f"{word.package}/{kind}")
+    if word.name in names or f"{word.name}.idl" in files:
+        return None
+    kinds: list[DefinitionKind] = [
+        each for each in PARTS if find_definitions(str(word), each, library)
+    ]
+    other = kinds[0] if kinds else None
+    if not names and other is None and not is_listed(word.package, library):
+        return None
+    packages = packages_with(word.name, kind, library.ros) if other is None else []
+    packages = [each for each in packages if each != word.package]
+    return Missing(tuple(sorted(names)), other, tuple(packages))
+
+
+def is_listed(package: str, library: Library) -> bool:
+    """Whether all types of a package are known: it is a common one, and no folder of the user or of
+    an installation has a package of its name."""
+    if not standard_package(package, library.ros).is_complete:
+        return False
+    return not any(library.definition_names(f"{package}/{kind}") for kind in PARTS)
+
+
+def _names_in(package: str, kind: DefinitionKind, library: Library) -> list[str]:
+    """The names of the types of a kind in a package, all of them or none."""
+    files = library.definition_names(f"{package}/{kind}")
+    if files:
+        return [each.removesuffix(f".{kind}") for each in files if each.endswith(f".{kind}")]
+    return standard_package(package, library.ros).names(kind) if is_listed(package, library) else []
 
 
 def read_definition(source: Source, name: TypeName, kind: DefinitionKind) -> Definition | None:

@@ -43,6 +43,53 @@ def with_outer_fields(name: Word, own: dict[str, Entry], report: Report) -> dict
     return own
 
 
+def with_inner_rules(own: dict[str, Entry], report: Report) -> dict[str, Entry]:
+    """The fields of a concurrence by long name, with the outcome map that one of its states has in
+    its place: an entry of it begins with the name of a state beside it."""
+    template, states = own.get("template"), own.get("states")
+    if template is None or states is None or "outcome_map" in own:
+        return own
+    is_concurrence = isinstance(template.value, Scalar) and template.value.value == "Concurrence"
+    if not is_concurrence or not isinstance(states.value, Seq):
+        return own
+    items = states.value.items
+    names = {str(each.key.value) for item in items if isinstance(item, Map)
+             for each in item.entries}  # fmt: skip
+    for at, item in enumerate(items):
+        child = item.entries[0] if isinstance(item, Map) and len(item.entries) == 1 else None
+        fields = child.value.entries if child is not None and isinstance(child.value, Map) else ()
+        for each in fields:
+            key = schema.LONG.get(str(each.key.value), str(each.key.value))
+            if key != "outcome_map" or child is None or not _has_rules(each.value, names):
+                continue
+            word = str(each.key.value)
+            where = "beside its `states`"
+            if states.key.span.line != child.key.span.line:
+                columns = each.key.span.column - states.key.span.column
+                where = f"{columns} column{'s' * (columns > 1)} further left, {where}"
+            message = f"`{word}` is a field of the concurrence, not of its state"
+            message += f" `{child.key.value}`"
+            report.append(
+                wrong_shape(each.key.span, message, f"write `{word}` {where}",
+                            arguments=("inner", word))
+            )  # fmt: skip
+            rest = tuple(other for other in fields if other is not each)
+            fixed = Map((Entry(child.key, Map(rest, child.value.span)),), item.span)
+            changed = Seq((*items[:at], fixed, *items[at + 1 :]), states.value.span)
+            return {**own, "outcome_map": each, "states": Entry(states.key, changed)}
+    return own
+
+
+def _has_rules(tree: Tree, names: Set[str]) -> bool:
+    """Whether a tree is an outcome map with a condition on one of some states."""
+    return isinstance(tree, Map) and any(
+        str(part.key.value) in names
+        for rule in tree.entries
+        if isinstance(rule.value, Map)
+        for part in rule.value.entries
+    )
+
+
 def with_outer_variables(
     name: Word, own: dict[str, Entry], type_: StateType, report: Report
 ) -> dict[str, Entry]:

@@ -30,7 +30,7 @@ WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
 
 def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     """The attributes of objects of plain classes that these do not define, each once."""
-    objects = _Objects(own, library)
+    objects = Objects(own, library)
     done = set[tuple[str, str]]()
     for module, node in own.classes:
         every = [*ast.walk(module.text.tree)]
@@ -56,7 +56,7 @@ def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
 
 def uncalled_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     """The methods of objects of plain classes without `()`, in a condition or alone in a line."""
-    objects = _Objects(own, library)
+    objects = Objects(own, library)
     for module, node in own.classes:
         set_here = {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)
                     and not isinstance(each.ctx, ast.Load)}  # fmt: skip
@@ -80,7 +80,7 @@ class _Use(NamedTuple):
     definition: ast.ClassDef
 
 
-class _Objects:
+class Objects:
     """The objects of plain classes of the project that a class keeps in its attributes."""
 
     def __init__(self, own: OwnClass, library: Library) -> None:
@@ -109,6 +109,17 @@ class _Objects:
             found, span = self.classes[name], module.text.span(each)
             if found is not None and not module.text.is_filled(span):
                 yield _Use(each, name, member, span, *found)
+
+    def method(
+        self, module: Module, node: ast.ClassDef, called: ast.expr
+    ) -> ast.FunctionDef | None:
+        """The method of an object in an attribute of `self` that an expression names."""
+        for use in self.uses(module, node, [called]):
+            body = use.definition.body
+            bound = [each for each in body if getattr(each, "name", "") == use.member]
+            if len(bound) == 1 and isinstance(bound[0], ast.FunctionDef):
+                return bound[0]
+        return None
 
 
 def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.expr]]:

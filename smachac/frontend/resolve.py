@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Literal
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, has_errors
+from smachac.diagnostics.diagnostic import Diagnostic, Report, has_errors
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import schema
@@ -21,9 +22,7 @@ from smachac.frontend.errors.references import (
     template_not_found,
 )
 from smachac.frontend.errors.script import (
-    Owner,
     duplicate_key,
-    missing_variable,
     too_big,
     wrong_shape,
 )
@@ -37,7 +36,11 @@ from smachac.frontend.message_definitions import (
     missing_definitions_of,
     other_types_of,
 )
-from smachac.frontend.misplaced_fields import with_outer_fields, with_outer_variables
+from smachac.frontend.misplaced_fields import (
+    with_inner_rules,
+    with_outer_fields,
+    with_outer_variables,
+)
 from smachac.frontend.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -64,6 +67,7 @@ from smachac.frontend.state_fields import (
     TEMPLATE_WORDS,
     Entries,
     accepts,
+    another_state,
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
@@ -77,16 +81,19 @@ from smachac.frontend.state_fields import (
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import (
     SUB_SCRIPT_HELP,
-    one_for_all_calls,
-    one_for_all_lacking,
-    one_for_all_look_ups,
+    one_for_each_param,
     overridden,
     params_at_call,
     params_beside_call,
     sub_script_state,
 )
 from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
-from smachac.frontend.unknown_templates import one_for_each_template, types_with_the_names
+from smachac.frontend.unknown_templates import (
+    missing_template,
+    missing_template_help,
+    one_for_each_template,
+    types_with_the_names,
+)
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import (
     Entry,
@@ -108,7 +115,6 @@ MAX_KEYS, MAX_KEYS_BY_STATE = 20_000, 10
 """The most userdata values of a script: a fixed part and a part for each state. One takes 3 kB of
 memory in the checks."""
 
-CALLED_HERE = "in the sub-script called here"
 
 SCRIPT_HELP = "write a mapping with `name:`, `outcomes:` and `states:`"
 
@@ -208,23 +214,24 @@ class _Resolver:
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
         if self.report:
-            lacking = one_for_all_lacking(one_for_all_calls(self.report), "params" in entries)
-            self.report[:] = one_for_all_look_ups(lacking)
-        self.report[:] = one_for_each_template(self.report)
+            self.report[:] = one_for_each_template(one_for_each_param(self.report, entries))
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)
         if "types" in entries:
             self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
-        definitions = definitions_of(base, self.library)
+        known = [each for each in self.types.values() if each is not None]
+        classes = [each.class_facts for each in known if each.class_facts is not None]
+        library = replace(self.library, definition_names=cache(self.library.definition_names))
+        definitions = definitions_of(base, classes, library)
         script = Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
             definitions=definitions,
-            missing_definitions=missing_definitions_of(base, definitions, self.library),
-            other_types=other_types_of(base, definitions, self.library),
+            missing_definitions=missing_definitions_of(base, classes, definitions, library),
+            other_types=other_types_of(base, definitions, library),
             unused=self.uses.unused(self.report),
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=params_of(entries.get("params")),
@@ -304,7 +311,7 @@ class _Resolver:
         sugar: Sugar | None = fields.get("sugar")
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
-        if owner == "state" and has_wrong_transitions(entries, fields):
+        if owner != "base" and has_wrong_transitions(entries, fields):
             return unknown_state(name, (), around.via)
         if owner == "state" and has_unknown_outcomes(entries):
             return unknown_state(name, fields.get("transitions", ()), around.via)
@@ -412,10 +419,8 @@ class _Resolver:
             if state is None:
                 continue
             if owner == "Iterator" and found:
-                message = "an Iterator must contain exactly one state; this is another one"
-                help = "put the states into a StateMachine inside the Iterator"
-                arguments = ("iterator", state.name.text)
-                self.report.append(wrong_shape(state.name.span, message, help, arguments=arguments))
+                self.report.append(another_state(name.text, found[0].name.text, state.name))
+                continue
             found.append(state)
         return tuple(found)
 
@@ -507,7 +512,7 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
-        own = with_outer_fields(name, own, self.report)
+        own = with_inner_rules(with_outer_fields(name, own, self.report), self.report)
         called: list[tuple[Word, tuple[Entry, ...]]] = []
         beside: dict[str, Span] = {}
         while "script" in own:
@@ -648,14 +653,11 @@ class _Resolver:
         if entry is None and role == "base":
             word = Word("Base", name.span)
         if entry is None and role != "base":
-            shown = around.inner or name
-            calls = around.via if around.inner is not None else ()
-            related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
-            owner = Owner(shown.text, f"`{shown.text}`")
-            others = [entries[key] for key in entries if key in TEMPLATE_WORDS]
-            instead = Word(str(others[0].key.value), others[0].key.span) if others else None
-            missing = missing_variable(shown.span, "template", owner, related, instead=instead)
-            self.report.append(missing)
+            scripts = self.library.script_names(around.source.name)
+            types = self.known_templates()[1]
+            shown, calls = around.inner or name, around.via if around.inner is not None else ()
+            help = missing_template_help(shown.text, entries, scripts, types, self.other_type)
+            self.report.append(missing_template(shown, calls, entries, help))
         nested: FieldOwner = "StateMachine" if "states" in entries else "state"
         if word is None or not word.text:
             return StateType(name="", open=True), role or nested

@@ -29,14 +29,14 @@ def silent_results(own: OwnClass, library: Library) -> Iterator[ClassFault]:
             if not isinstance(method, ast.FunctionDef):
                 continue
             for call in _used_calls(method):
-                found = _function(own, module, method, call.func, library)
+                found = called_function(own, module, method, call.func, library)
                 if (
                     found is None
                     or found[1] in done
                     or module.text.is_filled(module.text.span(call))
                 ):
                     continue
-                if _is_silent(found[1]):
+                if is_silent(found[1]):
                     done.add(found[1])
                     yield _fault(found[0], found[1], module, call)
 
@@ -85,7 +85,7 @@ def _values(node: ast.AST) -> list[ast.expr]:
     return []
 
 
-def _function(
+def called_function(
     own: OwnClass, module: Module, method: ast.FunctionDef, called: ast.expr, library: Library
 ) -> tuple[Module, ast.FunctionDef] | None:
     """The function or method of the project that a call runs."""
@@ -107,7 +107,7 @@ def _function(
     return None
 
 
-def _is_silent(function: ast.FunctionDef) -> bool:
+def is_silent(function: ast.FunctionDef) -> bool:
     """Whether a function has code, and none of its paths returns a value."""
     if not is_plain(function) or any(each.value is not None for each in returns_of(function.body)):
         return False

@@ -1,39 +1,63 @@
-"""Definitions of messages and services of every installation of ROS, for machines without one.
+"""Definitions of the common packages of ROS, for machines without an installation.
 
-Fields and types are those of std_msgs, std_srvs and geometry_msgs, which are the same in ROS 1
-(wiki.ros.org/std_msgs, wiki.ros.org/geometry_msgs) and ROS 2 (docs.ros.org, common_interfaces).
-Types whose fields differ are left out: std_msgs/Header, Time and Duration.
+The files in `messages/` have the fields and constants of all types of these packages, without
+comments and default values. `scripts/ros_messages.py` makes them of the packages of Debian
+(ROS 1 Noetic) and PyPI (ROS 2 Foxy to Lyrical); it names the packages, their versions and licences.
+A type that differs between versions of ROS has several texts. A file is read only if a script names
+a type of its package that is in no folder of the user or of an installation.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
 
-_PLAIN = {
-    "Bool": "bool", "Byte": "byte", "Char": "char", "String": "string",
-    "Float32": "float32", "Float64": "float64",
-    "Int8": "int8", "Int16": "int16", "Int32": "int32", "Int64": "int64",
-    "UInt8": "uint8", "UInt16": "uint16", "UInt32": "uint32", "UInt64": "uint64",
-}  # fmt: skip
-"""The messages of std_msgs with the one field `data`, and its type."""
+from smachac.frontend.loader import Ros
 
-_XYZ = "float64 x\nfloat64 y\nfloat64 z\n"
-_DONE = "bool success\nstring message\n"
+FOLDER = Path(__file__).parent / "messages"
 
-STANDARD: Mapping[str, str] = {
-    **{f"std_msgs/msg/{name}.msg": f"{type_} data\n" for name, type_ in _PLAIN.items()},
-    "std_msgs/msg/ColorRGBA.msg": "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n",
-    "std_msgs/msg/Empty.msg": "",
-    "std_srvs/srv/Empty.srv": "---\n",
-    "std_srvs/srv/SetBool.srv": f"bool data\n---\n{_DONE}",
-    "std_srvs/srv/Trigger.srv": f"---\n{_DONE}",
-    "geometry_msgs/msg/Point.msg": _XYZ,
-    "geometry_msgs/msg/Vector3.msg": _XYZ,
-    "geometry_msgs/msg/Quaternion.msg": f"{_XYZ}float64 w\n",
-    "geometry_msgs/msg/Pose.msg": "Point position\nQuaternion orientation\n",
-    "geometry_msgs/msg/Transform.msg": "Vector3 translation\nQuaternion rotation\n",
-    "geometry_msgs/msg/Twist.msg": "Vector3 linear\nVector3 angular\n",
-    "geometry_msgs/msg/PoseStamped.msg": "std_msgs/Header header\nPose pose\n",
-    "geometry_msgs/msg/TwistStamped.msg": "std_msgs/Header header\nTwist twist\n",
-}
-"""The text of each definition by its path, `package/msg/Name.msg`."""
+HEAD = "\n== "
+"""Before the path of each text; a version of ROS after it means that only this version has it."""
+
+
+class StandardPackage(NamedTuple):
+    """The texts of the definitions of a package by path, `msg/Bool`. `is_complete`: it has no other
+    types."""
+
+    texts: Mapping[str, tuple[str, ...]]
+    is_complete: bool
+
+    def names(self, kind: str) -> list[str]:
+        """The names of the types of a kind."""
+        return [path.partition("/")[2] for path in self.texts if path.startswith(f"{kind}/")]
+
+
+NO_PACKAGE = StandardPackage({}, False)
+
+
+def standard_package(name: str, ros: Ros) -> StandardPackage:
+    """The definitions of a package; empty for a package that is not among the common ones. If the
+    types of a version of ROS are not all known, those of the other version are left out."""
+    try:
+        text = (FOLDER / f"{name}.txt").read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return NO_PACKAGE
+    first, *parts = text.split(HEAD)
+    is_complete = str(ros) in first.split()
+    texts: dict[str, tuple[str, ...]] = {}
+    for part in parts:
+        head, _, body = part.partition("\n")
+        path, _, version = head.partition(" ")
+        if is_complete or version in ("", str(ros)):
+            texts[path] = (*texts.get(path, ()), body)
+    return StandardPackage(texts, is_complete)
+
+
+def packages_with(name: str, kind: str, ros: Ros) -> list[str]:
+    """The common packages that have a type of a name and a kind."""
+    return [
+        file.stem
+        for file in sorted(FOLDER.glob("*.txt"))
+        if f"{kind}/{name}" in standard_package(file.stem, ros).texts
+    ]

@@ -139,7 +139,8 @@ def read_fields(
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
         read["name"] = name
     if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
-        read["default_outcome"] = name_of(entries["default_outcome"].value)
+        given = entries["default_outcome"].value
+        read["default_outcome"] = None if is_known_wrong(given) else name_of(given)
     if not NAMES.isdisjoint(entries):
         written = (word.text for word, _ in read.get("input_keys", ()))
         inputs = (*written, *(key.name for key in type_.input_keys))
@@ -213,6 +214,10 @@ def with_meant_fields(
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
+    if owner == "state" and "default_outcome" in type_.variables:
+        default = [key for key in unknown if "default" in key.split("_")]
+        if len(default) == 1 and isinstance(entries[default[0]].value, Scalar):
+            meant.setdefault("default_outcome", entries[default[0]])
     found = {name: entry for name, entry in meant.items() if name is not None}
     left = [key for key in unknown if all(entries[key] is not each for each in found.values())]
     return found | paired_fields(left, {*entries, *found}, entries, owner, type_) | entries
@@ -288,10 +293,11 @@ def _known_fields(
             fitting = fitting_fields(entry.value, [*known, *own], entries, type_)
             if sure is None and len(fitting) == 1 and not own:
                 certain = f"did you mean `{fitting[0]}`?"
+            needed = sure if sure is not None and _is_required(sure, owner, type_) else None
             report.append(
                 unknown_variable(
                     word, whose, known, own=own, meant=sure, outcome=stray, key=as_key,
-                    certain=certain, fitting=fitting,
+                    certain=certain, fitting=fitting, required=needed,
                 )
             )  # fmt: skip
             if as_key is not None:
@@ -302,6 +308,11 @@ def _known_fields(
     if strays:
         read["transitions"] = (*read.get("transitions", ()), *strays)
     return read, meant
+
+
+def _is_required(key: str, owner: FieldOwner, type_: StateType) -> bool:
+    variable = type_.variables.get(key)
+    return key in schema.REQUIRED[owner] or (variable is not None and variable.required)
 
 
 def _as_key(word: Word, entry: Entry, entries: Entries, type_: StateType) -> str | None:
@@ -466,10 +477,12 @@ def _example(variable: VariableType) -> str:
     high = limits.most if math.isfinite(limits.most) else low + 2
     middle = low / 2 + high / 2
     shown = str(round(middle)) if variable.type.name == "int" else f"{middle:.4g}"
+    if "e" in shown:
+        return "..."
     if variable.type.name == "float" and "." not in shown:
         shown += ".0"
     inside = low < float(shown) < high or (float(shown) in (low, high) and not limits.exclusive)
-    return shown if inside and "e" not in shown else "..."
+    return shown if inside else "..."
 
 
 def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:
@@ -524,7 +537,16 @@ def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterato
         called = name == "callbacks" or role in ("callbacks", "conditions")
         value = as_value(entry.value, code=called)
         declared = known.type if known is not None else ANY
-        yield Variable(name=name, type=declared, role=role, value=value, span=entry.key.span)
+        yield Variable(
+            name=name,
+            type=declared,
+            role=role,
+            takes_userdata=known is not None
+            and known.unquoted == "function"
+            and (known.arguments or ())[:1] == ("userdata",),
+            value=value,
+            span=entry.key.span,
+        )
 
 
 def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, report: Report) -> None:
@@ -629,4 +651,18 @@ def second_key(name: Word, fields: Map, other: Entry) -> Diagnostic:
         help,
         (Related(span=name.span, message="the first key"),),
         arguments=("item", name.text, str(key.value)),
+    )
+
+
+def another_state(iterator: str, first: str, other: Word) -> Diagnostic:
+    """SM004 for a further state in an Iterator."""
+    message = f"the Iterator `{iterator}` has the state `{first}`: `{other.text}` is another one"
+    help = f"indent `{other.text}` like `{iterator}` if it comes after the loop; or put `{first}`"
+    help += f" and `{other.text}` into a StateMachine inside `{iterator}`"
+    return wrong_shape(
+        other.span,
+        message,
+        help,
+        arguments=("iterator", other.text),
+        effect="an Iterator has exactly one state, which it runs for each item",
     )

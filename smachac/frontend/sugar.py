@@ -7,8 +7,9 @@ are read here; desugar.py makes containers of them.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Report, did_you_mean
 from smachac.diagnostics.source import Word
@@ -100,7 +101,9 @@ def read_sugar(
     if for_each is not None and wrong_loop and PREEMPTED not in {*own, *used}:
         for_each = replace(for_each, preempted=False)
     sugar = Sugar(timeout=timeout, retry=retry, for_each=for_each)
-    return _with_known_outcomes(sugar, own, led, report)
+    failing = [each.name for each in (*type_.outcomes, *outcomes)
+               if (is_failure(each.name) if each.failure is None else each.failure)]  # fmt: skip
+    return _with_known_outcomes(sugar, own, _Uses(led, failing), report)
 
 
 def _move_limit(fields: dict[str, Entry], report: Report) -> None:
@@ -120,18 +123,34 @@ def _move_limit(fields: dict[str, Entry], report: Report) -> None:
         fields |= {name: replace(entry, value=Map(rest, entry.value.span)), "timeout": limit}
 
 
-def _with_known_outcomes(
-    sugar: Sugar, own: tuple[str, ...], led: Collection[str], report: Report
-) -> Sugar:
-    """The sugar, in which retries and loops name only outcomes of the state and its sugar. `led`
-    are those that have transitions."""
+class _Uses(NamedTuple):
+    """The outcomes of a state that have transitions, and those of failure."""
+
+    led: Collection[str]
+    failing: Collection[str]
+
+
+def _with_known_outcomes(sugar: Sugar, own: tuple[str, ...], uses: _Uses, report: Report) -> Sugar:
+    """The sugar, in which retries and loops name only outcomes of the state and its sugar."""
+    led = uses.led
     first = (*own, TIMEOUT) if sugar.timeout else own
     second = (*first, EXHAUSTED) if sugar.retry else first
-    if sugar.retry is not None:
-        on = _known(sugar.retry.on, first, led, report)
-        sugar = replace(sugar, retry=replace(sugar.retry, on=on))
+    retry = sugar.retry
+    if retry is not None:
+        on = _known(retry.on, first, uses, "retry", report)
+        lost = [word for word in retry.on if word.text == TIMEOUT and TIMEOUT not in first]
+        left = [name for name in first if name not in led]
+        if lost and (len(retry.on) > 1 or len(left) != 1):
+            # It was reported; with a time limit nothing follows from it.
+            place = lost[0].span
+            limit = Timeout(seconds=UNKNOWN_SECONDS, span=place, value_span=place)
+            others = tuple(word for word in retry.on if word.text != TIMEOUT)
+            on = _known(others, first, uses, "retry", [])
+            on = on if on and TIMEOUT in led else (*on, lost[0])
+            sugar = replace(sugar, timeout=limit)
+        sugar = replace(sugar, retry=replace(retry, on=on))
     if sugar.for_each is not None:
-        on = _known(sugar.for_each.on, second, led, report)
+        on = _known(sugar.for_each.on, second, uses, "for_each", report)
         sugar = replace(sugar, for_each=replace(sugar.for_each, on=on))
     loop = sugar.for_each
     if loop and loop.item and not loop.on and not set(second) & set(GOOD_OUTCOMES):
@@ -142,7 +161,11 @@ def _with_known_outcomes(
 
 
 def _known(
-    on: tuple[Word, ...], outcomes: tuple[str, ...], led: Collection[str], report: Report
+    on: tuple[Word, ...],
+    outcomes: tuple[str, ...],
+    uses: _Uses,
+    field: str,
+    report: Report,
 ) -> tuple[Word, ...]:
     """The words that name outcomes. A word that names none is reported; in its place the result has
     the outcome with the most similar name, or else an outcome without a transition."""
@@ -151,22 +174,61 @@ def _known(
         if word.text in (*outcomes, ERROR):
             found.append(word)
             continue
-        others = [name for name in outcomes if name not in led] or list(outcomes[-1:])
+        given = {each.text for each in on}
+        left = [name for name in outcomes if name not in given]
+        fitting = _fitting(outcomes, uses.failing, field)
+        others = [name for name in left if name not in uses.led]
+        others = others or [name for name in left if name in fitting] or list(outcomes[-1:])
         if not word.text:  # it is missing, which was reported
             found += [Word(name, word.span) for name in others[:1]]
             continue
         message = f"this state has no outcome `{word.text}`"
-        known = f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES
-        given = {each.text for each in on}
-        left = [name for name in outcomes if name not in led and name not in given]
-        if len(left) == 1:
-            known = f"write `{left[0]}`, which has no transition"
-        help = did_you_mean(word.text, outcomes) or known
+        help = _other_outcome(word.text, [each.text for each in on], outcomes, uses, field)
+        effect = f"its outcomes are {listed(outcomes)}" if outcomes else None
         arguments = ("outcome", word.text)
-        report.append(wrong_shape(word.span, message, help, arguments=arguments))
+        report.append(wrong_shape(word.span, message, help, arguments=arguments, effect=effect))
         meant = guesser(outcomes)(word.text) or next(iter(others), "")
         found += [Word(meant, word.span)] if meant else []
     return tuple(found)
+
+
+_ADDED_BY = {TIMEOUT: ("timeout", "SECONDS"), EXHAUSTED: ("retry", "{on: [OUTCOME], max: 3}")}
+"""The outcomes that a field adds, each with the field and an example of its value."""
+
+
+def _other_outcome(
+    word: str, given: Sequence[str], outcomes: tuple[str, ...], uses: _Uses, field: str
+) -> str:
+    """The help for a word in `on` of a field that is no outcome of its state."""
+    kept = [name for name in given if name in outcomes]
+    left = [name for name in outcomes if name not in uses.led and name not in given]
+    fitting = _fitting(outcomes, uses.failing, field)
+    kept = kept or (left if len(left) == 1 else fitting)
+    shorter = f"write `on: [{', '.join(kept)}]`" if kept else ""
+    if word == EXHAUSTED and field == "retry":
+        return f"the state ends with `{word}` after the last try: {shorter or 'remove `retry`'}"
+    if word in _ADDED_BY:
+        name, value = _ADDED_BY[word]
+        why = f"a state has the outcome `{word}` only with the field `{name}`"
+        return f"{why}: add `{name}: {value}`, or {shorter or f'remove `{field}`'}"
+    if word == PREEMPTED and shorter:
+        return f"{shorter}: a state that a stop request ends does not run again"
+    if len(left) == 1:
+        return did_you_mean(word, outcomes) or f"write `{left[0]}`, which has no transition"
+    near = did_you_mean(word, outcomes)
+    if near is None and len(fitting) == 1 and fitting[0] not in given:
+        near = f"write `{fitting[0]}` in place of `{word}`"
+    return near or (f"use one of its outcomes: {listed(outcomes)}" if outcomes else NO_OUTCOMES)
+
+
+def _fitting(outcomes: tuple[str, ...], failing: Collection[str], field: str) -> list[str]:
+    """The outcomes after which a field makes its state run again: those of failure for `retry`,
+    those of success for `for_each`, or those that are no failure."""
+    if field == "retry":
+        return [name for name in outcomes if name in failing]
+    good = [name for name in outcomes if name in GOOD_OUTCOMES]
+    other = {*failing, PREEMPTED, TIMEOUT, EXHAUSTED}
+    return good or [name for name in outcomes if name not in other]
 
 
 UNITS = {
@@ -191,16 +253,42 @@ def duration(tree: Tree, report: Report) -> float | None:
 def _duration_meant(tree: Tree) -> str | None:
     """The help for a duration with another word for its unit, such as `20 sec`, and for one of
     several parts, such as `1m30s`."""
-    parts = _PARTS.findall(tree.span.text) if isinstance(tree, Scalar) else []
+    if isinstance(tree, Seq | Map):
+        return _duration_inside(tree)
+    number, arrow, target = tree.span.text.partition("->")
+    if arrow and _DURATION.fullmatch(number.strip()) is not None and target.strip():
+        return (
+            f"write `timeout: {number.strip()}`, and `timeout: {target.strip()}` in `transitions`"
+        )
+    parts = _PARTS.findall(tree.span.text)
     if len(parts) > 1 and "".join(map("".join, parts)) == "".join(tree.span.text.split()):
         units = [unit if unit in SECONDS else UNITS.get(unit, "") for _, unit in parts]
         if all(units):
             seconds = sum(float(number) * SECONDS[unit]
                           for (number, _), unit in zip(parts, units, strict=True))  # fmt: skip
             return f"write it with one unit: `{seconds:g}s`"
-    found = _DURATION.fullmatch(tree.span.text) if isinstance(tree, Scalar) else None
+    found = _DURATION.fullmatch(tree.span.text)
     unit = UNITS.get(found.group(2)) if found is not None else None
     return f"write it as `{found.group(1)}{unit}`" if found is not None and unit else None
+
+
+def _duration_inside(tree: Seq | Map) -> str | None:
+    """The help for a list or a mapping with one duration, such as `{seconds: 5}`."""
+    if isinstance(tree, Seq):
+        values = [("", item) for item in tree.items]
+    else:
+        values = [(str(entry.key.value), entry.value) for entry in tree.entries]
+    if len(values) != 1 or not isinstance(values[0][1], Scalar):
+        return None
+    name, text = values[0][0], values[0][1].span.text
+    limit = _DURATION.fullmatch(name)
+    if limit is not None and limit[2] in SECONDS:
+        return f"write `timeout: {name}`, and `timeout: {text}` in `transitions`"
+    found = _DURATION.fullmatch(text)
+    if found is None:
+        return None
+    unit = found[2] or UNITS.get(name, name if name in SECONDS else "") or "s"
+    return f"write it as `{found[1]}{unit}`"
 
 
 def _timeout(entry: Entry, report: Report) -> Timeout:
@@ -217,16 +305,23 @@ def _timeout(entry: Entry, report: Report) -> Timeout:
 
 
 def _parts(
-    entry: Entry, known: tuple[str, ...], required: Mapping[str, str], report: Report
+    entry: Entry,
+    known: tuple[str, ...],
+    required: Mapping[str, str],
+    report: Report,
+    own: tuple[str, ...] = (),
 ) -> dict[str, Tree] | None:
     """The entries of a mapping with known keys, without those that are missing; None for other
-    values. All errors are reported. `required`: keys that must be there, with example values."""
+    values. All errors are reported. `required`: keys that must be there, with example values.
+    `own` are the outcomes of the state."""
     if not isinstance(entry.value, Map):
-        wrong(entry.value, "map", report, _mapping_for(entry, required))
+        wrong(entry.value, "map", report, _mapping_for(entry, required, own))
         return None
-    pair = _pair_for(entry)
+    pair = _pair_for(entry) or _tries_for(entry, own)
     if pair is not None:
         message = "`for_each` has two parts, the name of its item and its list"
+        if "on" in known and "max" in known:
+            message = "`retry` has two parts, the outcomes `on` and the number of tries `max`"
         report.append(wrong_shape(entry.value.span, message, pair, arguments=("pair",)))
         return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
@@ -246,13 +341,14 @@ def _parts(
         meant = _part_meant(word.text, others)
         if meant is None and paired:
             help = paired_help(word.text, paired, ())
-            report.append(unknown_variable(word, owner, others, certain=help))
+            report.append(unknown_variable(word, owner, others, certain=help, required=paired))
             parts[paired] = each.value
             continue
         if meant is None:
             report.append(unknown_variable(word, owner, others))
             continue
-        report.append(unknown_variable(word, owner, known, meant=meant))
+        lost = meant if meant in required and meant not in written else None
+        report.append(unknown_variable(word, owner, known, meant=meant, required=lost))
         parts.setdefault(meant, each.value)
     for name, example in required.items():
         if name not in parts:
@@ -290,6 +386,9 @@ def _pair_for(entry: Entry) -> str | None:
     entries = entry.value.entries if isinstance(entry.value, Map) else ()
     if entry.key.value != "for_each" or not entries:
         return None
+    sentence = _SENTENCE.fullmatch(str(entries[0].key.value))
+    if sentence is not None and len(entries) == 1:
+        return f"write `for_each: {{item: {sentence[1]}, in: {sentence[2]}}}`"
     (word, *others), items = [str(each.key.value) for each in entries], entries[0].value.span.text
     parts = ("in", "item", "on")
     if any(name in parts or _part_meant(name, parts) for name in (word, *others)):
@@ -300,17 +399,32 @@ def _pair_for(entry: Entry) -> str | None:
     return f"{help}; there is no part {either(others)}" if others else help
 
 
-def _mapping_for(entry: Entry, required: Mapping[str, str]) -> str:
-    """How a field is written whose value is no mapping, with the user's value where it belongs."""
+def _tries_for(entry: Entry, own: tuple[str, ...]) -> str | None:
+    """How tries are written whose mapping is `{outcome: 3}`; None for other mappings."""
+    entries = entry.value.entries if isinstance(entry.value, Map) else ()
+    if entry.key.value != "retry" or len(entries) != 1:
+        return None
+    name, value = entries[0].key.value, entries[0].value
+    if name not in own or not isinstance(value, Scalar) or type(value.value) is not int:
+        return None
+    return f"write `retry: {{on: [{name}], max: {value.value}}}`"
+
+
+def _mapping_for(entry: Entry, required: Mapping[str, str], own: tuple[str, ...]) -> str:
+    """How a field is written whose value is no mapping, with the user's value where it belongs.
+    `own` are the outcomes of the state."""
     value, text = entry.value, entry.value.span.text
     if entry.key.value == "for_each":
         items = text if isinstance(value, (Seq, Scalar)) and "\n" not in text and text else "KEY"
-        sentence = _SENTENCE.fullmatch(text)
+        sentence = _SENTENCE.fullmatch(text.strip("'\""))
         meant = required["item"], items
         item, items = (sentence[1], sentence[2]) if sentence is not None else meant
         return f"write `for_each: {{item: {item}, in: {items}}}`"
-    number = value.value if isinstance(value, Scalar) and type(value.value) is int else 3
-    return f"write `retry: {{on: [OUTCOME], max: {number}}}`, with the outcomes to try again after"
+    numbers = re.findall(r"(?<![\w.])\d+(?![\w.])", text)
+    named = [name for name in own if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text)]
+    on = f"[{', '.join(named)}]" if named else required["on"]
+    help = f"write `retry: {{on: {on}, max: {numbers[0] if numbers else 3}}}`"
+    return help if named else f"{help}, with the outcomes to try again after"
 
 
 def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
@@ -318,8 +432,10 @@ def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
     because of them. `own` are the outcomes of the state."""
     failures = [name for name in own if is_failure(name)] or ["OUTCOME"]
     required = {"on": f"[{', '.join(failures)}]", "max": "3"}
-    parts = _parts(entry, ("on", "max", "delay"), required, report) or {}
-    on = as_names(parts["on"], report) if "on" in parts else (Word("", entry.key.span),)
+    parts = _parts(entry, ("on", "max", "delay"), required, report, own) or {}
+    on: tuple[Word, ...] = (Word("", entry.key.span),)
+    if "on" in parts and not is_known_wrong(parts["on"]):
+        on = as_names(parts["on"], report)
     most = _tries(parts["max"], report) if "max" in parts else UNKNOWN_TRIES
     delay = duration(parts["delay"], report) if "delay" in parts else 0.0
     return Retry(on=on, most=most, delay=delay or 0.0, span=entry.key.span)
@@ -327,6 +443,8 @@ def _retry(entry: Entry, own: tuple[str, ...], report: Report) -> Retry:
 
 def _tries(tree: Tree, report: Report) -> int:
     """The number of tries; a wrong one is reported."""
+    if is_known_wrong(tree):
+        return UNKNOWN_TRIES  # SM015
     number = tree.value if isinstance(tree, Scalar) and type(tree.value) is int else None
     if number is not None and 1 <= number <= MOST_TRIES:
         return number
@@ -355,6 +473,12 @@ def _for_each(entry: Entry, inputs: tuple[str, ...], report: Report) -> ForEach:
     unknown = Value(data=Expression(text=UNKNOWN, span=value.span), span=value.span)
     name = as_name(parts["item"], report) if "item" in parts else None
     items = as_items(parts["in"], report) if "in" in parts else unknown
+    given_items = parts.get("in")
+    sentence = _SENTENCE.fullmatch(given_items.span.text) if given_items is not None else None
+    if sentence is not None and given_items is not None:
+        message = f"`in` has the list alone: `{sentence[1]} in` is one word too many"
+        help = f"write `in: {sentence[2]}`"
+        report.append(wrong_shape(given_items.span, message, help, arguments=("sentence",)))
     item = name.text if name is not None and len(report) == before else ""
     on = as_names(parts["on"], report) if "on" in parts else ()
     return ForEach(

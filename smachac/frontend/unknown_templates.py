@@ -1,5 +1,5 @@
-"""Templates that were not found: the types that a state means by the names it uses, and one finding
-for all states that name the same template."""
+"""Templates that are missing or were not found: the types that a state means by the names it uses,
+and one finding for all states that name the same template."""
 
 from __future__ import annotations
 
@@ -7,12 +7,18 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import words_of
+from smachac.diagnostics.wording import either, listed
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_not_found
+from smachac.frontend.errors.script import Owner, missing_variable
 from smachac.frontend.fields import pairs_of
+from smachac.frontend.state_fields import TEMPLATE_WORDS
 from smachac.frontend.yaml_tree import Entry
 from smachac.ir.nodes import StateType
+
+CALLED_HERE = "in the sub-script called here"
 
 MOST_TYPES = 200
 """Among more types than these, none is proposed: each has to be read."""
@@ -48,6 +54,37 @@ def types_with_the_names(
     near = [each for each in fitting if words_of(each.name) & common]
     found = tuple(each.name for each in near or fitting)
     return (found, used) if len(found) <= MOST_MEANT else ((), ())
+
+
+def missing_template_help(
+    name: str,
+    entries: Mapping[str, Entry],
+    scripts: Sequence[str],
+    names: Sequence[str],
+    find: Callable[[str], StateType | None],
+) -> str | None:
+    """The help for a state without a template: the sub-script of its name, else the types that have
+    the names that it uses; None if there are neither. `scripts` are the names of sub-scripts."""
+    script = next((each for each in scripts if each.casefold() == name.casefold()), None)
+    if script is not None:
+        return f"add `script: {script}`, or `template: TYPE` if it is no call of that sub-script"
+    types, used = types_with_the_names(entries, "", names, find)
+    if not types:
+        return None
+    several = len(types) > 1
+    has = "these types have" if several else "this type has"
+    return f"add {either(f'template: {each}' for each in types)}: {has} {listed(used)}"
+
+
+def missing_template(
+    state: Word, calls: Sequence[Span], entries: Mapping[str, Entry], help: str | None
+) -> Diagnostic:
+    """SM005 for a state without a template. `calls` are those of sub-scripts that lead to it."""
+    related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
+    owner = Owner(state.text, f"`{state.text}`")
+    others = [entries[key] for key in entries if key in TEMPLATE_WORDS]
+    instead = Word(str(others[0].key.value), others[0].key.span) if others else None
+    return missing_variable(state.span, "template", owner, related, help=help, instead=instead)
 
 
 def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:

@@ -80,7 +80,9 @@ class Uses:
             given = {str(each.key.value) for each in own.value.entries
                      if each.key.span.source is entry.key.span.source}  # fmt: skip
             known = tuple(sorted(used - given))
-            self.found.append(Unused("param", Word(name, entry.key.span), via, known))
+            kept = {str(each.key.value): each.value.span for each in own.value.entries
+                    if each.key.value in known}  # fmt: skip
+            self.found.append(Unused("param", Word(name, entry.key.span), via, known, kept))
             self.anchored[entry.key.span] = [each.span for each in _inside(entry.value)]
 
     def replaced(self, inner: Mapping[str, Entry], call: Mapping[str, Entry]) -> None:

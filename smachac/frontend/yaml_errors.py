@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 from smachac.diagnostics.diagnostic import Diagnostic, Related
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
+from smachac.frontend.schema import LONG, VARIABLES
 
 
 class _Stop(NamedTuple):
@@ -52,7 +53,7 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
         span = Span(source, *wide.span())
         return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
     stop = _stop(source.text, error)
-    readers = (_space, _open_or_stray, _colon, _indentation, _value)
+    readers = (_conflict, _space, _block_text, _open_or_stray, _colon, _indentation, _value)
     faults = (reader(stop) for reader in readers)
     message = ", ".join(part for part in (stop.problem, stop.context) if part)
     unknown = _Fault(message or "this is not YAML", None, stop.at)
@@ -98,6 +99,60 @@ def _stop(text: str, error: Any) -> _Stop:
 
 def _one_line(text: object) -> str:
     return " ".join(str(text).split()) if text else ""
+
+
+CONFLICT = re.compile(r"^(?:<{7}|={7}|>{7}|\|{7})(?=[ \n\r]|\Z)", re.M)
+"""A line that git writes around two versions of a text."""
+
+
+def _conflict(stop: _Stop) -> _Fault | None:
+    """The marks of a merge conflict."""
+    found = CONFLICT.search(stop.text)
+    if found is None:
+        return None
+    message = f"`{found[0]}` is a mark of git: two versions of these lines are in the file"
+    help = "keep one version, and remove the lines with `<<<<<<<`, `=======` and `>>>>>>>`"
+    return _Fault(message, help, *found.span())
+
+
+_BLOCK_TEXT = re.compile(r"([ \t]*(?:- +)*)[^\s#][^#]*: [|>][-+0-9]*[ \t]*$")
+
+
+def lost_of_block_text(text: str, index: int) -> int | None:
+    """The column that a line must have to be a part of the text below `|` or `>` above it; None for
+    a line that has a key, and without such a text."""
+    stop = _Stop(text, "", "", None, 0, index, text[text.rfind("\n", 0, index) + 1 : index])
+    start = index - len(stop.before)
+    line = text[start : _line_end(text, index)].rstrip("\r")
+    if not line.strip() or _KEY_AT_START.match(line) is not None:
+        return None
+    due: int | None = None
+    for _, above in _lines_above(stop, _MOST_TEXT):
+        found = _BLOCK_TEXT.match(above)
+        if found is not None:
+            return due or len(found[1]) + 2
+        if _KEY_AT_START.match(above) is not None:
+            return None
+        due = min(_indent(above), due or 1_000)
+    return None
+
+
+_KEY_AT_START = re.compile(r"[ \t]*(?:- |[\w./-]+:(?:\s|$))")
+_MOST_TEXT = 40
+
+
+def _block_text(stop: _Stop) -> _Fault | None:
+    """A line of a text below `|` that is indented too little."""
+    for index in dict.fromkeys([stop.at, *([] if stop.first is None else [stop.first])]):
+        due = lost_of_block_text(stop.text, index)
+        start = stop.text.rfind("\n", 0, index) + 1
+        line = stop.text[start : _line_end(stop.text, index)].rstrip()
+        if due is None or _indent(line) >= due:
+            continue
+        begin = start + _indent(line)
+        message = "this line is indented too little for the text that begins at `|` or `>` above it"
+        return _Fault(message, f"indent it by {_of_spaces(due)}", begin, start + len(line))
+    return None
 
 
 _SPACES = re.compile(r"[ \t-]*([^\S\x00-\x7f]|[\u200b-\u200d\u2060\ufeff])[^\S\n]*")
@@ -242,8 +297,30 @@ def _colon(stop: _Stop) -> _Fault | None:
         help = f"write a space after the colon in `{no_space.group()}`"
         return _Fault(message, help, stop.at)
     fault = _colon_above(stop) if ": " not in stop.before else None
+    entry = _ENTRIES.fullmatch(_line_of(stop))
+    if entry is not None and fault is None:
+        help = f"put the inner mapping in braces: `{entry[1]}: {{{entry[2]}}}`"
+        if LONG.get(entry[1], entry[1]) not in _MAPPINGS:
+            help = f"put the text with the colon in quotes: `{entry[1]}: '{entry[2]}'`"
+        return _Fault(message, help, stop.at)
     help = "put the text with the colon in quotes, or write an inner mapping on lines of its own"
     return fault or _Fault(message, help, stop.at)
+
+
+_MAPPINGS = frozenset(
+    name for name, row in VARIABLES.items() if row.shape in ("pairs", "map", "keys", "userdata")
+) | {"retry", "for_each", "outcomes"}
+"""The fields whose values are mappings."""
+
+_ENTRIES = re.compile(
+    r"[ -]*([\w.-]+): ([^\s\[{'\"&*|>#][^\[\]{}'\"#]{0,100}:(?: [^\[\]{}'\"#]{1,100})?)"
+)
+"""A line with a key, and another one in the place of its value."""
+
+
+def _line_of(stop: _Stop) -> str:
+    start = stop.at - len(stop.before)
+    return stop.text[start : _line_end(stop.text, start)].rstrip()
 
 
 def spaced(joined: str) -> str:
@@ -396,6 +473,9 @@ _EQUALLY = "indent the items of one list equally, below the key of the list"
 def _indentation(stop: _Stop) -> _Fault | None:
     """A line whose indentation is that of no other."""
     if stop.problem.startswith(("expected <block end>", "sequence entries are not allowed")):
+        first = _first_dash(stop) if stop.text.startswith("- ", stop.at) else None
+        if first is not None:
+            return first
         misindented = _misindented(stop)
         if misindented is not None:
             return misindented
@@ -416,7 +496,11 @@ def _indentation(stop: _Stop) -> _Fault | None:
     if stop.text.startswith("-", stop.at):
         word = _WORD.match(stop.text, stop.at + 1)
         name = f"`- {word[0]}`" if word is not None else "`- ...`"
+        name = f"`- {word[0]}:`" if _STATE.match(stop.text, stop.at) is not None and word else name
         return _Fault("a space is missing after this `-`", f"write {name}", stop.at)
+    state = _lost_dash(stop)
+    if state is not None:
+        return state
     if stop.context == "while parsing a block collection" and "'?'" in stop.problem:
         help = "indent it like the key of the list, or begin it with `- ` as an item"
         return _Fault("a key cannot follow the items of a list", help, stop.at)
@@ -426,6 +510,45 @@ def _indentation(stop: _Stop) -> _Fault | None:
     if like is not None and _WORD.match(stop.text, stop.at) is not None:
         help = f"indent it by {_of_spaces(like[0])}, like `{like[1]}`"
     return _Fault(message, help, stop.at)
+
+
+_STATE = re.compile(r"(-?)([A-Z][\w.-]*):[ \t]*(?:\{.*)?")
+
+
+def _lost_dash(stop: _Stop) -> _Fault | None:
+    """A state that follows the items of a list and has no `- `."""
+    start = stop.at - len(stop.before)
+    line = stop.text[start : _line_end(stop.text, start)].rstrip()
+    found = _STATE.fullmatch(line.strip())
+    if found is None or found[1] or found[2] in VARIABLES:
+        return None
+    like = next((item for item in _open_items(stop) if item.column == _indent(line)), None)
+    if like is None:
+        return None
+    begin = start + _indent(line)
+    message = f"a `- ` is missing before `{found[2]}:`"
+    help = f"write `- {found[2]}:`, like `- {like.name}:`"
+    return _Fault(message, help, begin, begin + len(found[2]) + 1)
+
+
+def _first_dash(stop: _Stop) -> _Fault | None:
+    """The first state of a list, which has no `- ` or no space after it, above a state that has."""
+    for start, line in _lines_above(stop, _MOST_TEXT):
+        found = _STATE.fullmatch(line.strip())
+        indent, column = _indent(line), len(stop.before)
+        if indent < column:
+            return None
+        if found is None or indent not in (column, column + 2):
+            continue
+        begin = start + indent
+        message = f"a `- ` is missing before `{found[2]}:`"
+        if found[1]:
+            message = "a space is missing after this `-`"
+        like = _ITEM.match(stop.text, stop.at - len(stop.before))
+        beside = f", like `- {like[2]}:`" if like is not None else ""
+        help = f"write `- {found[2]}:`{beside}"
+        return _Fault(message, help, begin, begin + len(found[0]))
+    return None
 
 
 def _item(stop: _Stop) -> _Fault:
@@ -470,6 +593,19 @@ def _spaces(stop: _Stop) -> str:
 _NOT_A_START = re.compile(r"found character '(.*)' that cannot start any token")
 _ESCAPE = re.compile(r"found unknown escape character (.*)")
 _QUOTED = "put the value in quotes"
+
+
+def _in_quotes(stop: _Stop, start: int) -> str:
+    """The help for a value that needs quotes, with the value up to the end of its line."""
+    line = stop.text[start : _line_end(stop.text, start)].partition(" #")[0].rstrip()
+    item = re.fullmatch(r"[*+@] *([A-Z]\w*):", line)
+    if item is not None:
+        return f"write `- {item[1]}:`: an item of a list begins with `- `"
+    plain = len(line) <= _LONGEST_VALUE and not set(line) & set("'\"[]{},")
+    return f"put the value in quotes: `'{line}'`" if plain else _QUOTED
+
+
+_LONGEST_VALUE = 60
 _TEXT_BESIDE = re.compile(r"expected (?:chomping|a comment or a line break)")
 
 
@@ -480,7 +616,8 @@ def _value(stop: _Stop) -> _Fault | None:
     if unstarted is not None:
         if unstarted.group(1) == "\\t":
             return _Fault("YAML does not allow a tab in the indentation", _spaces(stop), stop.at)
-        return _Fault(f"a value cannot begin with `{unstarted.group(1)}`", _QUOTED, stop.at)
+        message = f"a value cannot begin with `{unstarted.group(1)}`"
+        return _Fault(message, _in_quotes(stop, stop.at), stop.at)
     if found is not None and found[1] == "," and stop.context == "while parsing a flow node":
         return _Fault(
             "a value is missing before this `,`", "write the value, or remove the `,`", stop.at
@@ -498,7 +635,8 @@ def _value(stop: _Stop) -> _Fault | None:
         return _Fault("a value cannot begin with `,`", _QUOTED, stop.at)
     if stop.context in ("while scanning an alias", "while scanning an anchor"):
         start = stop.at if stop.first is None else stop.first
-        return _Fault(f"a value cannot begin with `{stop.text[start]}`", _QUOTED, start)
+        message = f"a value cannot begin with `{stop.text[start]}`"
+        return _Fault(message, _in_quotes(stop, start), start)
     if stop.problem.startswith("mapping keys are not allowed"):
         return _Fault("`?` is not allowed here", "put text that begins with `?` in quotes", stop.at)
     if _ESCAPE.fullmatch(stop.problem) is not None:

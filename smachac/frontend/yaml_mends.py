@@ -18,7 +18,8 @@ from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
 from smachac.frontend.fields import PRESET_FIELDS
 from smachac.frontend.schema import KEY_FACTS, LONG, OUTCOME_FACTS, VARIABLE_FACTS, VARIABLES
-from smachac.frontend.yaml_errors import SPACE_MISSING
+from smachac.frontend.yaml_errors import CONFLICT, SPACE_MISSING, lost_of_block_text
+from smachac.frontend.yaml_indents import best_move, move_finding, moved_text
 from smachac.frontend.yaml_tree import (
     MOST_REREAD,
     Doubts,
@@ -63,9 +64,12 @@ class _Mend(NamedTuple):
 def parse_mended(source: Source, report: Report) -> Tree | None:
     """As `yaml_tree.parse`; of a text with a lost or wrong sign, the tree without that fault."""
     found: Report = []
-    doubts = Doubts([], [])
+    doubts = Doubts([], [], [])
     tree = parse(source, found, doubts)
-    if not (doubts.stops or doubts.places) or len(source.text) > MOST_REREAD:
+    if not any(doubts) or len(source.text) > MOST_REREAD:
+        report.extend(found)
+        return tree
+    if doubts.stops and CONFLICT.search(source.text) is not None:
         report.extend(found)
         return tree
     text, mends, sure = source.text, Mended(source.text, ()), True
@@ -74,14 +78,18 @@ def parse_mended(source: Source, report: Report) -> Tree | None:
     while len(mends.changes) < MOST_MENDS:
         best = _mend(text, doubts, tried)
         if best is None:
-            break
+            moved = _moved(source, text, mends, doubts, reports)
+            if moved is None:
+                break
+            text, mends, doubts = moved
+            continue
         mend, is_only = best
         sure = sure and is_only
         repaired = mend.apply(text)
         reports.append(_finding(source, mends, text, repaired, mend, bool(doubts.stops)))
         change = (mend.at, len(mend.removed), len(mend.written))
         text, mends = repaired, Mended(repaired, (*mends.changes, change))
-        doubts = Doubts([], [])
+        doubts = Doubts([], [], [])
         parse(Source(source.name, text), [], doubts)
     if not reports:
         report.extend(found)
@@ -90,6 +98,24 @@ def parse_mended(source: Source, report: Report) -> Tree | None:
     if doubts.stops or not sure:
         return None
     return parse(source, report, None, mends)
+
+
+def _moved(
+    source: Source, text: str, mends: Mended, doubts: Doubts, reports: Report
+) -> tuple[str, Mended, Doubts] | None:
+    """The text in which a wrong indentation is corrected, which is reported, the changes up to it,
+    and the doubts that are left; None without one."""
+    for index in (*doubts.stops, *(() if doubts.stops else doubts.steps)):
+        move = best_move(text, index, stops=bool(doubts.stops))
+        if move is None:
+            continue
+        repaired, changed = moved_text(text, move, mends)
+        left = Doubts([], [], [])
+        parse(Source(source.name, repaired), [], left)
+        if not left.stops or (doubts.stops and min(left.stops) > max(doubts.stops) + _BEYOND):
+            reports.append(move_finding(source, mends, move, stops=bool(doubts.stops)))
+            return repaired, changed, left
+    return None
 
 
 def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | None:
@@ -101,6 +127,8 @@ def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | No
     seen: set[_Lines] = set()
     for index in [*doubts.stops, *(() if stops else doubts.places)]:
         lines = _lines(text, index)
+        if stops and lost_of_block_text(text, index) is not None:
+            continue
         if lines.start in tried or lines in seen or lines.end - lines.start > _LONGEST:
             continue
         seen.add(lines)
@@ -119,7 +147,7 @@ def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | No
 
 def _holds(text: str, lines: _Lines, stops: bool) -> bool:
     """Whether a repaired text is YAML up to the end of the repaired lines and some lines more."""
-    doubts = Doubts([], [])
+    doubts = Doubts([], [], [])
     parse(Source("", text), [], doubts)
     if not stops:
         return not doubts.stops
@@ -208,6 +236,8 @@ def _mends(part: str) -> Iterator[_Mend]:
     for found in _NO_SPACE.finditer(plain):
         yield _Mend(found.end(), "", " ")
     for found in _GAP.finditer(plain):
+        if plain.endswith("lambda", 0, found.start()) or " in " in plain:
+            continue  # code without quotes, or a loop in the words of Python
         yield _Mend(found.start(), "", ":")
         yield _Mend(found.start(), "", ",")
 
@@ -231,7 +261,7 @@ def _cost(part: str, text: str) -> float | None:
     """How far lines of a text are from the form of a script; 0 if they have it, None if they are
     not YAML."""
     found: Report = []
-    doubts = Doubts([], [])
+    doubts = Doubts([], [], [])
     tree = parse(Source("", part), found, doubts)
     if tree is None or doubts.stops or found:
         return None

@@ -143,11 +143,13 @@ def _resolve(text: str) -> bool | int | float | str | None:
 
 
 class Doubts(NamedTuple):
-    """The places of a text where a sign is probably missing or wrong, as indexes: `stops` are those
-    that a syntax error names, at `places` the text is YAML with an unusual meaning."""
+    """The places of a text where something is probably missing or wrong, as indexes: `stops` are
+    those that a syntax error names, at `places` the text is YAML with an unusual meaning because of
+    a sign, at `steps` because of an indentation."""
 
     stops: list[int]
     places: list[int]
+    steps: list[int]
 
 
 class Mended(NamedTuple):
@@ -315,6 +317,7 @@ def _build(
                 report.extend(found)
                 if doubts is not None:
                     doubts.places.extend(builder.doubtful)
+                    doubts.steps.extend(builder.misplaced)
                 return next(iter(builder.items), None)
     finally:
         if collecting:
@@ -407,6 +410,7 @@ class _Builder:
         self.nodes = 0
         self.anchors: dict[str, tuple[Tree, int]] = {}
         self.doubtful: list[int] = []
+        self.misplaced: list[int] = []
         self.seen = False
         self.deepest = 0
         self.aliased = 0
@@ -613,11 +617,34 @@ class _Builder:
                     message = f"more than {MAX_DUPLICATES:,} keys are duplicates"
                     self._stop(key.span.start, message, "use each key once", "duplicates")
             entries.append(Entry(key, value))
+        if not flow and entries:
+            self._doubt_steps(entries, first)
         for entry in merged:
             if _identity(entry.key) not in first:
                 first[_identity(entry.key)] = entry.key
                 entries.append(entry)
         return tuple(entries)
+
+    def _doubt_steps(
+        self, entries: list[Entry], names: dict[str | tuple[type, object], Scalar]
+    ) -> None:
+        """Notes a mapping on lines of its own that has keys of a state beside its name, or states
+        without a template."""
+        if "states" in names:
+            if "template" not in names and "name" not in names and "T" not in names:
+                self.misplaced.append(names["states"].start)
+            elif "it" in names:
+                self._doubt_iterator(entries)
+        elif len(entries) > 1 and entries[0].value.__class__ is Map:
+            start = entries[0].key.start
+            if self.source.text[start - 2 : start] == "- ":
+                self.misplaced.append(entries[1].key.start)
+
+    def _doubt_iterator(self, entries: list[Entry]) -> None:
+        """Notes the second state of an Iterator, which has one."""
+        states = next(entry.value for entry in entries if entry.key.value == "states")
+        if isinstance(states, Seq) and len(states.items) > 1:
+            self.misplaced.append(states.items[1].span.start)
 
     def _wrong_key(self, key: Tree, value: Tree) -> Iterator[Entry]:
         """SM004 for a key that is a list or a mapping; the entries that a list of names stands

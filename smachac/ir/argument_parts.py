@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from typing import TypeAlias
 
 from smachac.diagnostics.source import Span, Word
-from smachac.ir.function_facts import ArgumentUses, Comparison, Part, Result
+from smachac.ir.function_facts import ArgumentUses, Comparison, Operand, Part, Result
 
 TESTS = frozenset(["callable", "dir", "getattr", "hasattr", "isinstance", "type", "vars"])
 """Functions that test what an argument is; code with them can be right for several classes."""
@@ -20,6 +20,9 @@ OPERATORS: Mapping[type[ast.cmpop], str] = {
     ast.Is: "is", ast.IsNot: "is not",
 }  # fmt: skip
 """The operators of comparisons with one value, as Python has them."""
+
+OF_NUMBERS = frozenset(["abs", "float", "int", "len", "max", "min", "range", "round", "sum"])
+"""Functions of Python that fail with one argument that is neither a number, a text nor a list."""
 
 Places: TypeAlias = "Callable[[ast.expr], Span]"
 """The span of an expression."""
@@ -31,7 +34,12 @@ def argument_uses(
     """The parts of arguments in some nodes; `names` are the places that read an argument."""
     parts: list[Part] = []
     comparisons: list[Comparison] = []
+    operands: list[Operand] = []
     for node in nodes:
+        for each in _operands(node):
+            found = part_of(each, names, places)
+            if found is not None:
+                operands.append(Operand(found, places(each), ast.unparse(node)))
         match node:
             case ast.Attribute():
                 found = part_of(node, names, places)
@@ -45,7 +53,36 @@ def argument_uses(
                     parts.append(found._replace(steps=steps, name=word))
             case ast.Compare():
                 comparisons += _comparison(node, names, places)
-    return ArgumentUses(tuple(parts), tuple(comparisons))
+    return ArgumentUses(tuple(parts), tuple(comparisons), tuple(operands))
+
+
+def _operands(node: ast.AST) -> list[ast.expr]:
+    """The parts of an operation that have to be numbers, texts or lists. An object of another class
+    makes it fail; `==` is false."""
+    match node:
+        case ast.BinOp(left=left, op=ast.Mod()):
+            return [left]  # a text can contain any object: `"%s" % message`
+        case ast.BinOp(left=left, right=right):
+            return [left, right]
+        case ast.UnaryOp(op=ast.USub() | ast.UAdd() | ast.Invert(), operand=operand):
+            return [operand]
+        case ast.Subscript(value=value):
+            return [value]
+        case ast.Call(func=ast.Name(id=name), args=[only], keywords=[]) if name in OF_NUMBERS:
+            return [only]
+        case ast.Compare(left=left, ops=[operator], comparators=[right]):
+            if isinstance(operator, ast.Lt | ast.LtE | ast.Gt | ast.GtE):
+                return [left, right]
+            if isinstance(operator, ast.In | ast.NotIn):
+                return [right]
+            pairs = ((left, right), (right, left))
+            return [one for one, other in pairs if _is_plain(other)]
+    return []
+
+
+def _is_plain(node: ast.expr) -> bool:
+    """Whether code is a number, a text or a truth value."""
+    return isinstance(node, ast.Constant) and isinstance(node.value, bool | int | float | str)
 
 
 def part_of(node: ast.expr, names: Collection[ast.Name], places: Places) -> Part | None:
@@ -98,16 +135,19 @@ def result_of(node: ast.expr, names: Collection[ast.Name], places: Places) -> Re
     return Result(text, span, "part" if part is not None else "", None, part)
 
 
-def own_names(body: Iterable[ast.stmt], parameters: Iterable[str]) -> list[ast.Name]:
-    """The places in a function with statements that read its parameters. None of a parameter that
-    is set again in it, or whose class or fields it tests; none at all in a `try`."""
+def own_names(
+    body: Iterable[ast.stmt], parameters: Iterable[str], assigned: Collection[str] = ()
+) -> list[ast.Name]:
+    """The places in a function with statements that read its parameters, or variables that it has
+    `assigned` once. None of a parameter that is set again in it, or whose class or fields it tests;
+    none at all in a `try`."""
     nodes = [each for line in body for each in ast.walk(line)]
     lost: set[str] = set()
     caught: set[ast.AST] = set()
     for node in nodes:
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
-                lost.add(name)
+                lost.update({name} - {*assigned})
             case (
                 ast.arg(arg=name) | ast.ExceptHandler(name=str(name)) | ast.alias(asname=str(name))
             ):

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from smachac.diagnostics.source import Span, Word
+from smachac.ir.function_facts import ArgumentUses
+from smachac.ir.message_types import PARTS, DefinitionKind
 
 FaultKind = Literal[
     "no module",
@@ -84,6 +86,7 @@ FaultKind = Literal[
     "too many arguments",
     "missing base argument",
     "shifted arguments",
+    "exchanged arguments",
     "no state class",
     "not called",
     "function not called",
@@ -95,6 +98,10 @@ FaultKind = Literal[
     "lost text",
     "no value",
     "no member",
+    "called early",
+    "other order",
+    "number of values",
+    "no module here",
 ]
 
 ANY = "*"
@@ -173,6 +180,41 @@ class Part(NamedTuple):
     span: Span
 
 
+class MessageRef(NamedTuple):
+    """A type of ROS that code names: `SetBool` of `std_srvs.srv`. `part` is the message of it that
+    is meant: `request`; empty for the type itself."""
+
+    kind: DefinitionKind
+    package: str
+    name: str
+    part: str = ""
+
+    def readings(self) -> tuple[tuple[DefinitionKind, str, str], ...]:
+        """The types and messages that can be meant: in ROS 1 `TidyGoal` of `cell_msgs.msg` is the
+        goal of the action `Tidy`, and `SetBoolRequest` the request of a service."""
+        own = self.part or ("message" if self.kind == "msg" else "")
+        found: list[tuple[DefinitionKind, str, str]] = [
+            (self.kind, f"{self.package}/{self.name}", own)
+        ]
+        kinds: dict[DefinitionKind, DefinitionKind] = {"msg": "action", "srv": "srv"}
+        other = kinds.get(self.kind) if not self.part else None
+        for part in PARTS[other] if other is not None else ():
+            if other is not None and self.name.endswith(part.capitalize()):
+                name = self.name.removesuffix(part.capitalize())
+                found.append((other, f"{self.package}/{name}", part))
+        return tuple(found)
+
+
+class ClassMessages(NamedTuple):
+    """What a class does with types of ROS: those that its modules name, each at its place; for each
+    method the types of its variables, and what it does with them; and the names of the arguments in
+    calls of their classes."""
+
+    named: tuple[tuple[MessageRef, Word], ...] = ()
+    uses: tuple[tuple[tuple[tuple[str, MessageRef], ...], ArgumentUses], ...] = ()
+    calls: tuple[tuple[MessageRef, tuple[Word, ...]], ...] = ()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassFacts:
     """Facts about the class of a state type; declarations of a script are not included.
@@ -200,7 +242,8 @@ class ClassFacts:
     class without an interface to keys that the constants in its constructor do not list. `hooks`
     are the methods of FlexBE's states, such as `on_enter`, that nothing in the class calls.
     `operations` are the comparisons and calculations of `execute` over userdata keys, whose name
-    is `userdata`; `numbers` are the places of written values that are one number.
+    is `userdata`; `numbers` are the places of written values that are one number. `messages` are
+    those of ROS; None if it has none.
     """
 
     name: Word | None = None
@@ -228,6 +271,7 @@ class ClassFacts:
     state_call: StateCall | None = None
     unlisted_reads: tuple[Word, ...] = ()
     unlisted_writes: tuple[Word, ...] = ()
+    messages: ClassMessages | None = None
     hooks: tuple[str, ...] = ()
     operations: tuple[Word, ...] = ()
     userdata: str = ""

@@ -31,6 +31,15 @@ class Comparison(NamedTuple):
     span: Span
 
 
+class Operand(NamedTuple):
+    """A part of an argument, at its place, with which code calculates, which it compares, or of
+    which a function makes a number: `text` is the code of the operation."""
+
+    part: Part
+    span: Span
+    text: str
+
+
 class Result(NamedTuple):
     """A value that a function can return, at its place: `text` is its code.
 
@@ -50,6 +59,7 @@ class ArgumentUses(NamedTuple):
 
     parts: tuple[Part, ...] = ()
     comparisons: tuple[Comparison, ...] = ()
+    operands: tuple[Operand, ...] = ()
 
 
 NO_USES = ArgumentUses()

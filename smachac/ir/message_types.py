@@ -108,10 +108,11 @@ ROS can differ. The messages in their fields are in it, too: `("msg", "geometry_
 
 class Missing(NamedTuple):
     """A type that its package does not have: the names of the types of that kind that the package
-    has, and the kind of its type with this name."""
+    has, the kind of its type with this name, and the common packages that have such a type."""
 
     names: tuple[str, ...]
     other: DefinitionKind | None = None
+    packages: tuple[str, ...] = ()
 
 
 MissingDefinitions: TypeAlias = "Mapping[tuple[DefinitionKind, str], Missing]"

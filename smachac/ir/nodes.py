@@ -111,12 +111,16 @@ class Limits:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Variable:
     """A variable of a state type with its value in the script, and its type and role in the
-    interface."""
+    interface.
+
+    `takes_userdata`: the value is a function whose first argument is the userdata of the state.
+    """
 
     name: str
     value: Value
     type: Type = ANY
     role: VariableRole = field(default="", compare=False, repr=False)
+    takes_userdata: bool = field(default=False, compare=False, repr=False)
     span: Span = field(compare=False, repr=False)
 
 
@@ -374,12 +378,14 @@ ContainerKind = Literal["StateMachine", "Sequence", "Concurrence", "Iterator"]
 
 class Unused(NamedTuple):
     """A declaration of the script that is not used, and the calls of sub-scripts that lead to it.
-    `known` are the params that the state with an unused one uses and does not define."""
+    `known` are the params that the state with an unused one uses and does not define, `kept` the
+    values that a called sub-script has for some of them."""
 
     what: Literal["param", "type"]
     word: Word
     via: tuple[Span, ...] = ()
     known: tuple[str, ...] = ()
+    kept: Mapping[str, Span] = {}
 
 
 DeclarationKind = Literal["interface", "state", "container", "child"]

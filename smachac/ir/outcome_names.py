@@ -36,6 +36,11 @@ GOOD = frozenset(
 PREEMPTED = "preempted"
 """The outcome of a preempted state; without a request to stop it does not occur."""
 
+STOPS = frozenset(
+    [PREEMPTED, "cancel", "canceled", "cancelled", "halted", "interrupted", "stopped"]
+)
+"""Words of SMACH and of other frameworks for the outcome after a request to stop."""
+
 _ENDS, _DIGITS = (*sorted(FAILURES), "out"), "0123456789_-. "
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 

@@ -129,7 +129,7 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "write `{near}`",
     ),
     "no result": (
-        "`{word}` changes a collection and returns None: the variable becomes None",
+        "`{word}` changes a collection and returns None: `{owner}` becomes None",
         "write `{near}`",
     ),
     "no return": (
@@ -159,6 +159,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     "shifted arguments": (
         "the outcomes `{word}` are passed as `{more}` of `__init__` of `{owner}`, and `{file}` as"
         " `outcomes`",
+        "write `{near}`",
+    ),
+    "exchanged arguments": (
+        "`{word}` and `{more}` have changed places in this call of `__init__` of `{owner}`",
         "write `{near}`",
     ),
     "no state class": (
@@ -204,6 +208,23 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     "no member": (
         "`{owner}`{file} has no `{word}`",
         "{more}",
+    ),
+    "called early": (
+        "`{word}` is called here: `{more}` gets its result, None, in place of the function",
+        "write `{near}`",
+    ),
+    "other order": (
+        "`{owner}` returns its results in another order: the code compares `{word}` with values"
+        " that only the {more} result has",
+        "write `{near}`",
+    ),
+    "number of values": (
+        "the text has {more}, but gets {file}",
+        "write one value for each place",
+    ),
+    "no module here": (
+        "`{word}` is a {owner} here, not the module `{word}`: it has no `{more}`",
+        "write `{near}`",
     ),
     "defined twice": (
         "`{word}` is defined twice: only the last definition counts",
@@ -378,6 +399,8 @@ CHECKED_ONLY = frozenset[FaultKind](
         "lost text",
         "no value",
         "no return",
+        "called early",
+        "other order",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -413,6 +436,10 @@ EFFECTS: Mapping[FaultKind, str] = {
     "other answer": "a stop or a time limit counts as `{word}`: a transition for `{near}` is never"
     " taken",
     "no value": "the code raises UnboundLocalError when it runs: the machine stops",
+    "called early": "the function runs at once, and not later",
+    "other order": "the comparison has the same result in every run",
+    "number of values": "the code raises {word} when it runs: the machine stops",
+    "no module here": "the code raises AttributeError when it runs: the machine stops",
     "no member": "the code raises AttributeError when it runs: the machine stops",
     "unused call": "the state ends with the same outcome whatever the call returns",
     "unused outcome": "a transition for this outcome is never taken",
@@ -447,6 +474,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "missing base argument": _RAISED,
     "shifted arguments": "the state does not have the outcomes that it returns: the machine stops"
     " with an error",
+    "exchanged arguments": "the state has other outcomes or keys than its code uses: the machine"
+    " stops with an error",
     "no state class": "the definition of the class raises an error when the program starts",
     "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
     "no parameter": _PASSED,
@@ -495,6 +524,7 @@ WRITTEN = frozenset[FaultKind](
         "no state class",
         "missing base argument",
         "shifted arguments",
+        "exchanged arguments",
         "not called",
         "function not called",
         "no effect",
@@ -506,6 +536,9 @@ WRITTEN = frozenset[FaultKind](
         "other answer",
         "argument order",
         "no quotes",
+        "called early",
+        "other order",
+        "no module here",
     ]
 )
 """Faults whose words contain what was probably meant."""

@@ -475,8 +475,8 @@ def test_the_opposite_of_an_outcome_is_no_suggestion() -> None:
     report = findings(changed(('return "lost"', 'return "not_found"')))
     (item,) = [item for item in report if item.code == "SM309"]
     assert item.finding.help == (
-        "return one of its outcomes: `found`, `lost`, `preempted`, or add `not_found` to the"
-        " outcomes of `FindPart` in its interface and `__init__`"
+        'write `return "lost"`, as no path returns `lost`, or add `not_found` to the outcomes of'
+        " `FindPart` in its interface and `__init__`"
     )
 
 

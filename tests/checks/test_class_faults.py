@@ -204,7 +204,7 @@ def test_an_input_key_in_place_of_the_output_key() -> None:
         ("foun", "did you mean `found`?"),
         (
             "there",
-            "return one of its outcomes: `found`, `nothing`, or add `there` to the outcomes of"
+            'write `"found"`, as no path returns `found`, or add `there` to the outcomes of'
             " `Find` in its interface",
         ),
     ],

@@ -92,7 +92,7 @@ MAPPINGS = [
         "{held: BOTH, slipped: LET_GO}",
         "{held: BOTH slipped: LET_GO}",
         "SM001",
-        "write a `,` before `slipped`, or put text that contains `:` in quotes",
+        "write `transitions: {held: BOTH, slipped: LET_GO}`",
     ),
     ("    it: blocks", "    it: 3", "SM004", "a loop of 3 turns has the items `[0, 1, 2]`"),
     (
@@ -507,7 +507,7 @@ def test_a_sub_script_in_a_folder_that_is_not_searched() -> None:
             "      transitions: {found: GRAB, nothing: aborted}",
             "    transitions: {found: GRAB, nothing: aborted}",
             "transitions",
-            "indent it by 2 spaces more: it is a field of `LOOK`",
+            "indent `transitions` by 6 spaces, like `outcomes`",
         ),
         (
             "  - LET_GO:\n      template: ScriptedState\n      outcomes: [open]\n      trans",
@@ -521,7 +521,8 @@ def test_a_field_that_is_indented_too_little(
     before: str, after: str, place: str, help: str
 ) -> None:
     assert before in PATROL
-    assert reported({"main.yml": PATROL.replace(before, after)}) == [("SM004", place, help)]
+    code = "SM001" if help.startswith("indent") else "SM004"
+    assert reported({"main.yml": PATROL.replace(before, after)}) == [(code, place, help)]
 
 
 @pytest.mark.parametrize(

@@ -242,9 +242,9 @@ CASES = [
     ("SM004", LIMIT, "write it as `20s`", "20 sec", "20s"),
     ("SM017", TYPE, "close the bracket, as in `float<m>`", "float<m", "float<m>"),
     (
-        "SM004",
+        "SM001",
         FIELDS,
-        "indent it by 2 spaces more: it is a field of `PICK`",
+        "indent `transitions` by 6 spaces, like `outcomes`",
         "    transitions: {ok",
         "      transitions: {ok",
     ),

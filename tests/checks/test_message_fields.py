@@ -211,7 +211,7 @@ LAMP = {"cell_msgs/msg/Lamp.msg": "bool on\n", **FILES}
         ("cell_msgs/Tidy", LAMP, ("Tidy", "`cell_msgs/Tidy` is an action, not a service")),
         ("std_msgs/msg/Bool", {}, ("msg/Bool", "`std_msgs/msg/Bool` is a message, not a service")),
         ("std_msgs/Bool", {}, ("Bool", "`std_msgs/Bool` is a message, not a service")),
-        ("std_msgs/Header", {}, None),
+        ("std_msgs/Header", {}, ("Header", "`std_msgs/Header` is a message, not a service")),
         ("cell_msgs/Grasp", LAMP, None),
     ],
 )

@@ -47,9 +47,16 @@ def test_the_only_state_that_no_target_means_is_meant() -> None:
     assert found(root) == ["SM101 sm/A"]
 
 
-def test_what_no_target_means_is_unreachable() -> None:
+def test_a_missing_state_may_lead_anywhere() -> None:
     others = [leaf("B", {"ok": "done"}), leaf("C", {"ok": "done"})]
     root = machine("sm", "done", leaf("A", {"ok": "XYZ"}), *others)
+    assert found(root) == ["SM101 sm/A"]
+    assert str(one(root, "SM101").finding.help).startswith("add the state `XYZ`, or use ")
+
+
+def test_what_no_target_means_is_unreachable() -> None:
+    others = [leaf("B", {"ok": "done"}), leaf("C", {"ok": "done"})]
+    root = machine("sm", "done", leaf("A", {"ok": "xyz"}), *others)
     assert found(root) == ["SM101 sm/A", "SM201 sm/B", "SM201 sm/C"]
 
 

@@ -181,7 +181,7 @@ MISSING = "add `limb: ...` to the `params` of `SHOW`, or of a container around i
         ("{arm: left, speed: 0.3}",
          [("SM015", "arm", "write `limb: left` in place of `arm: left`")]),
         ("{arm: [left], speed: 0.3}", [("SM015", "arm", "write `limb:` in place of `arm:`")]),
-        ("{lim: left, speed: 0.3}", [("SM015", "lim", "did you mean `limb`?")]),
+        ("{lim: left, speed: 0.3}", [("SM015", "lim", "did you mean `limb`? Write `limb: left`")]),
     ],
 )  # fmt: skip
 def test_a_param_that_a_call_does_not_give(params: str, found: list[Row]) -> None:

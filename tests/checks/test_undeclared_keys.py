@@ -106,7 +106,10 @@ def in_script(inputs: str, code: str) -> list[tuple[str, str, str]]:
 
 
 def test_the_only_input_is_read_under_another_name() -> None:
-    help = "its input key `current` is read by nothing: did you mean `current`?"
+    help = (
+        "write `current` in place of `amps`: it is the only input key of `SETUP` that its code does"
+        " not read"
+    )
     assert in_script("current", "ud.amps * 1.1") == [("SM310", "amps", help)]
     assert in_script("current, level", "ud.amps * ud.level") == [("SM310", "amps", help)]
 

@@ -115,7 +115,7 @@ def test_aliases_and_merges() -> None:
         ("a: {b: 1", (1, 4), "this mapping is not closed", "with `}`"),
         ("a: {f: lambda ud: 1}", (1, 17), "`}`, found `:`", "in quotes"),
         ("a: 'left\nb: 2\n", (1, 4), "quote is not closed", "the same quote"),
-        ("- A: b: c\n", (1, 7), "a colon is not allowed here", "on lines of its own"),
+        ("- A: b: c\n", (1, 7), "a colon is not allowed here", "in quotes: `A: 'b: c'`"),
         ("- A:{b: c, d: e}\n", (1, 13), "a colon is not allowed here", "a space after"),
         (
             "a:\n    b: 1\n   c: 2\n",
@@ -147,7 +147,7 @@ def test_aliases_and_merges() -> None:
         ("s:\n  - A: [\n]\n - B: 2\n", (4, 2), "a list item is not allowed", "equally"),
         ("s:\n  - A:\n     - x\n - B: 2\n", (4, 2), "the items of the script by 2", "like `- A:`"),
         ("s:\n  - A: 1\n  B: 2\n", (3, 3), "a key cannot follow the items", "key of the list"),
-        ("s:\n  - A: 1\n  -B: 2\n", (3, 3), "a space is missing after this `-`", "`- B`"),
+        ("s:\n  - A: 1\n  -B: 2\n", (3, 3), "a space is missing after this `-`", "`- B:`"),
         ("a: - b\n", (1, 4), "a list item is not allowed here", "a line of its own"),
         ("a: [- b]\n", (1, 5), "a list in brackets has no `-`", "`[a, b]`"),
         ("a: [1]]\n", (1, 7), "`]` closes no `[`", "write the `[`"),

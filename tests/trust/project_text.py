@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -18,6 +18,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, analyse
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
+from smachac.frontend.yaml_mends import parse_mended
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 
 ROOT = Path(__file__).parents[2]
@@ -124,8 +125,10 @@ def texts(project: Project) -> dict[str, Written]:
 
 
 def analysed(files: Mapping[str, str]) -> Analysis:
-    """What smachac says of a project, with nothing on a disk but the built-in state types."""
-    return analyse(Source(MAIN, files[MAIN]), memory_library(files, BUILT_IN), [])
+    """What smachac says of a project, with nothing on a disk but the built-in state types. As for
+    files on a disk, lost signs and wrong indentations are repaired."""
+    library = replace(memory_library(files, BUILT_IN), parse=parse_mended)
+    return analyse(Source(MAIN, files[MAIN]), library, [])
 
 
 def judged(project: Project) -> Analysis:

@@ -186,8 +186,8 @@ def block(text: str, draw: random.Random) -> tuple[list[str], list[str], list[st
     last = first + 1
     while last < len(rows) and (not rows[last].strip() or indent(rows[last]) > indent(rows[first])):
         last += 1
-    name = NAME.search(rows[first])
-    return rows[:first], rows[first:last], rows[last:], name.group() if name else ""
+    name = STATE.match(rows[first])
+    return rows[:first], rows[first:last], rows[last:], name[1] if name else ""
 
 
 @text_mutation

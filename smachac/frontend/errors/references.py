@@ -348,7 +348,7 @@ def look_up_of_call(
             span=wrong.span,
             message=f"the sub-script `{script.text}` does not read the param `{wrong.text}`",
             arguments=(wrong.text,),
-            help=f"did you mean `{name}`?",
+            help=f"did you mean `{name}`?{_with_value(wrong, name)}",
             effect=effect,
             related=related,
             edits=respelt(wrong, name),
@@ -411,6 +411,12 @@ def short_value(key: Word) -> str | None:
     """The value after a key of YAML, if it is one word or number."""
     found = _SHORT_VALUE.match(key.span.source.text, key.span.end)
     return found[1] if found is not None else None
+
+
+def _with_value(wrong: Word, name: str) -> str:
+    """The end of a help that names the right param of a call, with its value, if that is short."""
+    value = _SHORT_VALUE.match(wrong.span.source.text, wrong.span.end)
+    return f" Write `{name}: {value[1]}`" if value is not None else ""
 
 
 _SHORT_VALUE = re.compile(r":[ ]+([\w.+-]+)[ ]*(?=[,}\n#]|$)")

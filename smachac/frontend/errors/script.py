@@ -171,6 +171,7 @@ def unknown_variable(
     type_name: str | None = None,
     certain: str | None = None,
     fitting: Collection[str] = (),
+    required: str | None = None,
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -206,12 +207,14 @@ def unknown_variable(
         certain = f"`{word.text}` is a variable of `{type_name}`: write `template: {type_name}`"
     elif key is not None:
         certain = f"`{word.text}` is an input key: {key}"
+    lacks = f"nothing reads this name, and `{required}`, which is required, is missing"
     if certain is not None:
         return Finding(
             span=word.span,
             message=f"`{word.text}` is not a {owner.part} of {owner.text}",
             arguments=(word.text, owner.name),
             help=certain,
+            effect=lacks if required else None,
         )
     if anything:
         return Finding(
@@ -222,7 +225,8 @@ def unknown_variable(
             severity=Severity.WARNING,
         )
     foreign = None if sure else FOREIGN.get(word.text)
-    effect = "SMACH or FlexBE has such a field, smachac has not" if foreign else None
+    effect = lacks if required else None
+    effect = "SMACH or FlexBE has such a field, smachac has not" if foreign else effect
     if word.text in ELSEWHERE and not sure:
         effect, foreign = ELSEWHERE[word.text]
     if not (sure or foreign) and owner.part == "variable":

@@ -477,6 +477,20 @@ def _own_variable(found: Diagnostic, type_: StateType) -> Diagnostic:
     return found
 
 
+def _unprinted_variable(found: Diagnostic, leaf: Leaf, type_: StateType) -> Diagnostic:
+    """An undefined name in a template, with the only variable of the state that the template does
+    not use: it is probably meant."""
+    match found.finding.arguments:
+        case ("undefined", name):
+            used, own = type_.used, [each.name for each in leaf.variables]
+            idle = [each for each in own if used is not None and each not in used]
+            if len(idle) == 1 and guesser(own).sure(name) is None:
+                help = f"did you mean `{idle[0]}`? `{leaf.name}` sets it, and the template does not"
+                help += " use it"
+                return replace(found, finding=replace(found.finding, help=help))
+    return found
+
+
 def _own_name(class_name: str, type_: str, module: ModuleParts) -> str:
     """The name of an imported class in the module: where another state type has a class of the same
     name, that of its own state type, or a number is added."""
@@ -514,10 +528,13 @@ def _whole(
     called = _called_first(leaf, used, module)
     callbacks = called.value.data if called is not None else None
     variables["add"] = adding(leaf, inside.node, inside.depth + 1, callbacks)
-    page = module.blocks.page(used.template, variables)
-    module.gather(page, leaf)
-    _headers(page, inside, leaf, module)
-    text = module.code(page, "body", leaf)
+    try:
+        page = module.blocks.page(used.template, variables)
+        module.gather(page, leaf)
+        _headers(page, inside, leaf, module)
+        text = module.code(page, "body", leaf)
+    except BlockError as error:
+        raise BlockError(_unprinted_variable(error.diagnostic, leaf, used.type)) from error
     notes = structure.notes(leaf, inside.depth + 1)
     return f"{notes}\n{_adapted(text, leaf, inside, page) if own else text}"
 

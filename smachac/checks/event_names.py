@@ -1,0 +1,147 @@
+"""The findings on events of properties that name no state of the script, or several (SM703)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from smachac.analysis.context import Context
+from smachac.diagnostics.diagnostic import Finding, did_you_mean
+from smachac.diagnostics.negation import are_opposite
+from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.wording import either, listed
+from smachac.ir.nodes import Data, Leaf
+from smachac.ir.properties import After, AtMost, Atom, Atoms, Before, Form, Never, Property, atoms
+from smachac.ir.script_paths import walk_script
+from smachac.ir.traversal import walk
+
+if TYPE_CHECKING:
+    from smachac.analysis.property_events import NameFault
+
+
+def name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
+    atom = fault.atom
+    if fault.kind == "ambiguous":
+        return Finding(
+            span=atom.span,
+            message=f"`{atom.name}` may be any of {listed(fault.known)}",
+            arguments=("ambiguous", atom.name),
+            help="write more of its path",
+        )
+    if fault.kind == "outcome":
+        outcome = atom.outcome or ""
+        return Finding(
+            span=atom.span,
+            message=f"`{atom.name}` has no outcome `{outcome}`",
+            arguments=("outcome", atom.name, outcome),
+            help=did_you_mean(outcome, fault.known)
+            or f"use one of its outcomes: {listed(fault.known) or 'it has none'}",
+        )
+    what = {"path": "state", "tag": "state with the tag", "type": "state of the type"}
+    subject = what.get(atom.subject, "state with a claim of")
+    known: Sequence[str] = fault.known
+    if atom.subject == "path":  # without the states that a retry or a time limit adds
+        written = [each.plain.rpartition("/")[2] for each in walk_script(context.machine.root)
+                   if not each.added]  # fmt: skip
+        known = [name for name in known if name in written]
+    beside = _beside(given.form, atom) if atom.subject == "path" else ()
+    known = [name for name in known if all(name != each.name for each in beside)]
+    sure = guesser(known).sure(atom.name)
+    edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
+    names = listed(known)
+    return Finding(
+        span=atom.span,
+        message=f"there is no {subject} `{atom.name}`",
+        arguments=("unknown", atom.subject, atom.name),
+        help=_other_subject(atom, context)
+        or did_you_mean(atom.name, known)
+        or _by_words(atom, known)
+        or _of_same_work(beside, known, context)
+        or _unnamed(known, context)
+        or (f"use one of {names}" if names else _nothing_known(atom)),
+        edits=edits,
+    )
+
+
+def _beside(form: Form, atom: Atom) -> Atoms:
+    """The other events, without an outcome, of the list that an event of a property is in."""
+    lists: tuple[Atoms, ...] = ()
+    match form:
+        case Never(after=after, until=until, enter=enter):
+            lists = (after, until, enter)
+        case Before(later=later, earlier=earlier):
+            lists = (later, earlier)
+        case After(first=first, answer=answer, before_claim=claims):
+            lists = (first, answer, claims)
+        case AtMost(event=event):
+            lists = (event,)
+    for each in lists:
+        if any(one is atom for one in each):
+            return tuple(one for one in each if one is not atom and one.outcome == atom.outcome)
+    return ()
+
+
+def _of_same_work(beside: Atoms, known: Sequence[str], context: Context) -> str | None:
+    """The help for an unknown event in a list of states that do the same work: the only other state
+    that does it."""
+    names = [each.name for each in beside if each.subject == "path"]
+    leaves = [node for _, node in context.states if isinstance(node, Leaf)]
+    done = [work(node) for node in leaves
+                   if node.name in names and own_work(context, node)]  # fmt: skip
+    found = {node.name for node in leaves if node.name in known and work(node) in done}
+    if len(found) != 1:
+        return None
+    (name,) = found
+    return f"write `{name}`: it does the same as {either(names)}"
+
+
+def _unnamed(known: Sequence[str], context: Context) -> str | None:
+    """The help for an unknown event: the only state that no property names."""
+    named = {atom.name.rpartition("/")[2] for each in context.machine.properties
+             for atom in atoms(each.form) if atom.subject == "path"}  # fmt: skip
+    left = [name for name in known if name not in named]
+    return f"write `{left[0]}`, the only state that no property names" if len(left) == 1 else None
+
+
+def _by_words(atom: Atom, known: Sequence[str]) -> str | None:
+    """The guess for the path of a state whose first words are the name of one state only."""
+    words = atom.name.split("_")
+    begins = ["_".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
+    meant = [name for name in begins if name in known]
+    fits = atom.subject == "path" and meant and not are_opposite(atom.name, meant[0])
+    return f"did you mean `{meant[0]}`?" if fits else None
+
+
+def _other_subject(atom: Atom, context: Context) -> str | None:
+    """The help for a tag, type or claim that is written without its word."""
+    if atom.subject != "path":
+        return None
+    states = [node for _, node in walk(context.machine.root)]
+    subjects = {
+        "tag": (name for node in states for name in node.tags),
+        "type": (node.type for node in states if isinstance(node, Leaf)),
+        "claim": (name for names in context.claims.values() for name in names),
+    }
+    for subject, names in subjects.items():
+        if atom.name in names:
+            outcome = f":{atom.outcome}" if atom.outcome else ""
+            return f"`{atom.name}` is a {subject}: write `{subject} {atom.name}{outcome}`"
+    return None
+
+
+def _nothing_known(atom: Atom) -> str:
+    return "remove it" if atom.subject == "path" else f"add `{atom.subject}s:` to a state"
+
+
+def own_work(context: Context, leaf: Leaf) -> bool:
+    """Whether a state sets a variable to another value than its default."""
+    type_ = context.machine.state_types.get(leaf.type)
+    known = type_.variables if type_ is not None else {}
+    defaults = {name: each.default.data for name, each in known.items() if each.default}
+    return any(each.value.data != defaults.get(each.name) for each in leaf.variables)
+
+
+def work(leaf: Leaf) -> tuple[str, list[tuple[str, Data]]]:
+    """The type of a state and the values of its variables."""
+    return leaf.type, sorted(((each.name, each.value.data) for each in leaf.variables), key=repr)

@@ -1,0 +1,344 @@
+"""Helps that name the one candidate which is determined, in place of a list of all of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+
+LOOK = """\
+name: sm
+template: Base
+outcomes: [succeeded, aborted, preempted]
+states:
+  - LOOK:
+      template: ScriptedState
+      outcomes: OUTCOMES
+      transitions: {TRANSITIONS}
+  - SAY:
+      template: ScriptedState
+      outcomes: [said]
+      transitions: {said: succeeded}
+"""
+ENDS = "{succeeded: {}, aborted: {failure: true}, preempted: {}}"
+
+
+def look(outcomes: str, transitions: str) -> list[tuple[str, str, str | None]]:
+    script = LOOK.replace("OUTCOMES", outcomes).replace("TRANSITIONS", transitions)
+    return [each for each in reported({"main.yml": script}) if each[0] != "SM203"]
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "transitions", "found"),
+    [
+        # words of other frameworks
+        (ENDS, "succeeded: SAY, aborted: aborted, canceled: preempted",
+         [("canceled", "did you mean `preempted`?")]),
+        (ENDS, "finished: SAY, failed: aborted, cancelled: preempted",
+         [("finished", "did you mean `succeeded`?"), ("failed", "did you mean `aborted`?"),
+          ("cancelled", "did you mean `preempted`?")]),
+        (ENDS, "success: SAY, failure: aborted, preempted: preempted",
+         [("success", "did you mean `succeeded`?"), ("failure", "did you mean `aborted`?")]),
+        ("[succeeded, canceled]", "succeeded: SAY, preempted: aborted",
+         [("preempted", "did you mean `canceled`?")]),
+        # the only outcome without a transition
+        (ENDS, "succeeded: SAY, aborted: aborted, rejected: preempted",
+         [("rejected", "write `preempted: preempted`: `preempted` is its only outcome without a"
+           " transition")]),
+        # no outcome is left
+        ("[found, lost]", "found: SAY, lost: aborted, preempted: preempted",
+         [("preempted", "remove this transition: its outcomes `found` and `lost` have one")]),
+        # outcomes that a field adds
+        (ENDS, "succeeded: SAY, aborted: aborted, preempted: preempted, timeout: aborted",
+         [("timeout", "a state has the outcome `timeout` only with the field `timeout`: write"
+           " `timeout: SECONDS` in `LOOK`, or remove this transition")]),
+        (ENDS, "succeeded: SAY, aborted: aborted, preempted: preempted, exhausted: aborted",
+         [("exhausted", "a state has the outcome `exhausted` only with the field `retry`: write"
+           " `retry: {on: [aborted], max: 3}` in `LOOK`, or remove this transition")]),
+        # a failure is not the outcome after a stop
+        (ENDS, "succeeded: SAY, aborted: aborted, failed: aborted",
+         [("failed", "use one of its outcomes: `aborted`, `preempted`, `succeeded`")]),
+    ],
+)  # fmt: skip
+def test_an_unknown_outcome(outcomes: str, transitions: str, found: list[tuple[str, str]]) -> None:
+    assert look(outcomes, transitions) == [("SM102", *each) for each in found]
+
+
+RETRY = """\
+name: sm
+template: Base
+outcomes: [succeeded, aborted]
+states:
+  - GRIP:
+      template: ScriptedState
+      outcomes: [held, slipped]
+      retry: {RETRY}
+      transitions: {held: succeeded, exhausted: aborted, preempted: aborted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("retry", "found"),
+    [
+        ("on: [slipped, timeout], max: 3",
+         ("SM004", "timeout", "a state has the outcome `timeout` only with the field `timeout`: add"
+          " `timeout: SECONDS`, or write `on: [slipped]`")),
+        ("on: [timeout], max: 3",
+         ("SM004", "timeout", "a state has the outcome `timeout` only with the field `timeout`: add"
+          " `timeout: SECONDS`, or write `on: [slipped]`")),
+        ("on: [slipped, exhausted], max: 3",
+         ("SM004", "exhausted", "the state ends with `exhausted` after the last try: write"
+          " `on: [slipped]`")),
+        ("on: [slipped, preempted], max: 3",
+         ("SM004", "preempted", "write `on: [slipped]`: a state that a stop request ends does not"
+          " run again")),
+        ("on: [slipped], times: 3", ("SM003", "times", "did you mean `max`?")),
+    ],
+)  # fmt: skip
+def test_the_parts_of_a_retry(retry: str, found: tuple[str, str, str]) -> None:
+    assert reported({"main.yml": RETRY.replace("RETRY", retry)}) == [found]
+
+
+EACH = """\
+name: sm
+template: Base
+outcomes: [succeeded, aborted]
+userdata: {parts: [a, b]}
+states:
+  - KIT:
+      template: ScriptedState
+      outcomes: {placed: {}, missed: {failure: true}}
+      input_keys: [part]
+      for_each: {item: part, in: parts, on: [placed]}
+      transitions: {placed: succeeded, missed: aborted, preempted: aborted}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ("item: part, in: parts", "item: parts, in: part",
+         [("SM301", "parts",
+           "swap them: write `for_each: {item: part, in: parts, on: [placed]}`")]),
+        ("on: [placed]", "on: [succeeded]",
+         [("SM004", "succeeded", "write `placed` in place of `succeeded`")]),
+        ("missed: aborted", "missed: continue",
+         [("SM101", "continue", "write `on: [placed, missed]` in `for_each`, and remove this"
+           " transition: the loop continues after the outcomes in `on`")]),
+        ("missed: aborted", "missed: break",
+         [("SM101", "break", "write `missed: TARGET` with one of `aborted`, `succeeded`: the loop"
+           " ends after each outcome that is not in `on`")]),
+        ("placed: succeeded", "placed: next",
+         [("SM101", "next", "write `placed: succeeded`: the loop continues by itself after"
+           " `placed`, and this transition is taken after the last item")]),
+    ],
+)  # fmt: skip
+def test_a_loop(old: str, new: str, found: list[tuple[str, str, str]]) -> None:
+    assert reported({"main.yml": EACH}) == []
+    assert reported({"main.yml": EACH.replace(old, new)}) == found
+
+
+ITERATOR = """\
+name: sm
+template: Base
+outcomes: [succeeded, aborted]
+userdata: {seams: [a, b]}
+states:
+  - ALL:
+      template: Iterator
+      outcomes: [done, camera_failed]
+      input_keys: [seams]
+      it: seams
+      it_label: seam
+      exhausted_outcome: done
+      loop_outcomes: [next]
+      final_outcome_map: {next: camera_failed}
+      transitions: {done: succeeded, camera_failed: aborted}
+      states:
+        - ONE:
+            template: ScriptedState
+            input_keys: [seam]
+            outcomes: {next: {}, camera_failed: {failure: true}}
+"""
+
+
+@pytest.mark.parametrize("word", ["succeeded", "done", "continue"])
+def test_the_outcome_that_continues_an_iterator(word: str) -> None:
+    text = ITERATOR.replace("loop_outcomes: [next]", f"loop_outcomes: [{word}]")
+    help = f"write `next` in place of `{word}`"
+    assert reported({"main.yml": text}) == [("SM102", word, help)]
+
+
+MAP = """\
+name: sm
+template: Base
+outcomes: [polished, failed]
+states:
+  - G:
+      template: Concurrence
+      outcomes: [polished, hot, pressed, failed]
+      default_outcome: failed
+      join: any
+      outcome_map: {RULES}
+      transitions: {polished: polished, hot: failed, pressed: failed, failed: failed}
+      states:
+        - POLISH: {template: ScriptedState, outcomes: [done, slipped, preempted]}
+        - DOOR: {template: ScriptedState, outcomes: [invalid, valid, preempted]}
+        - FORCE: {template: ScriptedState, outcomes: [invalid, valid, preempted]}
+"""
+HOT, PRESSED = "hot: {DOOR: invalid}", "pressed: {FORCE: invalid}"
+
+
+@pytest.mark.parametrize(
+    ("rules", "found"),
+    [
+        (f"polished: {{done: POLISH}}, {HOT}, {PRESSED}",
+         ("SM403", "done", "the state comes first: write `polished: {POLISH: done}`")),
+        ("polished: {done: POLISH}, hot: {invalid: DOOR}, pressed: {invalid: FORCE}",
+         ("SM403", "done", "the state comes first: write `polished: {POLISH: done}, hot: {DOOR:"
+          " invalid}, pressed: {FORCE: invalid}`")),
+        (f"POLISH: {{polished: done}}, {HOT}, {PRESSED}",
+         ("SM103", "POLISH", "the outcome comes first: `outcome_map: {polished: {POLISH: done}}`")),
+        (f"POLISH: {{done: polished}}, {HOT}, {PRESSED}",
+         ("SM103", "POLISH", "the outcome comes first: `outcome_map: {polished: {POLISH: done}}`")),
+        (f"polished: {{POLISH: done}}, {HOT}, pressed: {{DOOR: invalid}}",
+         ("SM402", "pressed", "no rule is about `FORCE: invalid`: write it in one of the two rules,"
+          " as in `pressed: {FORCE: invalid}`")),
+    ],
+)  # fmt: skip
+def test_a_rule_of_an_outcome_map(rules: str, found: tuple[str, str, str]) -> None:
+    right = f"polished: {{POLISH: done}}, {HOT}, {PRESSED}"
+    assert reported({"main.yml": MAP.replace("RULES", right)}) == []
+    assert reported({"main.yml": MAP.replace("RULES", rules)}) == [found]
+
+
+BRANCH = """\
+name: sm
+template: Base
+outcomes: [both, failed]
+states:
+  - G:
+      template: Concurrence
+      outcomes: [both, failed]
+      default_outcome: failed
+      transitions: {both: both, failed: failed}
+      states:
+        - LEFT:
+            template: ScriptedState
+            outcomes: [done, slipped]
+        - RIGHT:
+            template: ScriptedState
+            outcomes: [done, slipped]
+            outcome_map:
+              both: {LEFT: done, RIGHT: done}
+"""
+
+
+def test_an_outcome_map_in_a_branch() -> None:
+    help = "write `outcome_map` 6 columns further left, beside its `states`"
+    assert reported({"main.yml": BRANCH}) == [("SM004", "outcome_map", help)]
+
+
+RACK = """\
+name: rack_round
+template: Base
+outcomes: [docked, stranded]
+states:
+  - TO_RACK:
+      template: ScriptedState
+      outcomes: [succeeded, aborted]
+      transitions: {succeeded: DOCK, aborted: CLEAR}
+  - COUNT:
+      template: ScriptedState
+      outcomes: [counted]
+      transitions: {counted: ENOUGH}
+  - ENOUGH:
+      template: ScriptedState
+      outcomes: [give_up, again]
+      transitions: {give_up: stranded, again: CLEAR}
+  - CLEAR:
+      template: ScriptedState
+      outcomes: [done, aborted]
+      transitions: {done: TO_RACK, aborted: stranded}
+  - DOCK:
+      template: ScriptedState
+      outcomes: [done]
+      transitions: {done: docked}
+"""
+CUT_OFF = RACK.index("  - COUNT"), RACK.index("  - CLEAR")
+
+
+@pytest.mark.parametrize(
+    "text", [RACK, RACK[: CUT_OFF[0]] + RACK[CUT_OFF[1] :] + RACK[CUT_OFF[0] : CUT_OFF[1]]]
+)
+def test_states_that_a_failure_leads_past(text: str) -> None:
+    help = (
+        "write `aborted: COUNT` in `TO_RACK`, or remove `COUNT` and `ENOUGH` if their work is not"
+        " needed"
+    )
+    assert reported({"main.yml": text}) == [("SM201", "COUNT", help)]
+
+
+LAMP = """\
+name: scan
+template: Base
+outcomes: [succeeded, aborted]
+properties:
+  - after: {LIGHT_ON: [LIGHT_OFF, LIGHT_OFF_GOOD]}
+states:
+  - LIGHT_ON: {template: Lamp, level: 0.8, transitions: {done: READ}}
+  - READ:
+      template: ScriptedState
+      outcomes: [done, aborted]
+      transitions: {done: SHOW, aborted: LIGHT_OFF}
+  - SHOW: {template: ScriptedState, outcomes: [done], transitions: {done: LIGHT_OFF_GOOD}}
+  - LIGHT_OFF_GOOD: {template: Lamp, level: 0.1, transitions: {done: succeeded}}
+  - LIGHT_OFF: {template: Lamp, level: 0.1, transitions: {done: aborted}}
+"""
+TYPE = {
+    "templates/Lamp.yml": "name: Lamp\nvariables: {level: float}\noutcomes: {done: {}}\n",
+    "templates/Lamp.tpl.py": """\
+{% block class_defs %}
+class Lamp(smach.State):
+    def __init__(self, level):
+        smach.State.__init__(self, outcomes=["done"])
+        self.level = level
+
+    def execute(self, userdata):
+        print(self.level)
+        return "done"
+{% endblock %}
+""",
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "word", "help"),
+    [
+        ("done: LIGHT_OFF_GOOD", "done: succeeded", "SM701", "succeeded",
+         "write `done: LIGHT_OFF_GOOD` in `SHOW`, or correct the property if this path is right"),
+        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LAMP_DARK]", "SM703", "LAMP_DARK",
+         "write `LIGHT_OFF_GOOD`: it does the same as `LIGHT_OFF`"),
+        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LIGHT_OFF_OK]", "SM703", "LIGHT_OFF_OK",
+         "did you mean `LIGHT_OFF_GOOD`?"),
+    ],
+)  # fmt: skip
+def test_the_state_that_a_property_requires(
+    old: str, new: str, code: str, word: str, help: str
+) -> None:
+    assert reported({"main.yml": LAMP, **TYPE}) == []
+    ((found, text, lines),) = reported({"main.yml": LAMP.replace(old, new, 1), **TYPE})
+    assert lines is not None
+    assert (found, text, lines.splitlines()[0]) == (code, word, help)
+
+
+def test_a_property_behind_a_wrong_transition_is_no_second_finding() -> None:
+    retried = LAMP.replace("outcomes: [done, aborted]", "outcomes: [done, slipped, aborted]")
+    retried = retried.replace(
+        "transitions: {done: SHOW, aborted: LIGHT_OFF}",
+        "retry: {on: [slipped], max: 2}\n"
+        "      transitions: {done: SHOW, aborted: LIGHT_OFF, slipped: LIGHT_OFF,"
+        " preempted: LIGHT_OFF}",
+    ).replace("outcomes: [succeeded, aborted]", "outcomes: [succeeded, aborted, exhausted]", 1)
+    found = reported({"main.yml": retried, **TYPE})
+    assert [(code, text) for code, text, _ in found if code != "SM203"] == [("SM102", "slipped")]
