@@ -94,7 +94,7 @@ def meant_by_types(context: Context) -> set[tuple[str, str]]:
         scope = missing.scope
         reader = reader_at(scope, missing.vertices[0], missing.key)
         wanted = context.types.inputs.get((reader.path, reader.key), ANY)
-        known = sorted({key for path, key in context.types.keys if path == scope.path})
+        known = sorted({*scope.held, *scope.inputs} - {missing.key})
         if unread_output(scope, missing.key) is None and guesser(known)(missing.key) is None:
             keys = fitting_keys(context.types, scope, reader, wanted)
             found.update((scope.path, key) for key in keys if len(keys) == 1)

@@ -196,8 +196,8 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= meant_by_empty_remaps(context)
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
-    found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302
     found |= meant_by_types(context)  # SM301
+    found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302
     return found | keys_of_misplaced(context.misplaced)  # SM101
 
 
@@ -513,8 +513,8 @@ def _unused_word(unused: Unused, root: str) -> Finding:
     what, word, via, known, kept = unused
     outside = (call for call in via if call.source is not word.span.source)
     meant = _param_meant(word.text, known)
-    help = did_you_mean(meant)
-    if meant is None and known:
+    help = _turned_param_help(word, known) or did_you_mean(meant)
+    if help is None and known:
         help = f"the params that are used here are {listed(known)}"
         if len(known) == 1:
             meant = known[0]

@@ -162,19 +162,19 @@ def _has_unknown(base: State) -> bool:
     return False
 
 
+def _has_unknown_atom(script: Script) -> bool:
+    """Whether a property of the script names a state that does not exist."""
+    parts = {name for each in script.properties for atom in atoms(each.form)
+             if atom.subject == "path" for name in atom.name.split("/")}  # fmt: skip
+    return bool(parts) and not parts <= {state.name.text for _, state in _walk(script.base)}
+
+
 def _misspells_implied(state: State, ends: set[str]) -> bool:
     """Whether an outcome in the list of a state that its transitions do not use is like one that it
     has without its list."""
     listed = {each.name for each in state.outcomes}
     unused = listed.difference(word.text for word in _own_words(state))
     return bool(unused) and any(guesser(ends - listed).sure(name) for name in unused)
-
-
-def _has_unknown_atom(script: Script) -> bool:
-    """Whether a property of the script names a state that does not exist."""
-    parts = {name for each in script.properties for atom in atoms(each.form)
-             if atom.subject == "path" for name in atom.name.split("/")}  # fmt: skip
-    return bool(parts) and not parts <= {state.name.text for _, state in _walk(script.base)}
 
 
 def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:

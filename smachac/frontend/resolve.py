@@ -63,10 +63,7 @@ from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import TIMER, Script, State, Sugar, no_states, unknown_state
 from smachac.frontend.script_functions import functions_of
 from smachac.frontend.state_fields import (
-    FIELDS_OF_STATES,
-    TEMPLATE_WORDS,
     Entries,
-    accepts,
     another_state,
     has_unknown_outcomes,
     has_wrong_transitions,
@@ -89,6 +86,7 @@ from smachac.frontend.sub_scripts import (
 )
 from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
 from smachac.frontend.unknown_templates import (
+    meant_template,
     missing_template,
     missing_template_help,
     one_for_each_template,
@@ -625,30 +623,13 @@ class _Resolver:
             self.others[name] = find_state_type(name, self.library, [])
         return self.found_types.get(name) or self.others[name]
 
-    def meant_template(self, entries: Entries) -> Entry | None:
-        """The field with another name that is meant for `template`, if it names a type that does
-        not have the field: then the name is reported as unknown."""
-        sure = guesser_of(FIELDS_OF_STATES).sure
-        for key, entry in entries.items():
-            if key in schema.VARIABLES or not (key in TEMPLATE_WORDS or sure(key) == "template"):
-                continue
-            word = name_of(entry.value)
-            if word is None or not word.text:
-                continue
-            if word.text in schema.CONTAINERS:
-                return entry
-            found = self.state_type(word.text)
-            if found is not None and not found.open and not accepts(found, key):
-                return entry
-        return None
-
     def type_of(
         self, name: Word, entries: Entries, role: Literal["", "base"], around: _Environment
     ) -> tuple[StateType, FieldOwner]:
         """The state type of a state, and its owner in the schema."""
         entry = entries.get("template")
         if entry is None and role != "base":
-            entry = self.meant_template(entries)
+            entry = meant_template(entries, self.state_type)
         word = as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)

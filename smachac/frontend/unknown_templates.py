@@ -8,13 +8,13 @@ from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import words_of
+from smachac.diagnostics.spelling import guesser_of, words_of
 from smachac.diagnostics.wording import either, listed
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_not_found
 from smachac.frontend.errors.script import Owner, missing_variable
-from smachac.frontend.fields import pairs_of
-from smachac.frontend.state_fields import TEMPLATE_WORDS
+from smachac.frontend.fields import name_of, pairs_of
+from smachac.frontend.state_fields import FIELDS_OF_STATES, TEMPLATE_WORDS, accepts
 from smachac.frontend.yaml_tree import Entry
 from smachac.ir.nodes import StateType
 
@@ -54,6 +54,26 @@ def types_with_the_names(
     near = [each for each in fitting if words_of(each.name) & common]
     found = tuple(each.name for each in near or fitting)
     return (found, used) if len(found) <= MOST_MEANT else ((), ())
+
+
+def meant_template(
+    entries: Mapping[str, Entry], find: Callable[[str], StateType | None]
+) -> Entry | None:
+    """The field with another name that is meant for `template`, if it names a type that does not
+    have the field: then the name is reported as unknown."""
+    sure = guesser_of(FIELDS_OF_STATES).sure
+    for key, entry in entries.items():
+        if key in schema.VARIABLES or not (key in TEMPLATE_WORDS or sure(key) == "template"):
+            continue
+        word = name_of(entry.value)
+        if word is None or not word.text:
+            continue
+        if word.text in schema.CONTAINERS:
+            return entry
+        found = find(word.text)
+        if found is not None and not found.open and not accepts(found, key):
+            return entry
+    return None
 
 
 def missing_template_help(

@@ -172,3 +172,27 @@ def test_a_count_for_the_loop_alone() -> None:
         "done: JUDGE", "done: good"
     )
     assert [row[0] for row in reported({"main.yml": text})] == ["SM203"]
+
+
+LABEL = """\
+name: sm
+template: Base
+outcomes: [ok]
+states:
+  - LOCATE:
+      template: CallbacksState
+      output_keys: [label]
+      callbacks: {label: 'lambda ud: "bolt"'}
+      transitions: {succeeded: LOG}
+  - LOG: {template: Log, REMAPPINGtransitions: {logged: ok}}
+"""
+LOG = "name: Log\ninput_keys: {name: str}\noutcomes: {logged: {}}\n"
+
+
+def test_an_unread_key_of_the_type_of_one_that_nothing_sets() -> None:
+    files = {"main.yml": LABEL.replace("REMAPPING", ""), "templates/Log.yml": LOG}
+    help = "write `remapping: {name: label}` in `LOG`, if it must read `label`"
+    errors = [row for row in reported(files) if row[0] in ("SM301", "SM305")]
+    assert errors == [("SM301", "LOG", f"{help}: both are of the type `str`")]
+    files["main.yml"] = LABEL.replace("REMAPPING", "remapping: {name: label}, ")
+    assert [row for row in reported(files) if row[0] in ("SM301", "SM305")] == []

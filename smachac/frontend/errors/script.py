@@ -170,8 +170,8 @@ def unknown_variable(
     key: str | None = None,
     type_name: str | None = None,
     certain: str | None = None,
-    fitting: Collection[str] = (),
     required: str | None = None,
+    fitting: Collection[str] = (),
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
