@@ -520,7 +520,6 @@ def _unused_word(unused: Unused, root: str) -> Finding:
             meant = known[0]
             help = f"write `{meant}`, the param that is used here"
     effect = "its value has no effect" if what == "param" else None
-    help = _turned_param_help(word, known) or help
     default = kept.get(meant or "")
     if default is not None and "\n" not in default.text and len(default.text) <= MOST_SHOWN:
         effect = f"its value has no effect: the sub-script keeps `{meant}: {default.text}`"
