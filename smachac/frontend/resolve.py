@@ -79,9 +79,7 @@ from smachac.frontend.state_fields import (
 from smachac.frontend.state_types import find_state_type
 from smachac.frontend.sub_scripts import (
     SUB_SCRIPT_HELP,
-    one_for_all_calls,
-    one_for_all_lacking,
-    one_for_all_look_ups,
+    one_for_each_param,
     overridden,
     params_at_call,
     params_beside_call,
@@ -215,9 +213,7 @@ class _Resolver:
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
         if self.report:
-            lacking = one_for_all_lacking(one_for_all_calls(self.report), "params" in entries)
-            self.report[:] = one_for_all_look_ups(lacking)
-        self.report[:] = one_for_each_template(self.report)
+            self.report[:] = one_for_each_template(one_for_each_param(self.report, entries))
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else robot_of(base, source, self.library, self.report)

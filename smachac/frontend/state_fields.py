@@ -477,10 +477,12 @@ def _example(variable: VariableType) -> str:
     high = limits.most if math.isfinite(limits.most) else low + 2
     middle = low / 2 + high / 2
     shown = str(round(middle)) if variable.type.name == "int" else f"{middle:.4g}"
+    if "e" in shown:
+        return "..."
     if variable.type.name == "float" and "." not in shown:
         shown += ".0"
     inside = low < float(shown) < high or (float(shown) in (low, high) and not limits.exclusive)
-    return shown if inside and "e" not in shown else "..."
+    return shown if inside else "..."
 
 
 def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:

@@ -154,6 +154,13 @@ def params_at_call(
     return kept
 
 
+def one_for_each_param(found: Sequence[Diagnostic], entries: Collection[str]) -> Report:
+    """The findings, with one for all calls and look-ups that lack a param for the same reason.
+    `entries` are the fields of the script."""
+    lacking = one_for_all_lacking(one_for_all_calls(found), "params" in entries)
+    return one_for_all_look_ups(lacking)
+
+
 def one_for_all_calls(found: Sequence[Diagnostic]) -> Report:
     """The findings, with one finding at a look-up in a sub-script in place of those at its calls,
     if several calls give the param under the same other name."""
