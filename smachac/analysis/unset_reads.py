@@ -15,6 +15,7 @@ from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Node
+from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import outcome_names, remapping
 
 MOST_LEVELS = 50
@@ -290,4 +291,5 @@ def reader_at(scope: UserdataScope, vertex: Vertex, key: str) -> Reader:
     if own is not None and own.name != key:
         called = f"`{own.name}` (`{key}` in {container_name(scope, span)})"
     name = key if own is None else own.name
-    return Reader(f"{scope.path}/{vertex}", node, name, span, f"`{node.name}` reads {called}")
+    words = f"`{name_in_script(node)}` reads {called}"
+    return Reader(f"{scope.path}/{vertex}", node, name, span, words)

@@ -11,6 +11,7 @@ from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit,
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Struct
+from smachac.ir.types import ANY
 
 
 def missing_fields(clash: Clash) -> list[str]:
@@ -72,9 +73,10 @@ def swapped_fields_help(clash: Clash) -> str | None:
         return None
     steps = steps_to_misfit(value, clash.cell.declared)
     whole = part_at(value, steps[:-1]) if steps else None
-    types = fields(type_at(clash.cell.declared, steps[:-1])) if steps else {}
-    if not isinstance(whole, Struct):
+    type_ = type_at(clash.cell.declared, steps[:-1]) if steps else ANY
+    if not isinstance(whole, Struct) or type_.name != "record":
         return None
+    types = fields(type_)
     given = {name: type_of_data(data) for name, data in whole.entries if name in types}
     wrong = [name for name, type_ in given.items() if misfit(type_, types[name]) is not None]
     if len(wrong) != 2:

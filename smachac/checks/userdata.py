@@ -523,7 +523,8 @@ def lost_output(context: Context) -> Iterator[Finding]:
         shown.add((written, lost.own))
         inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
         gets = "an unset key" if lost.is_missing else "an older value"
-        wrong, reader = lost.misspelt, lost.reader.node.name
+        wrong, reader = lost.misspelt, name_in_script(lost.reader.node)
+        writer = name_in_script(lost.writer)
         itself = reader == keeper.name
         happens = "it is lost at the end of each run" if itself else f"`{reader}` reads {gets}"
         effect = f"`{reader}` works with a value that was set before"
@@ -538,16 +539,11 @@ def lost_output(context: Context) -> Iterator[Finding]:
         fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
             span=wrong.span if wrong is not None else place,
-            message=f"{inner}, set by `{lost.writer.name}`, is not an output of"
-            f" `{keeper.name}`: {happens}",
+            message=f"{inner}, set by `{writer}`, is not an output of `{keeper.name}`: {happens}",
             arguments=(lost.own,),
             help=fix or _output_help(lost.own, keeper, written if called else None),
             related=(
-                *(
-                    other_place(written, f"`{lost.writer.name}` sets it here")
-                    if place != written
-                    else ()
-                ),
+                *(other_place(written, f"`{writer}` sets it here") if place != written else ()),
                 *other_place(lost.reader.span, lost.reader.words),
                 *_list_of(keeper, keeper.outputs, "output_keys"),
                 *calls(keeper, keeper.span),

@@ -44,7 +44,7 @@ def test_a_right_loop() -> None:
         ("for_each: {item: wp}", "SM005", "for_each", "add `in: KEY`"),
         ("for_each: {var: wp, in: waypoints}", "SM003", "var", "did you mean `item`?"),
         ("for_each: {item: [wp], in: waypoints}", "SM004", "[wp]",
-         "write one name, such as `READY`"),
+         "write `wp` without brackets"),
         ("for_each: {item: wp, in: 3}", "SM004", "3",
          "a loop of 3 turns has the items `[0, 1, 2]`"),
         ("claims: []", "SM301", "wp",
