@@ -80,7 +80,7 @@ def meant_keys(context: Context) -> dict[str, MeantKey]:
 
 def _has_items_of(data: Data, name: str, key: str, wanted: Type) -> bool:
     """Whether a value is a list whose items a key is probably meant for: `parts` for `part`, or
-    items of the type of the key that are no numbers."""
+    items that are no numbers and can have the type of the key."""
     if not isinstance(data, tuple) or not data:
         return False
     words = [word for word in name.split("_") if len(word) >= SHORTEST_WORD]
@@ -88,8 +88,9 @@ def _has_items_of(data: Data, name: str, key: str, wanted: Type) -> bool:
     if any(one.startswith(other) or other.startswith(one) for one in words for other in others):
         return True
     item = type_of_data(data[0])
-    unknown = ANY in (item, wanted) or item.name in ("int", "float")
-    return not unknown and misfit(item, wanted) is None
+    if item.name in ("int", "float"):
+        return False
+    return ANY in (item, wanted) or misfit(item, wanted) is None
 
 
 class Misnamed(NamedTuple):
