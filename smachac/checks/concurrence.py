@@ -32,7 +32,7 @@ from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Condition, Leaf, Node, OutcomeRule
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
 
@@ -167,7 +167,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 continue
             else:
                 message = f"`{child.name}` has no outcome `{condition.outcome}`"
-                help = _other_outcome(child, condition.outcome)
+                help = _other_outcome(container, child, condition.outcome)
                 span = place_of_value(span, condition.outcome)
             related = calls(container, span)
             yield Finding(
@@ -209,11 +209,33 @@ def _example(container: Concurrence) -> str:
     return "STATE: OUTCOME"
 
 
-def _other_outcome(child: Node, outcome: str) -> str:
+def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
+    """The help for an outcome in a rule that its state does not have."""
     names = outcome_names(child)
     known = f"use one of its outcomes: {listed(names)}" if names else "it has no outcomes"
-    meant = guesser(names)(outcome) or outcome_of_one_meaning(child, outcome)
-    return did_you_mean(meant) or ends_of(child) or known
+    meant = guesser(names).sure(outcome) or outcome_of_one_meaning(child, outcome)
+    alike = [each.name for each in container.children
+             if each is not child and each.type == child.type]  # fmt: skip
+    others = {part.outcome: part.child for rule in container.rules for part in rule.when
+              if part.child in alike and part.outcome in names}  # fmt: skip
+    if meant is None and len(others) == 1:
+        ((name, other),) = others.items()
+        return f"write `{child.name}: {name}`, as in the rule for `{other}`"
+    meant = meant or guesser(names)(outcome)
+    return did_you_mean(meant) or ends_of(child) or _ends_of_monitor(child, outcome) or known
+
+
+def _ends_of_monitor(child: Node, outcome: str) -> str | None:
+    """The help for an unknown outcome of a MonitorState."""
+    if not isinstance(child, Leaf) or child.built_in != "MonitorState":
+        return None
+    ends = "a MonitorState ends with"
+    if is_failure(outcome):
+        return f"write `{child.name}: invalid`: {ends} `invalid` when its condition is false"
+    return (
+        f"{ends} `invalid` when its condition is false, with `valid` after `max_checks` messages,"
+        " and with `preempted`"
+    )
 
 
 def _shadowed_rules(each: Judged) -> Iterator[Finding]:

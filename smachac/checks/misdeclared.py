@@ -24,6 +24,16 @@ def misdeclared(context: Context, *kinds: DeclarationKind) -> Iterator[Finding]:
             yield _finding(each)
 
 
+def _places(each: Misdeclared) -> str:
+    """The places that use a name, as a part of a sentence."""
+    lines = sorted({use.span.line for use in each.uses})
+    if any(use.span.source is not each.word.span.source for use in each.uses):
+        return "where that name is used"
+    if len(lines) == 1:
+        return f"in line {lines[0]}"
+    return f"in the lines {', '.join(map(str, lines[:-1]))} and {lines[-1]}"
+
+
 def _finding(each: Misdeclared) -> Finding:
     word, what = each.word, "state" if each.kind == "child" else "outcome"
     users = " and ".join(each.users)
@@ -35,6 +45,8 @@ def _finding(each: Misdeclared) -> Finding:
         help = f"write {names} in place of `{word.text}`"
         if near(word.text) is not None:
             help = f"did you mean {names}?"
+        if each.kind == "child" and near.sure(word.text) is None:
+            help = f"write {names}, or write `{word.text}` {_places(each)}"
     else:
         more = "s" if len(each.meant) > 1 else ""
         message = f"`{each.owner}` lacks the {what}{more} {names}, which {users} {use}"

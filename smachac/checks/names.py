@@ -177,12 +177,14 @@ def _targets(container: Linear) -> str:
     return listed([*(child.name for child in container.children), *outcome_names(container)])
 
 
-def _add_or_use(container: Linear, target: str) -> str:
-    """The help for an unknown target that no name resembles: a state that is missing, if it is
-    written like one."""
+def _add_or_use(container: Linear, child: Node, target: str) -> str:
+    """The help for an unknown target of a state that no name resembles: a state that is missing, if
+    it is written like one, or the only other state."""
     known = f"use a state or an outcome of `{container.name}`: {_targets(container)}"
-    is_state = target.isupper() and all(child.name.isupper() for child in container.children)
-    return f"add the state `{target}`, or {known}" if is_state else known
+    if not target.isupper() or not all(each.name.isupper() for each in container.children):
+        return known
+    others = [each.name for each in container.children if each is not child]
+    return f"add the state `{target}`, or {f'write `{others[0]}`' if len(others) == 1 else known}"
 
 
 def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
@@ -209,7 +211,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
             step.target,
             *(() if step.target else (step.outcome,)),
         ),
-        help=loop or help or _add_or_use(container, step.target),
+        help=loop or help or _add_or_use(container, child, step.target),
         effect="SMACH refuses to run such a container: none of its states runs",
         related=(*_unentered(container, step.target, fault.sure), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",

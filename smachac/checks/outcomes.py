@@ -302,18 +302,22 @@ def _targets(
 
 
 def _target(container: Linear, child: Node, outcome: str) -> str:
-    """The target that an outcome probably needs: that of the same outcome of other states, a
-    failure of the container or its stop, or what comes after a success."""
+    """The target that an outcome probably needs: that of the other failures of the state, that of
+    the same outcome of other states, a failure of the container or its stop, or what comes after a
+    success."""
     ends = outcome_names(container)
     failed = [name for name in ends if fails(container, name)]
     names = [each.name for each in container.children]
     alike = [step.target for each in container.children if each is not child
              for step in each.transitions if step.outcome == outcome]  # fmt: skip
     others = [name for name in alike if name in ends or outcome == PREEMPTED]
+    own = {step.target for step in child.transitions if step.origin == "written"
+           and step.outcome != PREEMPTED and fails(child, step.outcome)}  # fmt: skip
     if outcome == PREEMPTED:
-        targets = [*([PREEMPTED] if PREEMPTED in ends else []), *others, *failed]
+        near = [name for name in others if name in own]
+        targets = [*([PREEMPTED] if PREEMPTED in ends else []), *near, *others, *failed]
     elif fails(child, outcome):
-        targets = [*others, *failed]
+        targets = [*(own if len(own) == 1 else ()), *others, *failed]
     elif outcome in successes(child):
         targets = [*names[names.index(child.name) + 1 :], *successes(container)]
     else:
