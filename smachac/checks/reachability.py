@@ -176,7 +176,7 @@ def _led_past(
 ) -> _LedPast | None:
     """The transition that leads past a group of states, to a state to which one of them leads as
     well: the only one of the state before them in the script that is not one of failure; else the
-    only one of failure of that state, or of all states."""
+    only one of failure of that state, or of all states; else the one that leads back."""
     if isinstance(container, Sequence):
         return None
     after = {step.target for step in group[0].transitions if step.target in seen}
@@ -199,7 +199,20 @@ def _led_past(
         for step in child.transitions
         if step.target in good and step.origin == "written" and fails(child, step.outcome)
     ]
-    return others[0] if len(others) == 1 else None
+    if len(others) == 1:
+        return others[0]
+    return _led_back(container, before) if before is not None and before.name in seen else None
+
+
+def _led_back(container: Linear, before: Node) -> _LedPast | None:
+    """The only transition of a state for its successes, if it leads back to an earlier state: it is
+    probably that of a state that was copied."""
+    names = [each.name for each in container.children]
+    earlier = names[: names.index(before.name)]
+    steps = [step for step in before.transitions
+             if step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
+    is_back = len(steps) == 1 and steps[0].origin == "written" and steps[0].target in earlier
+    return _LedPast(before, steps[0], True) if is_back else None
 
 
 def _way_out(

@@ -202,9 +202,13 @@ def _wrong_steps(context: Context) -> Iterator[Finding]:
                 ]
         for at, step in enumerate(data if isinstance(data, tuple) else ()):
             if isinstance(step, Struct):
-                for name in (name for name, _ in step.entries if name not in STEP):
+                for name, value in step.entries:
+                    if name in STEP:
+                        continue
                     place = place_of_part(whole, (at, name), key=True)
                     help = did_you_mean(guesser(STEP)(name)) or f"its fields are {listed(STEP)}"
+                    if value in STEP:
+                        help = f"write `{value}: {name}`: the name of the field comes first"
                     faults.append(
                         (place, f"a step of `{leaf.name}` has no field `{name}`", help, name)
                     )

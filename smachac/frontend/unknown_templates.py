@@ -12,7 +12,7 @@ from smachac.diagnostics.spelling import guesser_of, words_of
 from smachac.diagnostics.wording import either, listed
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_not_found
-from smachac.frontend.errors.script import Owner, missing_variable
+from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable
 from smachac.frontend.fields import name_of, pairs_of
 from smachac.frontend.state_fields import FIELDS_OF_STATES, TEMPLATE_WORDS, accepts
 from smachac.frontend.yaml_tree import Entry
@@ -54,6 +54,21 @@ def types_with_the_names(
     near = [each for each in fitting if words_of(each.name) & common]
     found = tuple(each.name for each in near or fitting)
     return (found, used) if len(found) <= MOST_MEANT else ((), ())
+
+
+def with_meant_call(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
+    """The fields of a state with neither `template` nor `script`, in which a misspelt `script` is
+    corrected, which is reported (SM003)."""
+    if "template" in own or "script" in own:
+        return own
+    sure = guesser_of(("script", "template")).sure
+    for key, entry in own.items():
+        if key not in schema.VARIABLES and sure(key) == "script" and name_of(entry.value):
+            owner = Owner(name.text, f"`{name.text}`")
+            word = Word(str(entry.key.value), entry.key.span)
+            report.append(unknown_variable(word, owner, ["script"], meant="script"))
+            return {("script" if each == key else each): own[each] for each in own}
+    return own
 
 
 def meant_template(

@@ -43,3 +43,9 @@ PLACE = """- PLACE:
 def test_the_help_names_what_fits(state: str, help: str) -> None:
     (found,) = analysed({MAIN: SCRIPT % state, "place.yml": PLACE}).report
     assert (found.code, found.help) == ("SM005", f"{help}; `smachac states` lists the types")
+
+
+def test_a_misspelt_script_is_one_finding() -> None:
+    state = "PLACE: {sccript: place, transitions: {done: done, bad: bad}}"
+    (found,) = analysed({MAIN: SCRIPT % state, "place.yml": PLACE}).report
+    assert (found.code, found.help) == ("SM003", "did you mean `script`?")
