@@ -92,6 +92,7 @@ from smachac.frontend.unknown_templates import (
     missing_template_help,
     one_for_each_template,
     types_with_the_names,
+    with_meant_call,
 )
 from smachac.frontend.unused import Mark, Uses
 from smachac.frontend.yaml_tree import (
@@ -512,6 +513,7 @@ class _Resolver:
         the call."""
         begin = self.uses.mark(self.report)
         own = with_inner_rules(with_outer_fields(name, own, self.report), self.report)
+        own = with_meant_call(name, own, self.report)
         called: list[tuple[Word, tuple[Entry, ...]]] = []
         beside: dict[str, Span] = {}
         while "script" in own:
