@@ -50,6 +50,7 @@ from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.references import short_value
+from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
@@ -520,7 +521,11 @@ def _unused_word(unused: Unused, root: str) -> Finding:
             meant = known[0]
             help = f"write `{meant}`, the param that is used here"
     effect = "its value has no effect" if what == "param" else None
-    default = kept.get(meant or "")
+    number = number_before(word)
+    if number:
+        help = f"write `{number}.{word.text}`: a decimal number has a point, not a comma"
+        effect = f"YAML reads `{number},{word.text}` as two entries"
+    default = kept.get(meant or "") if not number else None
     if default is not None and "\n" not in default.text and len(default.text) <= MOST_SHOWN:
         effect = f"its value has no effect: the sub-script keeps `{meant}: {default.text}`"
     return Finding(

@@ -32,7 +32,7 @@ from smachac.checks.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import Guesser, guesser, respelt
+from smachac.diagnostics.spelling import Guesser, guesser, respelt, words_of
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
@@ -198,6 +198,9 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
     if paired:
         is_state = meant in children_names(container)
         help = f"{help} {'no transition leads to it' if is_state else 'no state ends with it'}"
+        if is_state and words_of(step.target).isdisjoint(words_of(str(meant))):
+            help = f"write `{meant}`, to which no transition leads, or add the state"
+            help += f" `{step.target}`"
     elif above:
         help = _through_outcome(container, step, above)
         sure = None

@@ -136,7 +136,7 @@ def test_names_of_a_c_plus_plus_class_count() -> None:
 
 def test_a_pair_of_an_unknown_target_and_a_state_that_nothing_leads_to() -> None:
     assert found(("free: PUT", "free: STORE"), ("bad: LOOK", "bad: lost")) == [
-        ("SM101", "STORE", "did you mean `PUT`? no transition leads to it")
+        ("SM101", "STORE", "write `PUT`, to which no transition leads, or add the state `STORE`")
     ]
 
 

@@ -43,7 +43,9 @@ def test_a_misspelt_target_is_one_fault() -> None:
 
 def test_the_only_state_that_no_target_means_is_meant() -> None:
     root = machine("sm", "done", leaf("A", {"ok": "XYZ"}), leaf("B", {"ok": "done"}))
-    assert one(root, "SM101").help == "did you mean `B`? no transition leads to it"
+    assert (
+        one(root, "SM101").help == "write `B`, to which no transition leads, or add the state `XYZ`"
+    )
     assert found(root) == ["SM101 sm/A"]
 
 

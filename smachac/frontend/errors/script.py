@@ -198,7 +198,7 @@ def unknown_variable(
     owned = f"use one of its {owner.part}s{possible(names, fitting)}"
     variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
     sure = meant or Guesser(names).sure(word.text)
-    number = _number_before(word)
+    number = number_before(word)
     if number:
         certain = f"a decimal comma? write `{number}.{word.text}`"
     elif outcome:
@@ -282,7 +282,7 @@ variables of its own."""
 _LONGEST_NUMBER = 20
 
 
-def _number_before(word: Word) -> str:
+def number_before(word: Word) -> str:
     """The digits before a comma in front of a word of digits: `0` in `{time: 0,5}`, where YAML
     reads an entry `5`. Empty without them."""
     start = word.span.start
