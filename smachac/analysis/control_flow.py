@@ -210,7 +210,8 @@ def corrected(container: Linear) -> Linear:
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
-    meant = meant_targets(container)
+    # An unlike name can also be a missing state: then nothing follows from it.
+    meant = {name: each for name, each in meant_targets(container).items() if not each.paired}
 
     def target(step: Transition) -> Transition:
         known = meant.get(step.target)
