@@ -92,8 +92,15 @@ class Fields:
         for key in data:
             if key not in table:
                 message = f"the key `{key}` is unknown"
-                help = self._neighbour(key) or guess(key, table)
+                help = self._turned(key) or self._neighbour(key) or guess(key, table)
                 raise DataError(message, (*place, str(key)), help, unknown=True)
+
+    def _turned(self, key: object) -> str | None:
+        """The help for an unknown key whose value is a key that the mapping does not have."""
+        value = self.data[key]
+        if not isinstance(value, str) or value not in self.table or value in self.data:
+            return None
+        return f"write `{value}: {key}`: the name of the key comes first"
 
     def __contains__(self, key: str) -> bool:
         return self.data.get(key) is not None
