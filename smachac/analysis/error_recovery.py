@@ -31,6 +31,7 @@ def unknown_remaps(node: Node, around: Container | None = None) -> list[UnknownR
     if is_open(node) or not node.remaps:
         return []
     own = {key.name for key in (*node.inputs, *node.outputs)}
+    own.update(lacking_inputs(node))
     wrong = [remap for remap in node.remaps if remap.key not in own]
     if wrong and isinstance(node, Leaf):  # SM308 and SM310 report keys that only the code uses
         used = {*undeclared_writes(node), *(key for key, _ in undeclared_reads(node))}
@@ -43,6 +44,26 @@ def unknown_remaps(node: Node, around: Container | None = None) -> list[UnknownR
     if around is not None and len(found) == 1 and found[0].meant is None:
         return [found[0]._replace(meant=_lone_key(node, found[0].remap, around))]
     return found
+
+
+def lacking_inputs(node: Node) -> tuple[str, ...]:
+    """The keys that a container lacks as inputs: its remapping has them, its states read them, and
+    nothing in it sets them."""
+    if isinstance(node, Leaf) or node.sugar or not node.remaps:
+        return ()
+    own = {key.name for key in (*node.inputs, *node.outputs)}
+    wrong = [remap.key for remap in node.remaps if remap.key not in own]
+    read: set[str] = set()
+    set_ = {preset.key for preset in node.userdata}
+    if isinstance(node, nodes.Iterator):
+        set_.add(node.item_key)
+    for child in node.children if wrong else ():
+        if is_open(child):
+            return ()
+        names = remapping(child)
+        read |= {names.get(key.name, key.name) for key in child.inputs}
+        set_ |= {names.get(key.name, key.name) for key in child.outputs}
+    return tuple(key for key in wrong if key in read - set_)
 
 
 def _lone_key(node: Node, remap: Remap, around: Container) -> str | None:
@@ -163,6 +184,10 @@ def _meant(node: Node, around: Container, *, raw: bool) -> Node:
     """A state in a container with its remaps corrected and its keys declared. `raw`: it sees the
     keys of its container without remapping, as the child of an iterator does."""
     remaps = unknown_remaps(node, around) if node.remaps else []
+    lacking = lacking_inputs(node)
+    if lacking:
+        more = (Key(name=key, span=node.span) for key in lacking)
+        node = replace(node, inputs=(*node.inputs, *more))
     if remaps:
         own = {key.name for key in (*node.inputs, *node.outputs)}
         wrong = {

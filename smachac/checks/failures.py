@@ -456,8 +456,8 @@ def _swapped_targets(node: Node, outcome: str, target: str, failed: list[str]) -
         return None
     first = good[0]
     return (
-        f"write `{first.outcome}: {target}, {outcome}: {first.target}`: the two targets have changed"
-        " places"
+        f"write `{first.outcome}: {target}, {outcome}: {first.target}`: the two targets have"
+        " changed places"
     )
 
 

@@ -1,12 +1,18 @@
-"""Entries of a remapping whose keys of the container have changed places."""
+"""Entries of a remapping whose keys of the container have changed places, and those of keys that a
+container reads but does not declare."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from pathlib import PurePath
 
 from smachac.analysis.unset_reads import Missing
+from smachac.checks.messages import calls, other_place
+from smachac.diagnostics.diagnostic import Finding
+from smachac.diagnostics.source import NOWHERE
 from smachac.diagnostics.spelling import words_of
-from smachac.ir.nodes import Node, Remap
+from smachac.diagnostics.wording import both
+from smachac.ir.nodes import Container, Node, Remap
 from smachac.ir.traversal import remapping
 
 
@@ -48,3 +54,32 @@ def keys_of_swapped(missing: Iterable[Missing]) -> set[tuple[str, str]]:
         for remap in child.remaps
         if remap.to == each.key and (other := swapped_remap(each, child, remap)) is not None
     }
+
+
+def lacking_finding(path: str, node: Container, keys: Sequence[str]) -> Finding:
+    """SM302 for keys in the remapping of a container that it lacks as inputs."""
+    first = next(each for each in node.remaps if each.key in keys)
+    source = node.children[0].span.source
+    file = PurePath(source.name).name
+    owner = f"`{node.name}`" if source is first.span.source else f"the state of `{file}`"
+    inputs = [key.name for key in node.inputs if key.span.source is not NOWHERE.source]
+    names = ", ".join([*inputs, *keys])
+    readers = [
+        (child, key)
+        for child in node.children
+        for key in child.inputs
+        if remapping(child).get(key.name, key.name) == first.key
+    ]
+    return Finding(
+        span=first.span,
+        message=f"`{node.name}` lacks the input key{'s' if len(keys) > 1 else ''} {both(keys)},"
+        " which its states read",
+        arguments=(first.key, first.to),
+        help=f"write `input_keys: [{names}]` in {owner}",
+        effect="a container gets only the keys that it declares: its states find the others unset",
+        related=(
+            *other_place(readers[0][0].span, f"`{readers[0][0].name}` reads `{first.key}`"),
+            *calls(node, first.span),
+        ),
+        node=path,
+    )

@@ -9,7 +9,7 @@ from functools import cache
 from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of, uses_by_key
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
-from smachac.analysis.error_recovery import unknown_remaps
+from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
 from smachac.analysis.unset_reads import (
     Missing,
     Searches,
@@ -28,7 +28,7 @@ from smachac.checks.initial_presets import (
 from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.races import raced_keys
-from smachac.checks.remap_slips import swapped_remap
+from smachac.checks.remap_slips import lacking_finding, swapped_remap
 from smachac.checks.rule import rule
 from smachac.checks.unset_read_findings import Guesses, unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
@@ -282,9 +282,17 @@ def _ignored(node: Node, meant: str | None, outer: str) -> str:
 
 
 def _unknown_remaps(path: str, container: Container) -> Iterator[Finding]:
+    lacking: set[tuple[Span, tuple[str, ...]]] = set()
     for node in container.children:
-        if node.remaps:
-            yield from _unknown_remaps_of(f"{path}/{node.name}", node, container)
+        if not node.remaps:
+            continue
+        yield from _unknown_remaps_of(f"{path}/{node.name}", node, container)
+        keys = lacking_inputs(node)
+        if keys and not isinstance(node, nodes.Leaf):
+            place = node.children[0].span, keys
+            if place not in lacking:  # else another call of the same sub-script
+                yield lacking_finding(f"{path}/{node.name}", node, keys)
+            lacking.add(place)
 
 
 def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[Finding]:
