@@ -34,9 +34,10 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
     Exactly: on every path to a state that closes the gripper, the gripper was closed before with
     success, and since then it was not opened and the tool moved to a grasp pose: a state with
     `role: grasp` and without an offset. A gripper whose grasp was checked may be closed again where
-    a later state opens it before another one closes it. Whether a state opens or closes a gripper is the fact
-    `role: grip` of its type. A path with a state that may do something else to the gripper decides
-    nothing: a stand-in, a type without an interface, one of the user without that fact.
+    a later state opens it before another one closes it. Whether a state opens or closes a gripper
+    is the fact `role: grip` of its type. A path with a state that may do something else to the
+    gripper decides nothing: a stand-in, a type without an interface, one of the user without that
+    fact.
 
     Wrong:
         name: sm

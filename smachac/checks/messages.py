@@ -62,6 +62,12 @@ def names_apart(paths: Sequence[str]) -> list[str]:
     return [shown[path] for path in paths]
 
 
+def in_quotes_for(code: str, span: Span) -> str:
+    """Code to write into a scalar of a script, with the quotes that the scalar can contain."""
+    given, other = ("'", '"') if span.text[:1] != '"' else ('"', "'")
+    return code if given not in code or other in code else code.replace(given, other)
+
+
 def own_name(node: Node, span: Span) -> str:
     """The name of a state as an argument of a finding at `span`; empty where a call of a sub-script
     in another file gives the name."""

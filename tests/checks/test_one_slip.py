@@ -153,7 +153,9 @@ def test_a_field_that_is_one_level_too_deep(
 ) -> None:
     assert reported({"main.yml": text.replace("name: sm", "name: sm\ntemplate: ROSBase")}) == []
     deep = text.replace(f"      {field}\n", "").replace(after, f"{after}\n        {field}")
-    (found,) = analysed({"main.yml": deep.replace("name: sm", "name: sm\ntemplate: ROSBase")}).report
+    (found,) = analysed(
+        {"main.yml": deep.replace("name: sm", "name: sm\ntemplate: ROSBase")}
+    ).report
     word = field.partition(":")[0]
     assert (found.code, found.span.text) == ("SM004", word)
     assert found.message.startswith(f"`{word}` is a field of the state ")

@@ -176,8 +176,11 @@ def grip(variables: str = "", values: str = "doc: x", keys: str = "", more: str 
         ("{type: float<rad>}", "12.566", None),
         ("{type: 'float<rad>[2]'}", "[1, 12.566]", "SM522:12.566"),
         ("{type: 'float<rad>[2]'}", "[6.28, -6.28]", None),
-        ("{type: 'list[{x: float<m>, yaw: float<rad>}]'}", "[{x: 1, yaw: 0}, {x: 90, yaw: 90}]",
-         "SM522:90"),
+        (
+            "{type: 'list[{x: float<m>, yaw: float<rad>}]'}",
+            "[{x: 1, yaw: 0}, {x: 90, yaw: 90}]",
+            "SM522:90",
+        ),
         ("{type: '{x: float<m>, yaw: float<rad>?}'}", "{x: 90, yaw: 1.57}", None),
         ("{type: '{x: float<m>, yaw: float<rad>}'}", "{x: 9, yaw: -45.0}", "SM522:-45.0"),
         ("{type: 'dict[str, {yaw: float<rad>}]'}", "{a: {yaw: 180}}", "SM522:180"),
