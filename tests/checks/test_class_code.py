@@ -424,6 +424,30 @@ def test_a_key_that_no_outcome_sets() -> None:
     assert all(item.code != "SM314" for item in report)
 
 
+@pytest.mark.parametrize(
+    ("files", "place", "help"),
+    [
+        ({"cell/look.py": "class Find: pass\n"}, "cell.find", "write `cell.look:Find`"),
+        (
+            {"tools/look.py": "\nclass Find(Base):\n    pass\n"},
+            "cell.find",
+            "write `tools.look:Find`",
+        ),
+        ({"cell/look.py": "class Find: pass\n", "cell/see.py": "class Find: pass\n"}, "Find", None),
+        ({"cell/look.py": "from cell.see import Find\n"}, "Find", None),
+        ({"cell/look.py": "    class Find: pass\n"}, "Find", None),
+    ],
+)
+def test_a_class_that_is_in_another_module(
+    files: dict[str, str], place: str, help: str | None
+) -> None:
+    interface = INTERFACE.replace("cell.find:FindPart", "cell.find:Find")
+    (item,) = findings("LIMIT = 3\n", interface, **files)
+    assert (item.code, item.span.text) == ("SM608", place)
+    assert ("but in `" in item.message) == (help is not None)
+    assert help is None or item.help == help
+
+
 def test_a_module_that_does_not_exist() -> None:
     (item,) = findings(None, **{"cell/fund.py": "", "cell/look.py": ""})
     assert lines([item]) == ["SM608 templates/FindPart.yml:9 cell.find"]
