@@ -147,7 +147,7 @@ def test_a_correct_class() -> None:
          ["SM609 cell/find.py:4 FindPart"], "add the parameter `speed` to `__init__`"),
         (changed(("(self, speed)", "(self, sped)"), ("= speed", "= sped")),
          ["SM609 cell/find.py:5 sped"],
-         "rename the parameter `sped` to `speed`, or correct the name in the interface"),
+         "rename the parameter `sped` to `speed`, which the script sets"),
         (changed(("(self, speed)", "(self, speed, robot)")),
          ["SM609 cell/find.py:5 robot"], None),
         (changed(("(self, userdata)", "(self)")), ["SM609 cell/find.py:11 execute"], None),
