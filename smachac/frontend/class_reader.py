@@ -122,8 +122,8 @@ def read_module(word: Word, library: Library) -> ClassFacts | None:
             file = file_of(module)
             other = module_with(found.name.text, file, library)
             if other is not None:
-                name = Word(found.name.text, place.span)
-                return ClassFacts(faults=(replace(found, name=name, file=file, more=other),))
+                missing = Word(found.name.text, place.span)
+                return ClassFacts(faults=(replace(found, name=missing, file=file, more=other),))
             fault = replace(found, file=file)
             return ClassFacts(faults=(_at_the_name(fault, word),))
         return _facts(*found, library) if found is not None else None

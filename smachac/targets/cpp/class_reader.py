@@ -79,8 +79,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         pattern = re.compile(_CLASS.format(re.escape(name)))
         other = file_with(pattern, code.header, (".hpp", ".h", ".hh"), library) if fault else None
         if fault is not None and other is not None:
-            place = type_.class_spans.get(("cpp", "header"), word.span)
-            fault = replace(fault, name=Word(word.text, place), more=other)
+            header_span = type_.class_spans.get(("cpp", "header"), word.span)
+            fault = replace(fault, name=Word(word.text, header_span), more=other)
         return _absent(code, fault)
     head = whole.only(_CLASS.format(re.escape(name)))
     body = whole.inside(head)
