@@ -66,7 +66,8 @@ class Fault:
     evaluation of the whole expression evaluates this part. `word` is the name in the script instead
     of one of `choices`; `length`: the number of items is wrong. `effect`: what happens if the
     fault is left, where that of the rule does not hold. `units`: the text of a number,
-    its unit, and the unit of the other number.
+    its unit, and the unit of the other number. `entry`: the code that reads an entry of a mapping,
+    which is meant.
     """
 
     kind: FaultKind
@@ -80,6 +81,7 @@ class Fault:
     length: bool = False
     effect: str | None = None
     units: tuple[str, str, str] | None = None
+    entry: str = ""
 
 
 EMPTY = mapping(())
@@ -230,6 +232,7 @@ class _Judge:
 
     def attribute(self, expr: Expr, value: Expr, name: str) -> Iterator[Fault]:
         type_ = self.type(value)
+        entry = ""
         if not has_attribute(type_, name):
             near = guesser(_attributes(type_))(name)
             help: str | None = f"remove `.{name}`, or use a value of another type"
@@ -238,9 +241,8 @@ class _Judge:
             if ATTRIBUTES.get(type_.name):
                 help = None  # the nearest of its attributes
             elif kinds(type_) == {"mapping"} and near is None:
-                # In double quotes, because a script has code in single ones.
-                entry = print_expression(Index(value, Constant(name))).replace("'", '"')
-                help = f"write `{entry}` for the entry of the mapping"
+                entry = print_expression(Index(value, Constant(name)))
+                help = None
             yield Fault(
                 kind="operation",
                 expr=expr,
@@ -250,6 +252,7 @@ class _Judge:
                 help=help,
                 word=name,
                 choices=tuple(ATTRIBUTES.get(type_.name, ())),
+                entry=entry,
             )
 
     def index(self, expr: Expr, value: Expr, index: Expr) -> Iterator[Fault]:

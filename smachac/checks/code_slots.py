@@ -24,6 +24,7 @@ from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.type_inference import TypeFlow
 from smachac.checks.class_values import none_writes
+from smachac.checks.edits import listing
 from smachac.checks.function_results import (
     NONE_EFFECTS,
     WAIT_FAILS,
@@ -34,7 +35,7 @@ from smachac.checks.function_results import (
     silent_functions,
     slot_owner,
 )
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.number_help import number_meant
 from smachac.checks.outcome_results import wrong_outcomes
 from smachac.checks.rule import rule
@@ -524,7 +525,9 @@ def _value_fault(
             if not known and (method not in ALWAYS_NOTHING or type_ != ANY):
                 return None
             what = f"None: `{method}` changes the value and returns nothing"
-            return Fault(what, _instead(result, value, method), bool(known), nothing)
+            return Fault(
+                what, _instead(result, value, method, slot.code.span), bool(known), nothing
+            )
         case ast.Attribute(value=value, attr=method) if slot.role != "callbacks":
             if is_method(_type(context, path, node, slot, value), method):
                 always = ", which is always true" if slot.role == "conditions" else ""
@@ -561,10 +564,10 @@ def _presets(context: Context, path: str, slot: CodeSlot, result: ast.expr) -> l
     return [each for each in dict.fromkeys(origins) if each.how == "value"]
 
 
-def _instead(call: ast.Call, value: ast.expr, method: str) -> str:
-    """The code that returns the changed value."""
+def _instead(call: ast.Call, value: ast.expr, method: str, span: Span) -> str:
+    """The code that returns the changed value, for the scalar at `span`."""
     owner = ast.unparse(value)
-    given = [ast.unparse(each).replace("'", '"') for each in call.args]  # YAML has the other ones
+    given = [in_quotes_for(ast.unparse(each), span) for each in call.args]
     match method, given:
         case "append", [item]:
             return f"write `{owner} + [{item}]`, which is the longer list"
@@ -619,7 +622,7 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
                     f" `{node.name}`",
                     arguments=(word.text,),
                     help=did_you_mean(guesser(key.name for key in node.inputs)(word.text))
-                    or f"add `{word.text}` to the `input_keys` of `{node.name}`",
+                    or listing([node], "input_keys", word.text),
                     related=other_place(slot.code.span, f"`{node.name}` calls it here"),
                     node=path,
                 )

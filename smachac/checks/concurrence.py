@@ -25,7 +25,7 @@ from smachac.checks.rule_slips import (
     turned_finding,
     turned_rules,
 )
-from smachac.checks.timeouts import missing_joins
+from smachac.checks.timeouts import missing_joins, turned_renames
 from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser, written_name
@@ -327,8 +327,8 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     for (name, result), span in zip(container.final_map if endings else (), spans, strict=False):
         if name in known:
             continue
-        inverted = result in known and name in outcome_names(container)
-        turned = f"the outcome that is renamed comes first: `{result}: {name}`"
+        inverted = (name, result) in turned_renames(container)
+        turned = f"write `{result}: {name}`: the outcome that is renamed comes first"
         yield Finding(
             span=span,
             message=f"the final outcome map of `{container.name}` renames `{name}`, but its state"

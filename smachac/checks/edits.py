@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from typing import Literal
 
 from smachac.diagnostics.diagnostic import Edit
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import is_plain
+from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Container, Key, Node
+from smachac.ir.script_paths import name_in_script
+
+KeyList = Literal["input_keys", "output_keys"]
+
+MOST_LISTED = 4
+"""Limit on the keys of a list that a help repeats."""
 
 _BODY = re.compile(
     r"[ \t]*:[ \t]*(?:(?P<flow>\{)|(?:#[^\n]*)?(?:\r?\n[ \t]*(?:#[^\n]*)?)*(?P<block>\S))"
@@ -30,6 +38,35 @@ def with_key_list(node: Node, part: str, keys: Iterable[str]) -> tuple[Edit, ...
     """The edit that begins a list of keys of a state which has none, where its place is certain."""
     names = [*keys]
     return _begun(node.span, part, ", ".join(names)) if all(map(is_plain, names)) else ()
+
+
+def listing(nodes: Iterable[Node], part: KeyList, key: str) -> str:
+    """The help that adds a key to a list of keys of some states: the whole list where it is short
+    and written in brackets, or where there is none."""
+    every = [*nodes]
+    names = listed(name_in_script(each) for each in every)
+    shown = {_whole_list(each, part, key) for each in every}
+    if len(shown) == 1 and (text := shown.pop()):
+        return f"write `{part}: [{text}]` in {names}"
+    return f"add `{key}` to the `{part}` of {names}"
+
+
+def _whole_list(node: Node, part: KeyList, key: str) -> str:
+    """The items of a list of keys with one more; nothing where it is long, or no list."""
+    known = node.inputs if part == "input_keys" else node.outputs
+    if not known:
+        return key
+    text = node.span.source.text
+    if len(known) > MOST_LISTED or any(each.span.source is not node.span.source for each in known):
+        return ""
+    first, last = known[0].span, known[-1].span
+    in_brackets = (
+        text[: first.start].rstrip().endswith("[") and text[last.end :].lstrip()[:1] == "]"
+    )
+    between = text[first.start : last.end]
+    names = [each.name for each in known]
+    plain = in_brackets and [each.strip() for each in between.split(",")] == names
+    return ", ".join([*names, key]) if plain and key not in names else ""
 
 
 def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Edit, ...]:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.analysis.empty_remaps import EmptyRemap
 from smachac.analysis.unset_reads import container_name, provided_keys
+from smachac.checks.edits import listing
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
@@ -46,7 +47,7 @@ def _help(each: EmptyRemap) -> str | None:
             f" `{container}`, and remove this entry"
         )
     if each.other:
-        return f"add `{remap.to}` to the `input_keys` of `{container}`"
+        return listing([each.scope.container], "input_keys", remap.to)
     return did_you_mean(_meant(each))
 
 

@@ -12,9 +12,10 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import either, listed
 from smachac.ir.nodes import Data, Leaf
+from smachac.ir.outcome_names import fails
 from smachac.ir.properties import After, AtMost, Atom, Atoms, Before, Form, Never, Property, atoms
-from smachac.ir.script_paths import walk_script
-from smachac.ir.traversal import walk
+from smachac.ir.script_paths import name_in_script, walk_script
+from smachac.ir.traversal import outcome_names, walk
 
 if TYPE_CHECKING:
     from smachac.analysis.property_events import NameFault
@@ -59,6 +60,7 @@ def name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
         or _by_words(atom, known)
         or _of_same_work(beside, known, context)
         or _unnamed(known, context)
+        or _led_to(given, atom, known, context)
         or (f"use one of {names}" if names else _nothing_known(atom)),
         edits=edits,
     )
@@ -102,6 +104,32 @@ def _unnamed(known: Sequence[str], context: Context) -> str | None:
              for atom in atoms(each.form) if atom.subject == "path"}  # fmt: skip
     left = [name for name in known if name not in named]
     return f"write `{left[0]}`, the only state that no property names" if len(left) == 1 else None
+
+
+def _led_to(given: Property, atom: Atom, known: Sequence[str], context: Context) -> str | None:
+    """The guess for an unknown event: the only state that no property names and to which the other
+    states of the property lead; of several the only one to which they lead after a failure."""
+    if atom.subject != "path":
+        return None
+    named = {each.name.rpartition("/")[2] for one in context.machine.properties
+             for each in atoms(one.form) if each.subject == "path"}  # fmt: skip
+    others = {each.name.rpartition("/")[2] for each in atoms(given.form) if each is not atom}
+    found: dict[str, str] = {}
+    failed: dict[str, str] = {}
+    every = [node for _, node in walk(context.machine.root)]
+    left = {node.name for node in every if node.name in known and node.name not in named
+            and (atom.outcome is None or atom.outcome in outcome_names(node))}  # fmt: skip
+    for node in every:
+        for step in node.transitions if name_in_script(node) in others else ():
+            if step.target in left:
+                found[step.target] = name_in_script(node)
+                if fails(node, step.outcome):
+                    failed[step.target] = name_in_script(node)
+    for each in (found, failed):
+        if len(each) == 1:
+            ((name, before),) = each.items()
+            return f"did you mean `{name}`, to which `{before}` leads?"
+    return None
 
 
 def _by_words(atom: Atom, known: Sequence[str]) -> str | None:

@@ -11,7 +11,7 @@ from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
 from smachac.analysis.units import conversion
 from smachac.checks.class_values import wrong_operations, wrong_parts
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.swapped_params import swapped_params_help
 from smachac.checks.types import written
@@ -424,6 +424,8 @@ def _finding(
     guess = did_you_mean(guesser(fault.choices)(fault.word)) if fault.choices else None
     choices = f"use one of {', '.join(f'`{each}`' for each in fault.choices)}"
     span = site.expression.span
+    if fault.entry:
+        guess = f"write `{in_quotes_for(fault.entry, span)}` for the entry of the mapping"
     place = _place(site.expression, fault)
     return Finding(
         span=place,

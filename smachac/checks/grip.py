@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks.messages import calls, other_place
+from smachac.checks.messages import calls, names_apart, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
@@ -14,7 +14,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.graph import Event
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Leaf, Node
-from smachac.ir.outcome_names import successes
+from smachac.ir.outcome_names import fails, successes
 
 MOST_VISITS = 200_000
 """The most events that the searches of one machine visit; beyond them nothing more is found."""
@@ -33,9 +33,11 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
 
     Exactly: on every path to a state that closes the gripper, the gripper was closed before with
     success, and since then it was not opened and the tool moved to a grasp pose: a state with
-    `role: grasp` and without an offset. Whether a state opens or closes a gripper is the fact
-    `role: grip` of its type. A path with a state that may do something else to the gripper decides
-    nothing: a stand-in, a type without an interface, one of the user without that fact.
+    `role: grasp` and without an offset. A gripper whose grasp was checked may be closed again where
+    a later state opens it before another one closes it. Whether a state opens or closes a gripper
+    is the fact `role: grip` of its type. A path with a state that may do something else to the
+    gripper decides nothing: a stand-in, a type without an interface, one of the user without that
+    fact.
 
     Wrong:
         name: sm
@@ -103,14 +105,15 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
             return
         held = variable_of(leaves[path], "grip")
         if found.closed and found.checked and held is not None:
-            yield _held_finding(leaves, path, found, held.value.span)
+            if not _opened_after(context, leaves, path):
+                yield _held_finding(leaves, path, found, held.value.span)
         elif found.closed:
             leaf = leaves[path]
-            names = [context.routes.nodes[each].name for each in (*found.closed, *found.moved)]
+            own, *names = names_apart((path, *found.closed, *found.moved))
             places = [context.routes.nodes[each].span for each in (found.closed[0], found.moved[0])]
             yield Finding(
                 span=leaf.span,
-                message=f"`{leaf.name}` closes a gripper that is already closed:"
+                message=f"`{own}` closes a gripper that is already closed:"
                 f" {listed(names[: len(found.closed)])} closed it before the tool moved to the body"
                 f" ({listed(names[len(found.closed) :])})",
                 arguments=(leaf.name, *sorted(set(names))),
@@ -140,19 +143,42 @@ def _held_finding(leaves: Mapping[str, Leaf], path: str, found: _Closed, span: S
     """The finding on a state that closes a gripper which holds a body: a check of the grasp has
     succeeded before."""
     leaf, first, check = leaves[path], leaves[found.closed[0]], leaves[found.checked]
+    names = names_apart((path, found.closed[0], found.checked))
     return Finding(
         span=span,
-        message=f"`{leaf.name}` closes the gripper, which holds a body since `{first.name}`",
+        message=f"`{names[0]}` closes the gripper, which holds a body since `{names[1]}`",
         arguments=(leaf.name, first.name),
         help="write `command: open` here, or open the gripper before the next grasp",
         effect="the gripper never releases the body here",
         related=(
             *other_place(first.span, "the gripper is closed here"),
-            *other_place(check.span, f"`{check.name}` has checked the grasp"),
+            *other_place(check.span, f"`{names[2]}` has checked the grasp"),
             *calls(leaf, span),
         ),
         node=path,
     )
+
+
+def _opened_after(context: Context, leaves: Mapping[str, Leaf], path: str) -> bool:
+    """Whether a state may open the gripper after the state that closes it, before another closes
+    it, and without a failure between: then it is only closed more firmly."""
+    succ = context.routes.graph.succ
+    todo: list[Event] = [*succ[path, ""]]
+    seen = {*todo}
+    for event in todo:
+        leaf = leaves.get(event[0])
+        if leaf is not None and fails(leaf, event[1]):
+            continue
+        if leaf is not None and event[0] != path and event[1]:
+            grip = grip_of(leaf)
+            if grip in ("open", "unknown") or (grip is None and not keeps_gripper(leaf)):
+                return True
+            if grip == "close":
+                continue
+        new = [each for each in succ[event] if each not in seen]
+        seen.update(new)
+        todo += new
+    return False
 
 
 def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _Closed:

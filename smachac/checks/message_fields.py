@@ -16,6 +16,7 @@ from smachac.analysis.message_code import (
 )
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.class_messages import faults_in_classes
+from smachac.checks.edits import listing
 from smachac.checks.message_reads import (
     code_places,
     described,
@@ -285,7 +286,7 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
         flows = [each for alike in cell.flows.values() for each in alike] if cell else []
         for flow in flows:
             if flow.how == "value" and isinstance(flow.value, Struct):
-                add = f"add `{TYPE_KEY}` to the `input_keys` of `{leaf.name}`"
+                add = listing([leaf], "input_keys", TYPE_KEY)
                 meant = type_key_meant(context.routes.nodes.get(path.rpartition("/")[0]))
                 help = f"{add}, and set the key to the type, as in `{TYPE_KEY}: std_msgs/Bool`"
                 if meant is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import takewhile
 
 from smachac.diagnostics.diagnostic import Related
@@ -45,6 +45,27 @@ def calls(node: Node, span: Span) -> tuple[Related, ...]:
 def other_place(span: Span, message: str) -> tuple[Related, ...]:
     """A related place, if there is one."""
     return () if span.source is NOWHERE.source else (Related(span=span, message=message),)
+
+
+def names_apart(paths: Sequence[str]) -> list[str]:
+    """The names of some states by their paths; where two of them are equal, with so many of the
+    names around them that they are not."""
+    shown = {path: path.rpartition("/")[2] for path in paths}
+    for path in shown:
+        parts = path.split("/")
+        same = [each for each in shown if each != path and each.endswith(f"/{parts[-1]}")]
+        count = 1
+        while count < len(parts) and any(each.split("/")[-count:] == parts[-count:]
+                                         for each in same):  # fmt: skip
+            count += 1
+        shown[path] = "/".join(parts[-count:])
+    return [shown[path] for path in paths]
+
+
+def in_quotes_for(code: str, span: Span) -> str:
+    """Code to write into a scalar of a script, with the quotes that the scalar can contain."""
+    given, other = ("'", '"') if span.text[:1] != '"' else ('"', "'")
+    return code if given not in code or other in code else code.replace(given, other)
 
 
 def own_name(node: Node, span: Span) -> str:

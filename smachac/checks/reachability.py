@@ -37,7 +37,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.script_paths import name_in_script
-from smachac.ir.traversal import ends_preempted, outcome_names
+from smachac.ir.traversal import ends_preempted, outcome_names, remapping
 
 
 @rule(
@@ -80,6 +80,49 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
+    for each in _hidden_groups(context):
+        if isinstance(each, Finding):
+            yield each
+            continue
+        path, container, group = each.path, each.container, each.group
+        child, way_out, twice = group[0], each.way_out, each.twice
+        if each.past is not None:
+            yield _passed(path, container, group, each.past)
+            continue
+        yield Finding(
+            span=child.span,
+            message=_unreached(container, group),
+            arguments=(child.name,),
+            help=_led_help(group, twice)
+            if twice is not None
+            else _out_help(child, *way_out)
+            if way_out is not None
+            else _why_unreachable(container, group),
+            related=(
+                *_led_places(twice),
+                *(_out_places(container, *way_out) if way_out is not None else ()),
+                *calls(child, child.span),
+            ),
+            node=f"{path}/{child.name}",
+        )
+
+
+class _Hidden(NamedTuple):
+    """A state that cannot be entered, first in a group of those that are entered by it; and what
+    probably has to lead to it: a transition that leads past it, an outcome without a transition,
+    one of two outcomes."""
+
+    path: str
+    container: Linear
+    group: list[Node]
+    past: _LedPast | None
+    way_out: tuple[Node, Transition] | None
+    twice: _LedTwice | None
+
+
+def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
+    """The groups of states that cannot be entered, without those whose cause another rule
+    reports; and the finding on a sequence that never continues."""
     missed: set[str] | None = None
     for (path, container), whole in zip(context.linear, context.corrected, strict=True):
         seen = context.of_container(reachable, path, whole)
@@ -97,33 +140,26 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
         previous = {each.name: one for one, each in pairwise(container.children)}
         led_twice = _led_twice(container, seen)
         for child in hidden:
-            if child.name not in first or f"{path}/{child.name}" in (missed or ()):
+            if child.name not in first or f"{path}/{child.name}" in missed:
                 continue  # SM701 reports the transition that must lead to it, SM101 its place
             alone, one = not before.get(child.name), previous.get(child.name)
-            twice = led_twice if alone else None
             others = first[child.name] - {child.name}
             group = [child, *(each for each in hidden if each.name in others)]
             past = _led_past(container, one, group, seen) if alone else None
             way_out = _way_out(container, one, seen) if past is None else None
-            if past is not None:
-                yield _passed(path, container, group, past)
-                continue
-            yield Finding(
-                span=child.span,
-                message=_unreached(container, group),
-                arguments=(child.name,),
-                help=_led_help(group, twice)
-                if twice is not None
-                else _out_help(child, *way_out)
-                if way_out is not None
-                else _why_unreachable(container, group),
-                related=(
-                    *_led_places(twice),
-                    *(_out_places(container, *way_out) if way_out is not None else ()),
-                    *calls(child, child.span),
-                ),
-                node=f"{path}/{child.name}",
-            )
+            yield _Hidden(path, container, group, past, way_out, led_twice if alone else None)
+
+
+def keys_of_hidden_states(context: Context) -> set[tuple[str, str]]:
+    """The keys that states set past which the state before them leads (SM201), each with the path
+    of its container."""
+    return {
+        (each.path, remapping(child).get(key.name, key.name))
+        for each in _hidden_groups(context)
+        if not isinstance(each, Finding) and each.past is not None and each.past.next
+        for child in each.group
+        for key in child.outputs
+    }
 
 
 def _first_hidden(

@@ -8,6 +8,7 @@ from math import ceil, isfinite
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
+from smachac.analysis.control_flow import is_open
 from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit, time_limit_span
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
@@ -19,7 +20,15 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Concurrence, Data, Leaf, OutcomeRule, StateType, VariableType
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Data,
+    Leaf,
+    OutcomeRule,
+    StateType,
+    VariableType,
+)
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import outcome_names
@@ -453,6 +462,8 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
     """
     for path, container in context.containers:
         lost = undeclared_stops(container) if isinstance(container, nodes.Iterator) else []
+        turned = {result for _, result in turned_renames(container)} if lost else {}
+        lost = [each for each in lost if each not in turned]  # SM403 reports these
         if not lost:
             continue
         name, counted_on = container.name, PREEMPTED in outcome_names(container)
@@ -468,6 +479,18 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
             severity=Severity.WARNING if counted_on else None,
             node=path,
         )
+
+
+def turned_renames(container: Container) -> list[tuple[str, str]]:
+    """The entries of the final outcome map of an iterator in which the two names have changed
+    places: its state ends with the second one only."""
+    if not isinstance(container, nodes.Iterator) or any(map(is_open, container.children)):
+        return []
+    ends = {name for child in container.children for name in outcome_names(child)}
+    ends.add(container.exhausted_outcome)
+    own = outcome_names(container)
+    return [each for each in container.final_map
+            if each[0] not in ends and each[1] in ends and each[0] in own]  # fmt: skip
 
 
 def undeclared_stops(container: nodes.Iterator) -> list[str]:

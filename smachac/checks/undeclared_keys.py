@@ -11,7 +11,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
 from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.code_slots import unknown_function_reads
-from smachac.checks.edits import with_key_list, with_output
+from smachac.checks.edits import listing, with_key_list, with_output
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
 from smachac.checks.unlisted_keys import unlisted_reads, unlisted_writes
@@ -76,7 +76,7 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
             span = _place_of_write(leaf, key)
             meant = _meant(key, leaf.outputs if not only else ())
             unset = _never_set(leaf) if not meant else []
-            added = f"add `{key}` to the `output_keys` of `{leaf.name}`"
+            added = listing([leaf], "output_keys", key)
             help = f"did you mean {listed(unset)}? or {added}" if unset else added
             if len(unset) == 1:
                 help = f"write `{key}` in place of `{unset[0]}` in the `output_keys` of"
@@ -252,7 +252,7 @@ def _undeclared_accesses(
                     if lone
                     else None
                 )
-                or f"add `{key}` to the `input_keys` of `{leaf.name}`, and set it before, for"
+                or f"{listing([leaf], 'input_keys', key)}, and set it before, for"
                 f" example in `userdata: {{{key}: ...}}`",
                 related=calls(leaf, code.span),
                 node=inner,

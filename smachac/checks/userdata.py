@@ -19,7 +19,7 @@ from smachac.analysis.unset_reads import (
 )
 from smachac.checks.candidate_keys import unread_output
 from smachac.checks.declarations import swapped_loop
-from smachac.checks.edits import with_input, with_output
+from smachac.checks.edits import listing, with_input, with_output
 from smachac.checks.empty_remaps import empty_remap_findings
 from smachac.checks.initial_presets import (
     missing_together,
@@ -28,6 +28,7 @@ from smachac.checks.initial_presets import (
 from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.races import raced_keys
+from smachac.checks.reachability import keys_of_hidden_states
 from smachac.checks.remap_slips import lacking_finding, swapped_remap
 from smachac.checks.rule import rule
 from smachac.checks.unset_read_findings import Guesses, unset_read
@@ -138,12 +139,17 @@ def read_before_write(context: Context) -> Iterator[Finding]:
 
 def _with_their_own_cause(context: Context) -> list[Missing]:
     """The keys that nothing sets, or not on every path, without those whose cause another rule
-    reports: SM308, SM306, SM305, or SM405."""
+    reports: SM308, SM306, SM305, SM405, or SM201."""
     misnamed = misnamed_keys(context)
     unwritten = set(read_unwritten(context, unwritten_keys(context)).values()) | raced_keys(context)
     found: list[Missing] = []
+    hidden: set[tuple[str, str]] | None = None
     for missing in context.missing_keys("unset", "nowhere"):
         place = missing.scope.path, missing.key
+        if missing.cause == "unset" and hidden is None:
+            hidden = keys_of_hidden_states(context)
+        if hidden and place in hidden:
+            continue  # SM201
         wrong = misnamed.get(place)
         if missing.cause == "nowhere" and _is_dropped(missing):
             continue  # SM308
@@ -167,9 +173,8 @@ def _with_outer_key(
         around = scopes.get(around.path.rpartition("/")[0])
     if around is None or outer not in around.held:
         return finding
-    name = scope.container.name
-    help = f"add `{key}` to the `input_keys` of `{name}`: `{around.container.name}` has a value"
-    return replace(finding, help=f"{help} for it")
+    help = listing([scope.container], "input_keys", key)
+    return replace(finding, help=f"{help}: `{around.container.name}` has a value for it")
 
 
 def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Finding:
@@ -410,7 +415,7 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
         others = tuple(reader_at(scope, vertex, key) for vertex in missing.vertices[1:])
         held = name_in_script(holder)
         why = f"which is a key of `{held}` but not an input of {listed(between)}"
-        help = f"add `{key}` to the `input_keys` of {listed(between)}"
+        help = _input_help(flow, scope.path, missing.other, key)
         loop = loop_in_a_body(missing)
         if loop is not None:
             help = f"write `{key}` in place of `{loop.item_key}` in the `input_keys` of"
@@ -466,6 +471,20 @@ def _between(flow: DataFlow, path: str, holder: str) -> list[str]:
     names = path[len(holder) + 1 :].split("/")
     paths = ["/".join([holder, *names[: at + 1]]) for at in range(len(names))]
     return list(dict.fromkeys(name_in_script(flow.scopes[each].container) for each in paths))
+
+
+def _input_help(flow: DataFlow, path: str, holder: str, key: str) -> str:
+    """The help that makes a key an input of the containers between its holder and its reader."""
+    own: dict[str, Container] = {}
+    names = _between(flow, path, holder)
+    while path != holder:
+        container = flow.scopes[path].container
+        if not container.sugar:
+            own[name_in_script(container)] = container
+        path = path.rpartition("/")[0]
+    if own.keys() == {*names}:
+        return listing(own.values(), "input_keys", key)
+    return f"add `{key}` to the `input_keys` of {listed(names)}"
 
 
 @rule("SM307", "lost-output", Severity.WARNING)
@@ -569,7 +588,7 @@ def _output_help(key: str, keeper: Container, written: Span | None) -> str:
     """The help for an output that a container lacks. `written`: where a state in a sub-script sets
     it, if the container is the outermost state of that."""
     if written is None:
-        return f"add `{key}` to the `output_keys` of `{keeper.name}`"
+        return listing([keeper], "output_keys", key)
     where = f"the outermost state in `{written.source.name}`"
     own = [each.name for each in keeper.outputs if each.span.source is written.source]
     if own:

@@ -75,7 +75,7 @@ def place_of_value(name: Span, text: str) -> Span:
 def steps_to_misfit(data: Data, wanted: Type) -> tuple[int | str, ...]:
     """The steps to the innermost part of a literal that does not fit a type; none if it is the
     literal as a whole, such as a list of a wrong length."""
-    for step, part, type_ in _parts(data, present(wanted)):
+    for step, part, type_ in parts_of(data, present(wanted)):
         if misfit(type_of_data(part), type_) is not None:
             return (step, *steps_to_misfit(part, type_))
     return ()
@@ -116,7 +116,7 @@ def steps_to_number(data: Data, number: float) -> tuple[int | str, ...]:
     return ()
 
 
-def _parts(data: Data, wanted: Type) -> Iterator[tuple[int | str, Data, Type]]:
+def parts_of(data: Data, wanted: Type) -> Iterator[tuple[int | str, Data, Type]]:
     """The items or fields of a literal, each with the type that it must fit."""
     if isinstance(data, tuple):
         yield from ((at, each, type_) for at, (each, type_) in enumerate(_items(data, wanted)))

@@ -25,7 +25,7 @@ from smachac.checks.robot import (
     uses_simulation,
 )
 from smachac.checks.rule import rule
-from smachac.checks.value_places import steps_to_number
+from smachac.checks.value_places import parts_of, place_of_part, steps_to_number
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
@@ -407,7 +407,8 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
 
     Exactly: reported are joint positions of more than a full turn that a state reads as
     `list[float<rad>]`, `float<rad>[N]` or, by joint names, `dict[str, float<rad>]`; whole numbers
-    of more than 2 pi under any other type in `rad`; and coordinates of more than 10 metres that a
+    of more than 2 pi under any other type in `rad`, also in a field of a record and as the default
+    of a variable in an interface; and coordinates of more than 10 metres that a
     state that uses the simulated world, or claims an arm or a gripper, reads as `Point`, `Pose` or
     `Transform`. Where the robot is known, SM502 reports what is outside the limits of a joint, and
     this rule multiples of 5 rad for a joint without limits.
@@ -453,6 +454,25 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
         flows.setdefault(flow.origin.span, []).append(flow)
     for alike in flows.values():
         yield from _doubtful(alike, simulated, context.machine.robot)
+    for type_ in types.values():
+        yield from _doubtful_defaults(type_)
+
+
+def _doubtful_defaults(type_: StateType) -> Iterator[Finding]:
+    """The defaults of an interface that seem to be in degrees; those outside of its own limits are
+    reported by SM520."""
+    for variable in type_.variables.values():
+        default = variable.default
+        if default is None or (variable.limits and [*_outside(default.data, variable.limits)]):
+            continue
+        for steps, angle in _large_angles(default.data, variable.type):
+            yield Finding(
+                span=place_of_part(default.span, steps),
+                message=f"the default of `{variable.name}` {'contains' if steps else 'is'} {angle},"
+                " which is read in radians: is it in degrees?",
+                arguments=(variable.name, str(angle)),
+                help=f"if it is in degrees, write {_radians(default.data, angle)}",
+            )
 
 
 def _doubtful(
@@ -466,19 +486,23 @@ def _doubtful(
         assert robot is not None
         # A joint without limits may turn several times, but hardly by 90 rad.
         faults = any(joint_faults(each, robot) for each in joints)
-        degrees = [] if faults else [angle for angle in degrees if angle % 5 == 0]
+        degrees = [] if faults else [each for each in degrees if each[1] % 5 == 0]
         if not degrees:
             return
+    effect: str | None = None
     if degrees:
-        value, unit, meant = degrees[0], "radians", "degrees"
+        part, value = degrees[0]
+        effect = None if joints else "the angle is used as it is: it is more than a full turn"
+        unit, meant = "radians", "degrees"
         help = f"if it is in degrees, write {_radians(flow.value, value)}"
     else:
         value, unit, meant = _millimetres(flow, simulated)[0], "metres", "millimetres"
         help = f"if it is in millimetres, write {_metres(flow.value, value)}"
+        part = steps_to_number(flow.value, value)
     held = "is" if value == flow.value else "contains"
     message = f"`{flow.origin.cell.key}` {held} {value}, which is read in {unit}"
-    part = steps_to_number(flow.value, value)
-    yield at(flow, f"{message}: is it in {meant}?", help, (str(value), unit), part=part)
+    message += f": is it in {meant}?"
+    yield at(flow, message, help, (str(value), unit), part=part, effect=effect)
 
 
 def _metres(data: Data, value: float) -> str:
@@ -500,14 +524,26 @@ def _radians(data: Data, angle: float) -> str:
     return f"the list in radians: `[{', '.join(f'{math.radians(each):.4g}' for each in angles)}]`"
 
 
-def _degrees(flow: TypeFlow) -> list[int | float]:
-    """The angles in a literal that seem to be in degrees."""
-    wanted = present(flow.cell.declared)
-    if unit_of(_item(wanted)) != "rad" or _in_other_unit(flow):
-        return []
-    joints = wanted.name in ("list", "array", "dict")
-    large = [each for each in numbers(flow.value) if FULL_TURN < abs(each) < math.inf]
-    return [each for each in large if joints or float(each).is_integer()]
+def _degrees(flow: TypeFlow) -> list[tuple[tuple[int | str, ...], int | float]]:
+    """The angles in a literal that seem to be in degrees, each with the steps to it."""
+    return [] if _in_other_unit(flow) else [*_large_angles(flow.value, flow.cell.declared)]
+
+
+def _large_angles(
+    data: Data, wanted: Type, steps: tuple[int | str, ...] = ()
+) -> Iterator[tuple[tuple[int | str, ...], int | float]]:
+    """The angles in radians of more than a full turn: any in a list or by joint names, otherwise
+    whole numbers."""
+    wanted = present(wanted)
+    inner = _item(wanted)
+    if inner.name == "record":
+        for step, part, type_ in parts_of(data, wanted):
+            yield from _large_angles(part, type_, (*steps, step))
+    elif unit_of(inner) == "rad":
+        joints = wanted.name in ("list", "array", "dict")
+        for each in dict.fromkeys(numbers(data)):
+            if FULL_TURN < abs(each) < math.inf and (joints or float(each).is_integer()):
+                yield (*steps, *steps_to_number(data, each)), each
 
 
 def _in_other_unit(flow: TypeFlow) -> bool:

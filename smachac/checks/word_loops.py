@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from smachac.analysis.definite_assignment import UserdataScope
+from smachac.checks.edits import listing
 from smachac.checks.messages import calls
 from smachac.diagnostics.diagnostic import Finding
 from smachac.ir import nodes
@@ -49,7 +50,7 @@ def word_as_list(path: str, loop: nodes.Iterator, key: str) -> Finding:
     field = "in" if loop.sugar else "it"
     help = f"write `{field}: {key}`"
     if not loop.sugar and key not in {each.name for each in loop.inputs}:
-        help += f", and add `{key}` to the `input_keys` of `{loop.name}`"
+        help += f", and {listing([loop], 'input_keys', key)}"
     return Finding(
         span=loop.items_span,
         message=f"`{loop.name}` runs once, for the text `{key}`, not for the items of the key"

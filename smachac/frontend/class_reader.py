@@ -43,6 +43,7 @@ from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
 from smachac.frontend.lost_outcomes import lost_outcomes
 from smachac.frontend.module_members import module_slips
+from smachac.frontend.other_modules import module_with
 from smachac.frontend.own_objects import missing_members, uncalled_members
 from smachac.frontend.python_flow import Flow, Flows
 from smachac.frontend.python_functions import is_plain
@@ -118,7 +119,12 @@ def read_module(word: Word, library: Library) -> ClassFacts | None:
         if isinstance(found, ClassFault) and found.kind == "syntax":
             return ClassFacts(faults=(found,))
         if isinstance(found, ClassFault):
-            fault = replace(found, file=file_of(module))
+            file = file_of(module)
+            other = module_with(found.name.text, file, library)
+            if other is not None:
+                missing = Word(found.name.text, place.span)
+                return ClassFacts(faults=(replace(found, name=missing, file=file, more=other),))
+            fault = replace(found, file=file)
             return ClassFacts(faults=(_at_the_name(fault, word),))
         return _facts(*found, library) if found is not None else None
     except (RecursionError, MemoryError, ValueError):

@@ -12,13 +12,39 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend import schema
 from smachac.frontend.errors.script import duplicate_key, wrong_shape
+from smachac.frontend.paired_fields import fits_field
 from smachac.frontend.params import look_up_word
+from smachac.frontend.schema import FieldOwner
 from smachac.frontend.sugar import duration
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.ir.nodes import StateType
 
 _OF_NAMES = ("transitions", "remapping", "final_outcome_map")
 """The fields that are mappings of names to names."""
+
+_COLLECTIONS = frozenset(
+    ["transitions", "remapping", "input_keys", "output_keys", "outcomes", "retry", "for_each"]
+)
+"""The fields that are certain in a mapping that may have any names, if the state has none."""
+
+_WITHOUT_NAMES = frozenset(["params", "states", "properties", "types", *_OF_NAMES, *_COLLECTIONS])
+"""The fields that may contain anything, or whose parts are no fields of a state for other rules."""
+
+_SUGAR = ("retry", "for_each")
+
+_CODE = ("callbacks", "conditions")
+"""The roles of variables that are mappings of declared names to code."""
+
+_PARTS = {
+    "transitions": "an outcome",
+    "outcome_map": "an outcome",
+    "conditions": "a condition",
+    "remapping": "a key",
+    "final_outcome_map": "a key",
+    "callbacks": "a key",
+    "userdata": "a key",
+}
+"""What the names in a mapping are, by the field or its role."""
 
 _NAMED = frozenset(["template", "script"])
 """The fields with one name that every state has, if it is not another kind of field."""
@@ -39,6 +65,17 @@ def with_outer_fields(name: Word, own: dict[str, Entry], report: Report) -> dict
                 for each in entry.value.entries
                 if id(each) in found or not (_is_text(each.value) or look_up_word(each.value))
             }
+        own = _moved(name, own, part, outer, report)
+    for part in [key for key, entry in own.items() if isinstance(entry.value, Map)]:
+        tree = own[part].value
+        if not isinstance(tree, Map) or (part in _WITHOUT_NAMES and part not in _SUGAR):
+            continue
+        outer = {key: each for each in tree.entries
+                 if (key := str(each.key.value)) in _COLLECTIONS and key not in own
+                 and fits_field(key, each.value)}  # fmt: skip
+        if outer and part == "userdata":  # in a container, a state inside may read such a list
+            outer = {key: each for key, each in outer.items() if key not in _names(own, None)
+                     and ("states" not in own or isinstance(each.value, Map))}  # fmt: skip
         own = _moved(name, own, part, outer, report)
     return own
 
@@ -91,9 +128,11 @@ def _has_rules(tree: Tree, names: Set[str]) -> bool:
 
 
 def with_outer_variables(
-    name: Word, own: dict[str, Entry], type_: StateType, report: Report
+    name: Word, own: dict[str, Entry], owner: FieldOwner, type_: StateType, report: Report
 ) -> dict[str, Entry]:
-    """As `with_outer_fields`, for the variables of the state type, whose values are no names."""
+    """As `with_outer_fields`, for the variables of the state type, whose values are no names; and
+    for those and the fields with one name in a mapping whose names the state declares."""
+    own = _with_outer_names(name, own, owner, type_, report)
     for part in _OF_NAMES:
         entry = own.get(part)
         if entry is None or not isinstance(entry.value, Map):
@@ -107,10 +146,57 @@ def with_outer_variables(
     return own
 
 
-def _moved(
-    name: Word, own: dict[str, Entry], part: str, outer: Mapping[str, Entry], report: Report
+def _with_outer_names(
+    name: Word, own: dict[str, Entry], owner: FieldOwner, type_: StateType, report: Report
 ) -> dict[str, Entry]:
-    """The fields with those of a mapping beside it, which are reported."""
+    """The fields with those of one value that are in a mapping of declared outcomes or keys."""
+    fields = {key for key in schema.names_for(owner) if schema.VARIABLES[key].shape == "name"}
+    fields = (fields - _NAMED) | type_.variables.keys()
+    parts = {key for key, each in type_.variables.items() if each.role in _CODE}
+    for part in ("transitions", "outcome_map", *sorted(parts)):
+        entry = own.get(part)
+        if entry is None or not isinstance(entry.value, Map):
+            continue
+        outer = {key: each for each in entry.value.entries
+                 if (key := str(each.key.value)) in fields and key not in own
+                 and _is_one_value(each.value)}  # fmt: skip
+        if outer:
+            outer = {key: each for key, each in outer.items() if key not in _names(own, type_)}
+            role = type_.variables[part].role if part in parts else ""
+            own = _moved(name, own, part, outer, report, role)
+    return own
+
+
+def _is_one_value(value: Tree) -> bool:
+    """Whether a value is a number, a boolean, or one word, which is no code."""
+    if not isinstance(value, Scalar) or value.value is None:
+        return False
+    return not isinstance(value.value, str) or value.value.isidentifier()
+
+
+def _names(own: Mapping[str, Entry], type_: StateType | None) -> set[str]:
+    """The outcomes and keys that a state and its type declare."""
+    listed = (type_.outcomes, type_.input_keys, type_.output_keys) if type_ is not None else ()
+    names = {each.name for names in listed for each in names}
+    for part in ("outcomes", "input_keys", "output_keys"):
+        tree = own[part].value if part in own else None
+        if isinstance(tree, Map):
+            names.update(str(each.key.value) for each in tree.entries)
+        elif isinstance(tree, Seq):
+            names.update(str(each.value) for each in tree.items if isinstance(each, Scalar))
+    return names
+
+
+def _moved(
+    name: Word,
+    own: dict[str, Entry],
+    part: str,
+    outer: Mapping[str, Entry],
+    report: Report,
+    role: str = "",
+) -> dict[str, Entry]:
+    """The fields with those of a mapping beside it, which are reported. `role`: that of the
+    mapping."""
     if not outer:
         return own
     entry, moved = own[part], list(outer.values())
@@ -118,7 +204,7 @@ def _moved(
     assert isinstance(tree, Map)
     words = [str(each.key.value) for each in moved]
     first = moved[0].key
-    what = "an outcome" if part == "transitions" else "a key"
+    what = _PARTS.get(role or part, "a part")
     message = f"`{words[0]}` is a field of the state `{name.text}`, not {what} in `{part}`"
     columns = first.span.column - entry.key.span.column
     flow = first.span.line == entry.key.span.line or columns <= 0

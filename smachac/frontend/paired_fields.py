@@ -39,6 +39,15 @@ def paired_fields(
     return {missing[0]: entry} if _has_shape(missing[0], entry.value, type_) else {}
 
 
+def ends_with_any(entries: Mapping[str, Entry], owner: FieldOwner) -> bool:
+    """Whether a concurrence without `join` may end with its first branch: no rule of it needs two
+    of them."""
+    given = entries["outcome_map"].value if "outcome_map" in entries else None
+    rules = [each.value for each in given.entries] if isinstance(given, Map) else []
+    alone = all(not isinstance(rule, Map) or len(rule.entries) < 2 for rule in rules)
+    return owner == "Concurrence" and "join" not in entries and alone
+
+
 def keys_meant(value: Tree, entries: Mapping[str, Entry], type_: StateType) -> Iterator[str]:
     """The lists of keys of a state that an unknown field can be: its code in the script reads or
     sets all these keys."""

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
+from smachac.frontend.other_modules import module_with
 from smachac.frontend.python_modules import (
     Module,
     absent_module,
@@ -147,7 +148,14 @@ def _no_names(one: Import, file: str, other: Module, library: Library) -> Iterat
     guess = guesser(sorted(name for name in known if not name.startswith("__")))
     for word in one.names:
         if word.text not in known | words and not word.text.startswith("__"):
-            yield ClassFault(kind="no imported name", name=word, near=guess(word.text), file=file)
+            other_module = module_with(word.text, file, library) or ""
+            yield ClassFault(
+                kind="no imported name",
+                name=word,
+                near=guess(word.text),
+                file=file,
+                more=other_module,
+            )
 
 
 def _no_module(name: str, place: Word, library: Library) -> Iterator[ClassFault]:

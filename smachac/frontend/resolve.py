@@ -293,7 +293,7 @@ class _Resolver:
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
-        entries = with_outer_variables(name, entries, type_, self.report)
+        entries = with_outer_variables(name, entries, owner, type_, self.report)
         entries |= self.lists(own, scope, type_)
         entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_, self.report)

@@ -24,7 +24,12 @@ from smachac.frontend.fields import (
     wrong,
 )
 from smachac.frontend.missing_outcomes import outcomes_used
-from smachac.frontend.paired_fields import fitting_fields, paired_fields, paired_help
+from smachac.frontend.paired_fields import (
+    ends_with_any,
+    fitting_fields,
+    paired_fields,
+    paired_help,
+)
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, Pairs, State
@@ -219,6 +224,9 @@ def with_meant_fields(
         if len(default) == 1 and isinstance(entries[default[0]].value, Scalar):
             meant.setdefault("default_outcome", entries[default[0]])
     found = {name: entry for name, entry in meant.items() if name is not None}
+    if "child_termination_cb" in unknown and ends_with_any(entries, owner):
+        given = entries["child_termination_cb"]  # the help of its finding is `join: any`
+        found["join"] = Entry(given.key, Scalar("any", True, given.key.span.source, 0, 0))
     left = [key for key in unknown if all(entries[key] is not each for each in found.values())]
     return found | paired_fields(left, {*entries, *found}, entries, owner, type_) | entries
 

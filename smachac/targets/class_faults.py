@@ -544,6 +544,11 @@ WRITTEN = frozenset[FaultKind](
 """Faults whose words contain what was probably meant."""
 
 
+SET_IN_SCRIPT = ("no parameter", "other parameter", "renamed parameter")
+"""Faults of a parameter that has another name than a variable; `more` is that variable where the
+script sets it."""
+
+
 def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tuple[str, str]:
     """The message and the help for a fault of a class. `lists` are the arguments of the constructor
     of `smach.State` that fit the interface."""
@@ -561,6 +566,9 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         for text in WORDS[fault.kind]
     )
     near = fault.near
+    if fault.kind in SET_IN_SCRIPT and fault.more and near is not None:
+        one = near if fault.kind == "no parameter" else fault.name.text
+        return message, f"rename the parameter `{one}` to `{fault.more}`, which the script sets"
     if fault.kind in ("skipped output", "early return") and fault.more:
         return message, f"write `{fault.more}` before this `return` too"
     if near is None or fault.kind in WRITTEN:

@@ -462,10 +462,16 @@ def code_not_found(
     elif fault.kind == "no imported name":
         message = f"`{fault.file}` has no `{word.text}`, which is imported from it"
         help = near or f"correct the name, or define it in `{fault.file}`"
+        if fault.more:
+            help = f"import `{word.text}` from `{fault.more}`, which defines it"
     else:
         place = f"`{fault.file}`" if fault.file else f"the {file} that `{state_type}` names"
         message = f"no class `{word.text}` is defined in {place}"
         help = near or f"correct the name {interface}, or define the class"
+        if fault.more:
+            meant = fault.more if target == "cpp" else f"{fault.more}:{word.text}"
+            message += f", but in `{_file_of(fault.more, target)}`"
+            help = f"write `{meant}`"
     return Finding(
         span=word.span,
         message=message,
@@ -474,6 +480,11 @@ def code_not_found(
         effect="the C++ compiler does not find it" if target == "cpp" else None,
         related=used,
     )
+
+
+def _file_of(module: str, target: str) -> str:
+    """A header, or the file of a module."""
+    return module if target == "cpp" else f"{module.replace('.', '/')}.py"
 
 
 def _syntax_help(message: str) -> str:

@@ -20,7 +20,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, Parameter
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import remapping, walk
-from smachac.targets.class_faults import CHECKED_ONLY
+from smachac.targets.class_faults import CHECKED_ONLY, SET_IN_SCRIPT
 from smachac.targets.errors import (
     Difference,
     bad_class,
@@ -230,6 +230,10 @@ def type_faults(
         if fault.name.span.source is NOWHERE.source:
             fault = replace(fault, name=Word(fault.name.text, leaf.span))
             used = ()
+        if fault.kind in SET_IN_SCRIPT:
+            variable = fault.name.text if fault.kind == "no parameter" else fault.near
+            if any(each.name == variable for each in leaf.variables):
+                fault = replace(fault, more=variable or "")
         if fault.kind in NOT_FOUND:
             yield code_not_found(fault, target.name, type_.name, found.name, used)
         else:

@@ -147,7 +147,7 @@ def test_a_correct_class() -> None:
          ["SM609 cell/find.py:4 FindPart"], "add the parameter `speed` to `__init__`"),
         (changed(("(self, speed)", "(self, sped)"), ("= speed", "= sped")),
          ["SM609 cell/find.py:5 sped"],
-         "rename the parameter `sped` to `speed`, or correct the name in the interface"),
+         "rename the parameter `sped` to `speed`, which the script sets"),
         (changed(("(self, speed)", "(self, speed, robot)")),
          ["SM609 cell/find.py:5 robot"], None),
         (changed(("(self, userdata)", "(self)")), ["SM609 cell/find.py:11 execute"], None),
@@ -422,6 +422,30 @@ def test_a_key_that_no_outcome_sets() -> None:
     kept = interface.replace("{tries: int}", "{tries: int, pose: any}")
     report = findings(changed((SET, "")), kept, SCRIPT.replace("{tries: 0}", "{tries: 0, pose: 1}"))
     assert all(item.code != "SM314" for item in report)
+
+
+@pytest.mark.parametrize(
+    ("files", "place", "help"),
+    [
+        ({"cell/look.py": "class Find: pass\n"}, "cell.find", "write `cell.look:Find`"),
+        (
+            {"tools/look.py": "\nclass Find(Base):\n    pass\n"},
+            "cell.find",
+            "write `tools.look:Find`",
+        ),
+        ({"cell/look.py": "class Find: pass\n", "cell/see.py": "class Find: pass\n"}, "Find", None),
+        ({"cell/look.py": "from cell.see import Find\n"}, "Find", None),
+        ({"cell/look.py": "    class Find: pass\n"}, "Find", None),
+    ],
+)
+def test_a_class_that_is_in_another_module(
+    files: dict[str, str], place: str, help: str | None
+) -> None:
+    interface = INTERFACE.replace("cell.find:FindPart", "cell.find:Find")
+    (item,) = findings("LIMIT = 3\n", interface, **files)
+    assert (item.code, item.span.text) == ("SM608", place)
+    assert ("but in `" in item.message) == (help is not None)
+    assert help is None or item.help == help
 
 
 def test_a_module_that_does_not_exist() -> None:

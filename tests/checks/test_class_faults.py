@@ -232,11 +232,19 @@ def test_a_wrong_constant_is_marked_where_its_text_is(text: str, help: str) -> N
         ("from cells.camera import Camera", "cells.camera", "did you mean `cell.camera`?"),
         ("from tools.grp import Camera", "tools.grp", "did you mean `tools.grip`?"),
         ("from cell.camera import CAMERA", "CAMERA", "did you mean `Camera`?"),
+        ("from cell.camera import Camera, Lamp", "Lamp", "import `Lamp` from `tools.lamp`, which"),
+        ("from cell.camera import Camera, focus", "focus", "import `focus` from `cell.focus`"),
+        ("from cell.camera import Camera, twice", "twice", "define it in `cell/camera.py`"),
     ],
 )  # fmt: skip
 def test_imports_that_fail(line: str, place: str, help: str) -> None:
     change = ("from cell.camera import Camera", line)
-    item = only(change, files={"tools/grip.py": "Camera = print\n"})
+    files = {
+        "tools/grip.py": "Camera = print\n\ndef twice(): pass\n",
+        "tools/lamp.py": "class Lamp:\n    pass\n\ndef twice(): pass\n",
+        "cell/focus.py": "def focus(distance):\n    return distance\n",
+    }
+    item = only(change, files=files)
     assert (item.code, item.span.text) == ("SM608", place)
     assert help in (item.help or "")
 

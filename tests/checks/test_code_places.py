@@ -154,7 +154,7 @@ def test_a_parameter_of_another_name_is_one_finding() -> None:
     script = MAIN.replace("template: Move,", "template: Move, arm: left,")
     report = analyse(Source("main.yml", script), memory_library(files, BUILT_IN), []).report
     found = [(each.span.text, each.help) for each in report if each.code == "SM609"]
-    assert found == [("limb", "rename the parameter `limb` to `arm`, or the variable to `limb`")]
+    assert found == [("limb", "rename the parameter `limb` to `arm`, which the script sets")]
 
 
 def test_a_misspelt_outcome_in_a_header_is_one_finding() -> None:

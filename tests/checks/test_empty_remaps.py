@@ -39,7 +39,7 @@ def found(inputs: str, offset: str) -> list[tuple[str, str, str, str | None]]:
         ("spot, above", "abov", "did you mean `above`?"),
         ("spot, above", "above_offset", "did you mean `above`?"),
         ("spot, above", "above_table", "did you mean `above`?"),
-        ("spot", "above", "add `above` to the `input_keys` of `PICK`"),
+        ("spot", "above", "write `input_keys: [spot, above]` in `PICK`"),
     ],
 )
 def test_an_optional_key_of_a_key_that_nothing_sets(inputs: str, offset: str, help: str) -> None:

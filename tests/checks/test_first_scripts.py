@@ -176,7 +176,7 @@ PLACES = [
         "{placed: counted, put: aborted}",
         "{counted: placed, put: aborted}",
         "SM403 counted",
-        "the outcome that is renamed comes first: `placed: counted`",
+        "write `placed: counted`: the outcome that is renamed comes first",
     ),
     (
         "{placed: counted, put: aborted}",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from smachac.checks.messages import names_apart
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse
 from smachac.frontend.loader import memory_library
@@ -27,6 +28,7 @@ STEPS = {
     "touch": "template: MoveAlongState, remapping: {pose: a}",
     "home": "template: MoveToJointPositionsState, remapping: {positions: home}",
     "wait": "template: SleepState, time: 1",
+    "check": "template: CheckGraspState",
     "own": "template: ScriptedState, outcomes: [succeeded, aborted, preempted]",
 }
 
@@ -84,3 +86,38 @@ def test_on_one_path_the_gripper_was_opened() -> None:
     assert reported("open to close to close", S0="S1") == ["sm/S4"]
     assert reported("own open to close", S0="S2") == []
     assert reported("to close to open to close", S2="S5") == []
+
+
+@pytest.mark.parametrize(
+    ("steps", "state"),
+    [
+        ("to close check to close", "sm/S4"),
+        ("to close check to close lift", "sm/S4"),
+        ("to close check to close home close open", "sm/S4"),
+        ("to close check to close home to open", None),  # the body is only held more firmly
+        ("to close check to close open lift", None),
+        ("to close check to close own", None),  # the stand-in may open the gripper
+    ],
+)
+def test_a_gripper_that_holds_a_body_is_closed_again(steps: str, state: str | None) -> None:
+    assert reported(steps) == ([state] if state else [])
+
+
+def test_the_gripper_is_opened_only_after_a_failure() -> None:
+    """The second state that closes the gripper was meant to place the body."""
+    assert reported("to close check to close lift", S4="S6", S5="S6") == ["sm/S4"]
+    steps = "to close check to close wait"
+    text = steps + " open"
+    assert reported(text, S0="S6", S4="S6") == []
+
+
+def test_names_of_states_that_are_equal() -> None:
+    """Each gets so much of its path as tells it apart."""
+    assert names_apart(("sm/PLACE/GRIP", "sm/PICK/GRIP", "sm/CHECK")) == [
+        "PLACE/GRIP",
+        "PICK/GRIP",
+        "CHECK",
+    ]
+    assert names_apart(("sm/A/C/GRIP", "sm/B/C/GRIP")) == ["A/C/GRIP", "B/C/GRIP"]
+    assert names_apart(("sm/GRIP", "sm/GRIP")) == ["GRIP", "GRIP"]
+    assert names_apart(("sm/GRIP", "sm/A/GRIP")) == ["sm/GRIP", "A/GRIP"]

@@ -46,7 +46,7 @@ states:
       transitions: {yes_: some, no_: all}
 """
 REPORT = ROUND[ROUND.index("  - REPORT") :]
-ADD = "add `refused` to the `output_keys` of `ROUND`"
+ADD = "write `output_keys: [refused]` in `ROUND`"
 
 
 def round_(*, out: str = "", after: str = "succeeded", initial: str = "HAND_OVER",
@@ -127,7 +127,7 @@ def shots(old: str = "", new: str = "") -> list[tuple[str, str, str | None]]:
 def test_a_result_goes_through_two_containers() -> None:
     assert shots() == []
     lost = shots("            output_keys: [images]\n")
-    assert lost == [("SM307", "SHOTS", "add `images` to the `output_keys` of `SHOTS`")]
+    assert lost == [("SM307", "SHOTS", "write `output_keys: [images]` in `SHOTS`")]
 
 
 def test_a_remapped_result_with_a_misspelt_name() -> None:
@@ -147,7 +147,7 @@ def test_a_state_sets_a_key_that_it_also_takes_in() -> None:
     assert reported({"main.yml": text, "templates/TakeShot.yml": both}) == []
     text = text.replace("            output_keys: [images]\n", "")
     found = reported({"main.yml": text, "templates/TakeShot.yml": both})
-    assert found == [("SM307", "SHOTS", "add `images` to the `output_keys` of `SHOTS`")]
+    assert found == [("SM307", "SHOTS", "write `output_keys: [images]` in `SHOTS`")]
 
 
 COUNT = """\
@@ -181,7 +181,7 @@ def added(text: str) -> list[tuple[str, str, str | None]]:
 def test_only_the_interface_lists_the_key_that_is_lost() -> None:
     text = COUNT.replace(COUNT[COUNT.index("        - SHOW_IT") : COUNT.index("      trans")], "")
     text = text.replace("NEXT", "done")
-    help = "add `n` to the `output_keys` of `INNER`"
+    help = "write `output_keys: [n]` in `INNER`"
     plain = text.replace("LIMIT", "").replace(", timeout: done", "")
     assert added(plain) == [("SM307", "INNER", help)]
     assert added(text.replace("LIMIT", "timeout: 9s, ")) == [("SM307", "INNER", help)]

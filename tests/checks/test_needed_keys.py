@@ -50,7 +50,7 @@ CONDITION = """template: ConditionState
 def test_a_key_that_a_condition_reads_in_a_container(state: str, outcomes: tuple[str, str]) -> None:
     text = GUARDED.replace("STATE", state)
     text = text.replace("GOOD", outcomes[0]).replace("BAD", outcomes[1])
-    help = "add `limit` to the `input_keys` of `GUARDED`"
+    help = "write `input_keys: [limit]` in `GUARDED`"
     without = text.replace("INPUTS", "")
     assert reported({"main.yml": without}) == [("SM303", "limit", help)]
     assert reported({"main.yml": text.replace("INPUTS", "      input_keys: [limit]\n")}) == []
@@ -160,7 +160,7 @@ OUTPUTS      it: parts
 
 
 def test_a_count_that_a_loop_keeps() -> None:
-    help = "add `found` to the `output_keys` of `ALL`"
+    help = "write `output_keys: [found]` in `ALL`"
     assert reported({"main.yml": COUNT.replace("OUTPUTS", "")}) == [("SM307", "ALL", help)]
     whole = COUNT.replace("OUTPUTS", "      output_keys: [found]\n")
     assert reported({"main.yml": whole}) == []

@@ -12,6 +12,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import CODES
 from smachac.frontend.config import Project, read_project
 from tests.checks.test_first_scripts import reported
+from tests.trust.project_text import analysed
 
 Row = tuple[str, str, str | None]
 
@@ -95,6 +96,103 @@ def test_transitions_in_a_remapping() -> None:
     help = "write `transitions` 2 columns further left, beside `remapping`"
     assert ("SM004", "transitions", help) in found
     assert {code for code, *_ in found} == {"SM004", "SM201"}
+
+
+CHOOSE = """\
+name: sm
+outcomes: [done, failed]
+userdata: {n: 1}
+states:
+  - CHOOSE:
+      template: ConditionalOutcomeState
+      outcomes: [low]
+      input_keys: [n]
+      callbacks:
+        low: 'lambda ud: ud.n < 3'
+      default_outcome: enough
+      transitions:
+        low: failed
+        enough: done
+"""
+JOIN = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [moved, hit]
+      default_outcome: hit
+      outcome_map:
+        moved: {MOVE: succeeded}
+        hit: {WATCH: invalid}
+      join: any
+      transitions:
+        moved: done
+        hit: failed
+      states:
+        - MOVE: {template: SleepState, time: 3}
+        - WATCH: {template: MonitorState, topic: bumper, msg_type: std_msgs/Bool, cond_cb: 'lambda
+            ud, msg: msg.data'}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "field", "after", "expected"),
+    [
+        (CHOOSE, "default_outcome: enough", "low: 'lambda ud: ud.n < 3'", "a condition in"),
+        (CHOOSE, "default_outcome: enough", "low: failed", "an outcome in `transitions`"),
+        (CHOOSE, "input_keys: [n]", "low: 'lambda ud: ud.n < 3'", "a key in `callbacks`"),
+        (CHOOSE, "outcomes: [low]", "low: 'lambda ud: ud.n < 3'", "a key in `callbacks`"),
+        (JOIN, "join: any", "hit: {WATCH: invalid}", "an outcome in `outcome_map`"),
+        (JOIN, "default_outcome: hit", "hit: {WATCH: invalid}", "an outcome in `outcome_map`"),
+        (JOIN, "join: any", "hit: failed", "an outcome in `transitions`"),
+    ],
+)
+def test_a_field_that_is_one_level_too_deep(
+    text: str, field: str, after: str, expected: str
+) -> None:
+    assert reported({"main.yml": text.replace("name: sm", "name: sm\ntemplate: ROSBase")}) == []
+    deep = text.replace(f"      {field}\n", "").replace(after, f"{after}\n        {field}")
+    (found,) = analysed(
+        {"main.yml": deep.replace("name: sm", "name: sm\ntemplate: ROSBase")}
+    ).report
+    word = field.partition(":")[0]
+    assert (found.code, found.span.text) == ("SM004", word)
+    assert found.message.startswith(f"`{word}` is a field of the state ")
+    assert expected in found.message
+    assert str(found.finding.help).startswith(f"write `{word}` 2 columns further left, beside ")
+
+
+@pytest.mark.parametrize("value", ["any", "'lambda outcomes: True'", "first"])
+def test_the_callback_of_smach_in_place_of_join(value: str) -> None:
+    text = JOIN.replace("join: any", f"child_termination_cb: {value}")
+    (row,) = reported({"main.yml": text.replace("name: sm", "name: sm\ntemplate: ROSBase")})
+    assert row[:2] == ("SM003", "child_termination_cb")
+
+
+def test_keys_and_outcomes_with_names_of_fields() -> None:
+    text = CHOOSE.replace("low", "default_outcome").replace("enough", "low")
+    text = text.replace("      default_outcome: low\n", "").replace("low: done", "default: done")
+    assert reported({"main.yml": text}) == []
+    text = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - COUNT:
+      template: CallbacksState
+      userdata: {outcomes: [a, b]}
+      input_keys: [outcomes]
+      output_keys: [retry]
+      callbacks: {retry: 'lambda ud: len(ud.outcomes)'}
+      transitions: {succeeded: CHOOSE}
+  - CHOOSE:
+      template: ConditionalOutcomeState
+      outcomes: [again]
+      input_keys: [retry]
+      callbacks: {again: 'lambda ud: ud.retry < 3'}
+      transitions: {again: failed, default: done}
+"""
+    assert reported({"main.yml": text}) == []
 
 
 TYPE = """\

@@ -56,6 +56,124 @@ states:
 """
 
 
+@pytest.mark.parametrize("turned", ["preempted: placed", "preempted: placed, lost: exhausted"])
+def test_a_turned_final_outcome_map_is_one_finding(turned: str) -> None:
+    text = TRAY.replace("ITEMS", "tray").replace("LABEL", "part")
+    text = text.replace("placed: preempted", turned).replace("[placed]}", "[placed, lost]}")
+    text = text.replace("[exhausted, preempted]", "[exhausted, lost, preempted]")
+    text = text.replace("{exhausted: sorted", "{exhausted: sorted, lost: stopped")
+    help = "write `placed: preempted`: the outcome that is renamed comes first"
+    assert reported({"main.yml": text})[-1] == ("SM403", "preempted", help)
+    assert not [code for code, *_ in reported({"main.yml": text}) if code == "SM208"]
+
+
+LINE_UP = """\
+name: docking
+outcomes: [docked, failed]
+states:
+  - APPROACH:
+      template: ScriptedState
+      outcomes: [there, blocked]
+      transitions: {there: ALIGN, blocked: failed}
+  - ALIGN:
+      template: ScriptedState
+      outcomes: [aligned, unseen]
+      output_keys: [offset]
+      transitions: {aligned: DOCK, unseen: failed}
+  - DOCK:
+      template: ScriptedState
+      input_keys: [distance]
+      remapping: {distance: offset}
+      outcomes: [done]
+      transitions: {done: docked}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("there: ALIGN", "there: DOCK", ["SM201 ALIGN"]),
+        ("there: ALIGN", "there: docked", ["SM201 ALIGN"]),
+        ("distance: offset", "distance: ofset", ["SM302 ofset"]),
+        ("aligned: DOCK, unseen: failed", "aligned: DOCK, unseen: DOCK", []),
+    ],
+)
+def test_a_key_of_a_state_that_is_led_past(old: str, new: str, expected: list[str]) -> None:
+    """The key is set once the transition leads to the state."""
+    found = [
+        f"{code} {word}" for code, word, _ in reported({"main.yml": LINE_UP.replace(old, new)})
+    ]
+    assert found == expected
+
+
+FOLLOW = """\
+name: follow
+outcomes: [done]
+userdata: {person: anna, tries: 3, side: left}
+states:
+  - FOLLOW:
+      template: StateMachine
+      outcomes: [done]
+LISTS
+      transitions: {done: done}
+      states:
+        - TRACK:
+            template: PrintUserdataState
+            input_keys: [person, tries, side]
+            transitions: {succeeded: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("lists", "expected"),
+    [
+        ("input_keys: [tries, side]", "write `input_keys: [tries, side, person]` in `FOLLOW`"),
+        ("input_keys: {tries: int, side: str}", "add `person` to the `input_keys` of `FOLLOW`"),
+        (
+            "input_keys:\n      - tries\n      - side",
+            "add `person` to the `input_keys` of `FOLLOW`",
+        ),
+        ("input_keys: [tries, side]  # all", "write `input_keys: [tries, side, person]` in"),
+        ("input_keys: [tries, side, a, b, c]", "add `person` to the `input_keys` of `FOLLOW`"),
+    ],
+)
+def test_the_whole_list_of_keys(lists: str, expected: str) -> None:
+    rows = reported({"main.yml": FOLLOW.replace("LISTS", f"      {lists}")})
+    (help,) = [help for code, _, help in rows if code == "SM303"]
+    assert (help or "").startswith(expected)
+
+
+def test_a_list_of_keys_that_is_missing() -> None:
+    text = FOLLOW.replace("LISTS\n", "").replace("[person, tries, side]", "[person]")
+    helps = [help for code, _, help in reported({"main.yml": text}) if code == "SM303"]
+    assert helps == ["write `input_keys: [person]` in `FOLLOW`"]
+
+
+@pytest.mark.parametrize(
+    ("code", "expected"),
+    [
+        ('"lambda ud: ud.part.length < 3"', "write `ud.part['length']` for"),
+        ("'lambda ud: ud.part.length < 3'", 'write `ud.part["length"]` for'),
+    ],
+)
+def test_quotes_that_fit_the_scalar(code: str, expected: str) -> None:
+    text = f"""\
+name: sm
+outcomes: [done]
+userdata: {{part: {{length: 3.0}}}}
+states:
+  - CHOOSE:
+      template: ConditionalOutcomeState
+      outcomes: [ok]
+      input_keys: [part]
+      callbacks: {{ok: {code}}}
+      transitions: {{ok: done, default: done}}
+"""
+    ((found, word, help),) = reported({"main.yml": text})
+    assert (found, word) == ("SM311", "length")
+    assert (help or "").startswith(expected)
+
+
 @pytest.mark.parametrize(
     ("items", "label", "found"),
     [

@@ -77,7 +77,7 @@ def findings(rules: str, main: str = MAIN, base: str = BASE) -> list[tuple[str, 
         ("userdata.parts", "userdata.partz",
          ("SM310", "bin/rules.py:2 partz", "did you mean `parts`?")),
         ("userdata.best[", "userdata.choice[",
-         ("SM310", "bin/rules.py:6 choice", "add `choice` to the `input_keys` of `SURE`")),
+         ("SM310", "bin/rules.py:6 choice", "write `input_keys: [best, choice]` in `SURE`")),
     ],
 )  # fmt: skip
 def test_a_fault_in_a_function(old: str, new: str, expected: tuple[str, str, str]) -> None:
@@ -136,7 +136,7 @@ def test_a_key_that_a_function_reads_is_no_dead_key() -> None:
     main = MAIN.replace("      input_keys: [parts]\n", "      input_keys: []\n")
     ((code, place, help),) = findings(RULES, main)
     assert (code, place) == ("SM310", "bin/rules.py:2 parts")
-    assert help == "add `parts` to the `input_keys` of `CHOOSE`"
+    assert help == "write `input_keys: [parts]` in `CHOOSE`"
 
 
 @pytest.mark.parametrize(

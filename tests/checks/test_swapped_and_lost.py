@@ -427,7 +427,7 @@ states:
         ("input_keys: [count, most]", "state_data: [more, left]",
          [("SM003", "state_data", "did you mean `output_keys`?")]),
         ("input_keys: [count, most]", "output_keys: [more]",
-         [("SM308", "left", "add `left` to the `output_keys` of `COUNT`")]),
+         [("SM308", "left", "write `output_keys: [more, left]` in `COUNT`")]),
     ],
 )  # fmt: skip
 def test_a_state_that_has_lost_its_list_of_keys(

@@ -171,7 +171,7 @@ def test_all_containers_between_have_to_take_a_key_in() -> None:
     outer = machine("D", "out", inner, to={"out": "done"})
     item = one(root(outer, held={"k": 1}), "SM303")
     assert item.finding.node == "sm/D/E/R"
-    assert item.finding.help == "add `k` to the `input_keys` of `D`, `E`"
+    assert item.finding.help == "write `input_keys: [k]` in `D`, `E`"
     assert found(root(outer, held={"k": 1})) == ["SM303 sm/D/E/R"]
 
 

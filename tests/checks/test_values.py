@@ -176,6 +176,17 @@ def grip(variables: str = "", values: str = "doc: x", keys: str = "", more: str 
         ("{type: float<rad>}", "12.566", None),
         ("{type: 'float<rad>[2]'}", "[1, 12.566]", "SM522:12.566"),
         ("{type: 'float<rad>[2]'}", "[6.28, -6.28]", None),
+        (
+            "{type: 'list[{x: float<m>, yaw: float<rad>}]'}",
+            "[{x: 1, yaw: 0}, {x: 90, yaw: 90}]",
+            "SM522:90",
+        ),
+        ("{type: '{x: float<m>, yaw: float<rad>?}'}", "{x: 90, yaw: 1.57}", None),
+        ("{type: '{x: float<m>, yaw: float<rad>}'}", "{x: 9, yaw: -45.0}", "SM522:-45.0"),
+        ("{type: 'dict[str, {yaw: float<rad>}]'}", "{a: {yaw: 180}}", "SM522:180"),
+        ("{type: '{joints: list[float<rad>]}'}", "{joints: [7.5, 0]}", "SM522:7.5"),
+        ("{type: '{yaw: float<deg>}'}", "{yaw: 90}", None),
+        ("{type: '{yaw: float<rad>}'}", "{yaw: 12.566}", None),
         ("{names: limb}", "anything", None),
         ("{names: model}", "anything", None),
     ],
@@ -456,3 +467,18 @@ def test_an_arm_without_a_gripper(limb: str, expected: list[str]) -> None:
         "arm.urdf": f'<robot name="arms">{links}{joints}</robot>',
     }
     assert [f"{code} {text}" for code, text in seen(files)] == expected
+
+
+@pytest.mark.parametrize(
+    ("variable", "expected"),
+    [
+        ("{type: float<rad>, default: 90}", [("SM522", "90")]),
+        ("{type: float<rad>, default: 1.57}", []),
+        ("{type: 'list[{yaw: float<rad>}]', default: [{yaw: 1}, {yaw: 45}]}", [("SM522", "45")]),
+        ("{type: float<deg>, default: 90}", []),
+        ("{type: float<rad>, default: 90, max: 6.29}", [("SM520", "90")]),
+        ("{type: float<rad>?, default: null}", []),
+    ],
+)
+def test_a_default_in_degrees(variable: str, expected: list[tuple[str, str]]) -> None:
+    assert seen(grip(f"force: {variable}", "tags: [slow]")) == expected

@@ -60,6 +60,10 @@ def test_a_correct_class() -> None:
          "the class `arm::Grasp` has no method `execute`"),
         ({"grasp": CLASS.replace("class Grasp", "class Grip")}, "SM608 templates/Grasp.yml:4:44",
          "is defined in `arm/grasp.hpp` did you mean `Grip`?"),
+        ({"grasp": CLASS.replace("class Grasp", "class Grip"), "held": CLASS},
+         "SM608 templates/Grasp.yml:4:22", "but in `arm/held.hpp` write `arm/held.hpp`"),
+        ({"grasp": CLASS.replace("class Grasp", "class Grip"), "held": "class Grasp;"},
+         "SM608 templates/Grasp.yml:4:44", "is defined in `arm/grasp.hpp` did you mean `Grip`?"),
         ({"grisp": CLASS}, "SM608 templates/Grasp.yml:4:22", "did you mean `arm/grisp.hpp`?"),
     ],
 )  # fmt: skip

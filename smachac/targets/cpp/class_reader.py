@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
+from smachac.frontend.other_modules import file_with
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
 from smachac.ir.types import STRUCTS, unknown_words
@@ -74,7 +75,13 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     name = code.name.rpartition("::")[2]
     if not re.search(rf"\b{re.escape(name)}\b|^\s*#\s*define\b", whole.text, re.M):
         word = Word(name, type_.class_spans.get(("cpp", "class"), NOWHERE))
-        return _absent(code, _absent_class(word, whole, code.header))
+        fault = _absent_class(word, whole, code.header)
+        pattern = re.compile(_CLASS.format(re.escape(name)))
+        other = file_with(pattern, code.header, (".hpp", ".h", ".hh"), library) if fault else None
+        if fault is not None and other is not None:
+            header_span = type_.class_spans.get(("cpp", "header"), word.span)
+            fault = replace(fault, name=Word(word.text, header_span), more=other)
+        return _absent(code, fault)
     head = whole.only(_CLASS.format(re.escape(name)))
     body = whole.inside(head)
     if head is None or body is None or "#" in body.text:
