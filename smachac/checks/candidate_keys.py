@@ -3,6 +3,7 @@ that is read (SM301)."""
 
 from __future__ import annotations
 
+from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import NamedTuple
 
@@ -13,9 +14,30 @@ from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, widened
 from smachac.analysis.unset_reads import Reader, reader_at
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import guesser, words_of
+from smachac.diagnostics.spelling import Guesser, guesser, words_of
+from smachac.ir import nodes
+from smachac.ir.nodes import Container
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
+
+
+def keys_around(container: Container) -> set[str]:
+    """The keys of a container that it gets, or that a state in it sets."""
+    found = {preset.key for preset in container.userdata} | {key.name for key in container.inputs}
+    if isinstance(container, nodes.Iterator):
+        return found - {container.item_key}
+    for child in container.children:
+        names = remapping(child)
+        found |= {names.get(key.name, key.name) for key in child.outputs}
+    return found
+
+
+def meant_input(key: str, guess: Guesser, used: AbstractSet[str], around: Container) -> str | None:
+    """The input of a state that is probably meant by a key that its code reads and that it does not
+    declare: the one with the nearest name. None if the container `around` the state has a key of
+    exactly this name, and the code reads the nearest one too (`used`)."""
+    near = guess(key)
+    return None if near in used and key in keys_around(around) else near
 
 
 class UnreadOutput(NamedTuple):
