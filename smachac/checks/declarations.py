@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import groupby
 from typing import Literal
 
-from smachac.analysis.accesses import callback_names, userdata_fields
+from smachac.analysis.accesses import callback_names, unreceived_outputs, userdata_fields
 from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of
@@ -37,7 +38,12 @@ from smachac.checks.remap_slips import keys_of_swapped
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code, lone_input
 from smachac.checks.unsent_keys import unsent_keys
-from smachac.checks.unwritten_keys import read_unwritten, unwritten_finding, unwritten_keys
+from smachac.checks.unwritten_keys import (
+    read_unwritten,
+    unreceived_finding,
+    unwritten_finding,
+    unwritten_keys,
+)
 from smachac.checks.word_loops import (
     is_over_the_word,
     loop_over_the_word,
@@ -337,8 +343,10 @@ def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ..
 
 def _sets(node: Node, key: Key) -> bool:
     """Whether a state can set one of its outputs (if not: SM306)."""
-    if not isinstance(node, Leaf) or key.role != "result":
+    if not isinstance(node, Leaf):
         return True
+    if key.role != "result":
+        return key.name not in unreceived_outputs(node)
     return key.name in callback_names(node)
 
 
@@ -349,7 +357,9 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     The caller of a container must provide a key without need, or expects a result that is never
     set. An unused param has no effect, so the robot does not do what the caller intended.
 
-    Exactly: params are not checked where a template without an interface reads `params`.
+    Exactly: params are not checked where a template without an interface reads `params`. An output
+    key of a ServiceState or SimpleActionState is set if `response_slots` or `result_slots` lists
+    it, or if a function of the script receives the userdata and passes it on.
 
     Wrong:
         name: sm
@@ -436,7 +446,14 @@ def _unwritten_outputs(context: Context) -> Iterator[Finding]:
     """The output keys that built-in states never write."""
     unwritten = unwritten_keys(context)
     read = read_unwritten(context, unwritten) if unwritten else {}
+    for path, found in groupby(unwritten, key=lambda each: each.path):
+        every = [each for each in found if each.slots]
+        if every:
+            is_read = any((path, each.key.name) in read for each in every)
+            yield unreceived_finding(every, context.machine.definitions, read=is_read)
     for each in unwritten:
+        if each.slots:
+            continue
         finding = unwritten_finding(each, read=(each.path, each.key.name) in read)
         if finding is not None:
             yield finding
