@@ -469,7 +469,8 @@ def lost_output(context: Context) -> Iterator[Finding]:
 
     Exactly: an error if the key is unset outside, a warning if it has an older value. The reader
     can be the container itself, where it runs again, in a loop or for the next item of `for_each`,
-    if no state in it reads the key after it is set.
+    if no state in it reads the key after it is set, or if it counts once in each run for one of its
+    conditions (`ud.tries + 1`) and nothing around it sets the key.
 
     Wrong:
         name: sm
