@@ -17,7 +17,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
-from smachac.checks.candidate_keys import meant_by_types
+from smachac.checks.candidate_keys import meant_by_remaps, meant_by_types
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.empty_remaps import meant_by_empty_remaps
@@ -199,7 +199,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found = {(each.keeper.path, each.own) for each in context.lost_outputs}  # SM307
     found |= {(each.other, each.key) for each in context.missing_keys("outside")}
     found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
-    found |= meant_by_empty_remaps(context)
+    found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
     found |= meant_by_types(context)  # SM301
@@ -404,7 +404,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
     misnamed = {each.word.span: each for each in misnamed_keys(context).values()}
-    kept |= meant_by_empty_remaps(context)  # SM302
+    kept |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     yield from _unwritten_outputs(context)

@@ -10,6 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of, uses_by_key
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import unknown_remaps
+from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import (
     Missing,
     Searches,
@@ -17,7 +18,7 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
-from smachac.checks.candidate_keys import unread_output
+from smachac.checks.candidate_keys import may_be, meant_by_remap, unread_output
 from smachac.checks.declarations import swapped_loop
 from smachac.checks.edits import with_input, with_output
 from smachac.checks.empty_remaps import empty_remap_findings
@@ -39,6 +40,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
+from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -265,7 +267,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     yield from context.at_containers(_unknown_remaps)
     guesses = Guesses()
     for missing in context.missing_keys("remapped"):
-        yield from _remapped(missing, guesses)
+        yield from _remapped(context.types, missing, guesses)
     yield from empty_remap_findings(context)
 
 
@@ -314,7 +316,7 @@ def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[
         )
 
 
-def _remapped(missing: Missing, guesses: Guesses) -> Iterator[Finding]:
+def _remapped(types: Types, missing: Missing, guesses: Guesses) -> Iterator[Finding]:
     """The remaps to a key that nothing sets."""
     scope, key = missing.scope, missing.key
     around = scope.container.name
@@ -322,11 +324,21 @@ def _remapped(missing: Missing, guesses: Guesses) -> Iterator[Finding]:
         for remap in child.remaps:
             if remap.to != key or child.name not in missing.vertices:
                 continue
-            guess = guesses.of(scope)(key)
-            unread = unread_output(scope, key) if guess is None else None
-            help = did_you_mean(guess) or (unread.help if unread is not None else None)
+            meant = meant_by_remap(types, scope, child, remap, guesses.of(scope))
+            unread = unread_output(scope, key) if meant is None else None
+            wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
+            fits = unread is not None and may_be(types, scope, unread.key, wanted)
+            help = unread.help if unread is not None and fits else None
+            related: tuple[Related, ...] = ()
+            if meant is not None:
+                help = did_you_mean(meant.key)
+            if meant is not None and meant.place is not None:
+                help = f"write `{remap.key}: {meant.key}`"
+                help += f", which `{meant.setter}` sets" if meant.setter else ""
+                related = other_place(meant.place, f"nothing reads `{meant.key}`")
             other = swapped_remap(missing, child, remap)
             if other is not None:
+                related = ()
                 help = f"the keys of `{remap.key}` and `{other.key}` have changed places: write"
                 help += f" `{remap.key}: {other.to}, {other.key}: {remap.to}`"
             yield Finding(
@@ -338,7 +350,7 @@ def _remapped(missing: Missing, guesses: Guesses) -> Iterator[Finding]:
                 or f"set `{key}` before this state, or give it an initial value in `{around}`:"
                 f" `userdata: {{{key}: ...}}`",
                 effect=UNSET,
-                related=calls(child, remap.span),
+                related=(*related, *calls(child, remap.span)),
                 node=f"{scope.path}/{child.name}",
             )
 
