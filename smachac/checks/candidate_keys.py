@@ -159,7 +159,7 @@ def meant_by_remaps(context: Context) -> set[tuple[str, str]]:
             for remap in child.remaps:
                 if remap.to == missing.key and child.name in missing.vertices:
                     meant = meant_by_remap(context.types, scope, child, remap, guessers[scope.path])
-                    if meant is not None and meant.place is not None:
+                    if meant is not None and written_place(scope, meant.key) is not None:
                         found.add((scope.path, meant.key))
     return found
 
