@@ -28,6 +28,7 @@ from smachac.checks.initial_presets import (
 )
 from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.misled_failures import Misled, misled_failures
 from smachac.checks.races import raced_keys
 from smachac.checks.remap_slips import swapped_remap
 from smachac.checks.rule import rule
@@ -35,7 +36,7 @@ from smachac.checks.unset_read_findings import Guesses, unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import guesser, respelt, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Key, Node
@@ -101,7 +102,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     searches = Searches(flow)
     guesses = Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
-    presets = meant_keys(context)
+    presets, misled = meant_keys(context), misled_failures(context)
     misnamed = misnamed_keys(context)
     moved = {each.path for each in context.misplaced}
     causes = _with_their_own_cause(context)
@@ -135,6 +136,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
                 finding = _with_meant_key(finding, witness, meant)
             elif missing.cause != "nowhere":
                 finding = _with_outer_key(finding, missing, flow.scopes)
+                finding = _with_end(finding, missing, witness, misled)
             yield finding
 
 
@@ -172,6 +174,29 @@ def _with_outer_key(
     name = scope.container.name
     help = f"add `{key}` to the `input_keys` of `{name}`: `{around.container.name}` has a value"
     return replace(finding, help=f"{help} for it")
+
+
+def _with_end(
+    finding: Finding,
+    missing: Missing,
+    witness: Witness,
+    misled: Mapping[tuple[str, str], Misled],
+) -> Finding:
+    """The finding on a key that is unset after a failure, where an outcome of the container, to
+    which nothing leads, is probably meant as the target of its transition."""
+    found = misled.get((missing.scope.path, missing.key))
+    if found is None or found.step.target != witness.reader.node.name:
+        return finding
+    meant, step = found.meant, found.step
+    return replace(
+        finding,
+        help=f"write `{written_name(step.outcome)}: {meant.name}`, to which nothing leads",
+        related=(
+            *other_place(step.target_span, f"`{step.outcome}` leads to `{step.target}`"),
+            *other_place(meant.span, f"nothing leads to the outcome `{meant.name}`"),
+            *finding.related,
+        ),
+    )
 
 
 def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Finding:
