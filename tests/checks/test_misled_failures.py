@@ -37,7 +37,7 @@ def found(
     fact: str = "", outcomes: str = "done, camera_failed", first: str = "",
 ) -> list[Row]:  # fmt: skip
     own = "blurred" if failed == "exhausted" else failed
-    stop = ", preempted: done" if failed == "exhausted" else ""
+    stop = ", preempted: preempted" if failed == "exhausted" else ""
     text = (
         ROUND.replace("TARGET}", f"TARGET{stop}}}")
         .replace("FAILED", failed)
@@ -61,7 +61,8 @@ def found(
 )
 def test_a_failure_leads_past_its_outcome(failed: str, extra: str, fact: str) -> None:
     help = f"write `{failed}: camera_failed`, to which nothing leads"
-    assert found(failed, extra=extra, fact=fact) == [("SM301", "moisture", help)]
+    outcomes = "done, camera_failed" + ", preempted" * (failed == "exhausted")
+    assert found(failed, extra=extra, fact=fact, outcomes=outcomes) == [("SM301", "moisture", help)]
 
 
 def test_a_correct_script() -> None:
