@@ -10,10 +10,11 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
-from smachac.ir.nodes import Expression, Leaf, Node, Struct
+from smachac.ir.nodes import Expression, Leaf, Node, Struct, VariableRole
 from smachac.ir.outcome_names import fails
 from smachac.ir.traversal import PREEMPTED, remapping
 
@@ -116,6 +117,7 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
     here = frozenset(key for name, keys in leaf.writes for key in keys if name == outcome)
     unlisted = outputs - listed
     results = key_names(leaf.outputs, "result")
+    unlisted -= unreceived_outputs(leaf)
     trusted = NONE
     if results and functions(leaf, "callbacks") is not None:
         unlisted -= results
@@ -128,6 +130,34 @@ def leaf_writes(leaf: Leaf, outcome: str, *, raw: bool = False) -> Writes:
     if outcome == PREEMPTED or fails(leaf, outcome):
         trusted = NONE
     return Writes(sure, sure | trusted, perhaps)
+
+
+def received_part(leaf: Leaf) -> VariableRole | None:
+    """What a state with a service or an action receives: the role of the variable that lists the
+    output keys for its fields."""
+    if variable_of(leaf, "service_type") is not None:
+        return "response"
+    return "result" if variable_of(leaf, "action_type") is not None else None
+
+
+def unreceived_outputs(leaf: Leaf) -> frozenset[str]:
+    """The outputs of a built-in state with a service or an action that nothing in it sets: they are
+    not listed for fields of the response or result, and no function of the script sets them."""
+    if not leaf.built_in or not leaf.outputs or leaf.open or leaf.stand_in:
+        return NONE
+    role = received_part(leaf)
+    if role is None:
+        return NONE
+    held = variable_of(leaf, role)
+    listed = () if held is None or held.value.data is None else held.value.data
+    if not isinstance(listed, tuple) or None in _fields_of_functions(leaf):
+        return NONE  # a function that passes userdata on can set its keys
+    names = [each for each in listed if isinstance(each, str)]
+    left = [key.name for key in leaf.outputs if key.name not in names]
+    if not left or len(names) < len(listed):
+        return NONE
+    near = guesser(names)
+    return frozenset(key for key in left if near(key) is None)
 
 
 def _never_set(leaf: Leaf, outcome: str) -> frozenset[str]:

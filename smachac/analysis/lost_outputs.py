@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import NamedTuple
 
+from smachac.analysis.accesses import fields_of, function_body
 from smachac.analysis.def_use import around, place_in
 from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
 from smachac.analysis.unset_reads import MOST_LEVELS, MOST_STEPS, Missing, Reader, reader_at
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.graph import Vertex
-from smachac.ir.nodes import Concurrence, Key, Leaf, Node
+from smachac.ir.leaf import functions, variable_of
+from smachac.ir.nodes import Concurrence, Key, Leaf, Node, Sequence, StateMachine
 from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import remapping
 
@@ -151,14 +154,65 @@ def _again(
     scope: UserdataScope, own: str, writer: Node, levels: Iterable[_Level]
 ) -> Iterator[tuple[_Level, Vertex]]:
     """The keeper of a key, where it runs again and takes in the old value of a key that it sets for
-    no other purpose."""
-    if own not in scope.inputs or not _is_dead(scope, writer, own):
+    no other purpose, or that it counts for a condition and that nothing around it sets."""
+    dead = own in scope.inputs and _is_dead(scope, writer, own)
+    if own not in scope.inputs or not (dead or _counts_once(scope, writer, own)):
         return
     for level in levels:
+        others = (each for each in level.scope.container.children if each.name != level.place)
+        if not dead and any(level.key in _set_by(each) for each in others):
+            return
         if _read_after(level.scope, level.place, level.key, again=True) == level.place:
             yield level, level.place
         if not level.scope.container.sugar:
             return
+
+
+def _counts_once(scope: UserdataScope, writer: Node, own: str) -> bool:
+    """Whether a state counts a key at most once in each run of its container, and a condition of
+    the container reads the key: a count that begins again in each run has no other use."""
+    if not isinstance(writer, Leaf) or not isinstance(scope.container, StateMachine | Sequence):
+        return False
+    names = remapping(writer)
+    counted = [key.name for key in writer.outputs if names.get(key.name, key.name) == own]
+    if not any(_counts(writer, key) for key in counted):
+        return False
+    readers = (str(vertex) for vertex, keys in scope.reads.items() if own in keys)
+    decided = any(
+        isinstance(leaf := scope.children.get(name), Leaf) and variable_of(leaf, "conditions")
+        for name in readers
+    )
+    return decided and not _is_in_a_loop(scope, writer.name)
+
+
+def _counts(leaf: Leaf, key: str) -> bool:
+    """Whether a callback of a leaf adds to the old value of a key or subtracts from it."""
+    code = (functions(leaf, "callbacks") or {}).get(key)
+    found = function_body(code.text) if code is not None else None
+    if found is None or not isinstance(found[0], ast.BinOp):
+        return False
+    if not isinstance(found[0].op, ast.Add | ast.Sub):
+        return False
+    left, right = found[0].left, found[0].right
+    for old, step in ((left, right), (right, left)):
+        fields = (
+            fields_of(old, found[1]) if isinstance(old, ast.Attribute | ast.Subscript) else None
+        )
+        if fields is not None and fields.read == (key,):
+            return isinstance(step, ast.Constant | ast.List)
+    return False
+
+
+def _is_in_a_loop(scope: UserdataScope, start: str) -> bool:
+    """Whether a way leads from a vertex of a container back to it."""
+    todo: list[Vertex] = [start]
+    seen: set[Vertex] = set()
+    for vertex in todo:
+        for step in scope.steps.get(vertex, ()):
+            if step.target not in seen:
+                seen.add(step.target)
+                todo.append(step.target)
+    return start in seen
 
 
 def _missed(flow: DataFlow, missing: Missing) -> Lost:

@@ -3,6 +3,7 @@ that is read (SM301)."""
 
 from __future__ import annotations
 
+from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import NamedTuple
 
@@ -10,12 +11,33 @@ from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
-from smachac.analysis.type_lattice import fits, is_open, widened
+from smachac.analysis.type_lattice import fits, is_open, misfit, widened
 from smachac.analysis.unset_reads import Reader, reader_at
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import guesser, words_of
+from smachac.diagnostics.spelling import Guesser, guesser, words_of
+from smachac.ir import nodes
+from smachac.ir.nodes import Container, Node, Remap
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
+
+
+def keys_around(container: Container) -> set[str]:
+    """The keys of a container that it gets, or that a state in it sets."""
+    found = {preset.key for preset in container.userdata} | {key.name for key in container.inputs}
+    if isinstance(container, nodes.Iterator):
+        return found - {container.item_key}
+    for child in container.children:
+        names = remapping(child)
+        found |= {names.get(key.name, key.name) for key in child.outputs}
+    return found
+
+
+def meant_input(key: str, guess: Guesser, used: AbstractSet[str], around: Container) -> str | None:
+    """The input of a state that is probably meant by a key that its code reads and that it does not
+    declare: the one with the nearest name. None if the container `around` the state has a key of
+    exactly this name, and the code reads the nearest one too (`used`)."""
+    near = guess(key)
+    return None if near in used and key in keys_around(around) else near
 
 
 class UnreadOutput(NamedTuple):
@@ -68,6 +90,105 @@ def fitting_keys(types: Types, scope: UserdataScope, reader: Reader, wanted: Typ
     read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
     found.sort(key=lambda key: (key in read, key in scope.held))
     return found if len(found) <= MOST_FITTING else []
+
+
+def may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:
+    """Whether the type of a key of a container, as far as it is known, is not a wrong one."""
+    given = types.keys.get((scope.path, key), ANY)
+    return is_open(given) or is_open(wanted) or misfit(given, wanted) is None
+
+
+def keys_of(scope: UserdataScope) -> set[str]:
+    """The keys of a container: the candidates for a misspelt name."""
+    keys = {*scope.held, *scope.inputs}
+    for steps in scope.steps.values():
+        for step in steps:
+            keys |= step.writes.perhaps
+    return keys
+
+
+class MeantByRemap(NamedTuple):
+    """The key that a remapping means in place of one that nothing sets. `place`: where it is set,
+    if nothing reads it and its type fits; `setter` is the state that sets it there, if one does."""
+
+    key: str
+    place: Span | None = None
+    setter: str = ""
+
+
+def meant_by_remap(
+    types: Types, scope: UserdataScope, child: Node, remap: Remap, guess: Guesser
+) -> MeantByRemap | None:
+    """The key that the remapping of an input to a key that nothing sets probably means: one that is
+    one slip away; else one that nothing reads and that has the type of the input; else the one with
+    the nearest name. Never one that is known to have another type. `guess` is the guesser for the
+    keys of the container."""
+    wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
+    near = guess.sure(remap.to)
+    if near is not None and may_be(types, scope, near, wanted):
+        return MeantByRemap(near)
+    near = guess(remap.to)
+    if near is not None and not may_be(types, scope, near, wanted):
+        others = (key for key in sorted(keys_of(scope)) if may_be(types, scope, key, wanted))
+        near = guesser(others)(remap.to)
+    unread = _unread_of_type(types, scope, child, remap, wanted)
+    if near in unread:
+        return MeantByRemap(near)
+    key = unread[0] if len(unread) == 1 else guesser(unread)(remap.to)
+    place = written_place(scope, key) if key is not None else None
+    if key is None or place is None:
+        return MeantByRemap(near) if near is not None else None
+    setters = [
+        each.name
+        for each in scope.container.children
+        if any(remapping(each).get(one.name, one.name) == key for one in each.outputs)
+    ]
+    return MeantByRemap(key, place, setters[0] if setters and key not in scope.held else "")
+
+
+def meant_by_remaps(context: Context) -> set[tuple[str, str]]:
+    """The keys that nothing reads and that are meant by remappings to a key that nothing sets
+    (SM302), each with the path of its container."""
+    guessers: dict[str, Guesser] = {}
+    found: set[tuple[str, str]] = set()
+    for missing in context.missing_keys("remapped"):
+        scope = missing.scope
+        if scope.path not in guessers:
+            guessers[scope.path] = guesser(sorted(keys_of(scope)))
+        for child in scope.container.children:
+            for remap in child.remaps:
+                if remap.to == missing.key and child.name in missing.vertices:
+                    meant = meant_by_remap(context.types, scope, child, remap, guessers[scope.path])
+                    if meant is not None and written_place(scope, meant.key) is not None:
+                        found.add((scope.path, meant.key))
+    return found
+
+
+def _unread_of_type(
+    types: Types, scope: UserdataScope, child: Node, remap: Remap, wanted: Type
+) -> list[str]:
+    """The keys of a container that nothing reads, that another state than `child` sets, and that
+    have the type of one of its inputs; of a number, text or boolean only those with a word of the
+    remapping."""
+    if is_open(wanted):
+        return []
+    names = remapping(child)
+    own = {names.get(each.name, each.name) for each in child.outputs}
+    read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
+    found = [
+        key
+        for key in sorted(keys_of(scope) - read - own)
+        for given in [types.keys.get((scope.path, key), ANY)]
+        if not is_open(given) and widened(given) != ANY and fits(given, wanted)
+    ]
+    if wanted.name in SCALARS:
+        words = words_of(remap.key, remap.to)
+        found = [key for key in found if words & words_of(key)]
+    return found
+
+
+SCALARS = frozenset(["bool", "int", "float", "str"])
+"""The names of types that say little about what a value means."""
 
 
 def written_place(scope: UserdataScope, key: str) -> Span | None:

@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
+from smachac.checks.candidate_keys import meant_input
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -364,13 +365,15 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
         while levels[-1].sugar and (path_ := path.rsplit("/", len(levels) + 1)[0]) in containers:
             levels.append(containers[path_])
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
+        used = {word.text for word in facts.reads}
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
             message = (
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
                 " key of its interface"
             )
-            help = did_you_mean(guesser(inputs)(word.text)) or (
+            near = meant_input(word.text, guesser(inputs), used, around)
+            help = did_you_mean(near) or (
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )

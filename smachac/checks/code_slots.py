@@ -23,6 +23,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.type_inference import TypeFlow
+from smachac.checks.candidate_keys import meant_input
 from smachac.checks.class_values import none_writes
 from smachac.checks.edits import listing
 from smachac.checks.function_results import (
@@ -611,9 +612,12 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
             continue
         if facts.reads and not swapped(facts.parameters, slot.arguments):  # SM317
             calls_of.setdefault(slot.code.text, []).append(call)
+    containers = dict(context.containers) if calls_of else {}
     for used in calls_of.values():
         known = {key.name for _, node, _, _ in used for key in (*node.inputs, *node.outputs)}
         path, node, slot, facts = used[0]
+        guess, read = guesser(key.name for key in node.inputs), {word.text for word in facts.reads}
+        around = containers[path.rpartition("/")[0]]
         for word in {each.text: each for each in reversed(facts.reads)}.values():
             if word.text not in known:
                 yield Finding(
@@ -621,7 +625,7 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
                     message=f"`{facts.word.text}` reads `{word.text}`, which is not an input key of"
                     f" `{node.name}`",
                     arguments=(word.text,),
-                    help=did_you_mean(guesser(key.name for key in node.inputs)(word.text))
+                    help=did_you_mean(meant_input(word.text, guess, read, around))
                     or listing([node], "input_keys", word.text),
                     related=other_place(slot.code.span, f"`{node.name}` calls it here"),
                     node=path,

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import groupby
 from typing import Literal
 
-from smachac.analysis.accesses import callback_names, userdata_fields
+from smachac.analysis.accesses import callback_names, unreceived_outputs, userdata_fields
 from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of
@@ -16,7 +17,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
-from smachac.checks.candidate_keys import meant_by_types
+from smachac.checks.candidate_keys import meant_by_remaps, meant_by_types
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.empty_remaps import meant_by_empty_remaps
@@ -37,7 +38,12 @@ from smachac.checks.remap_slips import keys_of_swapped
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code, lone_input
 from smachac.checks.unsent_keys import unsent_keys
-from smachac.checks.unwritten_keys import read_unwritten, unwritten_finding, unwritten_keys
+from smachac.checks.unwritten_keys import (
+    read_unwritten,
+    unreceived_finding,
+    unwritten_finding,
+    unwritten_keys,
+)
 from smachac.checks.word_loops import (
     is_over_the_word,
     loop_over_the_word,
@@ -194,7 +200,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found = {(each.keeper.path, each.own) for each in context.lost_outputs}  # SM307
     found |= {(each.other, each.key) for each in context.missing_keys("outside")}
     found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
-    found |= meant_by_empty_remaps(context)
+    found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     found |= _swapped_lists(context)
     found |= meant_by_types(context)  # SM301
@@ -338,8 +344,10 @@ def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ..
 
 def _sets(node: Node, key: Key) -> bool:
     """Whether a state can set one of its outputs (if not: SM306)."""
-    if not isinstance(node, Leaf) or key.role != "result":
+    if not isinstance(node, Leaf):
         return True
+    if key.role != "result":
+        return key.name not in unreceived_outputs(node)
     return key.name in callback_names(node)
 
 
@@ -350,7 +358,9 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     The caller of a container must provide a key without need, or expects a result that is never
     set. An unused param has no effect, so the robot does not do what the caller intended.
 
-    Exactly: params are not checked where a template without an interface reads `params`.
+    Exactly: params are not checked where a template without an interface reads `params`. An output
+    key of a ServiceState or SimpleActionState is set if `response_slots` or `result_slots` lists
+    it, or if a function of the script receives the userdata and passes it on.
 
     Wrong:
         name: sm
@@ -395,7 +405,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
     misnamed = {each.word.span: each for each in misnamed_keys(context).values()}
-    kept |= meant_by_empty_remaps(context)  # SM302
+    kept |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)
     yield from _unwritten_outputs(context)
@@ -437,7 +447,14 @@ def _unwritten_outputs(context: Context) -> Iterator[Finding]:
     """The output keys that built-in states never write."""
     unwritten = unwritten_keys(context)
     read = read_unwritten(context, unwritten) if unwritten else {}
+    for path, found in groupby(unwritten, key=lambda each: each.path):
+        every = [each for each in found if each.slots]
+        if every:
+            is_read = any((path, each.key.name) in read for each in every)
+            yield unreceived_finding(every, context.machine.definitions, read=is_read)
     for each in unwritten:
+        if each.slots:
+            continue
         finding = unwritten_finding(each, read=(each.path, each.key.name) in read)
         if finding is not None:
             yield finding

@@ -479,7 +479,7 @@ def unchanging_condition(context: Context) -> Iterator[Finding]:
               default_outcome: enough
               transitions: {again: PICK, enough: lost}
     """
-    for path, container in context.linear:
+    for (path, container), whole in zip(context.linear, context.corrected, strict=True):
         deciding = list(filter(_is_condition, container.children)) if _goes_back(container) else []
         if not deciding:
             continue
@@ -491,7 +491,9 @@ def unchanging_condition(context: Context) -> Iterator[Finding]:
             inside = [child for child in deciding if child.name in names]
             if inside and any(target in names for name in region for _, target in steps[name]):
                 states = [by_name[name] for name in region]
-                yield from _unchanging(context, path, inside, states, steps)
+                for child, keys in _unchanging(context, path, inside, states, steps):
+                    if not _is_set_by_hidden(context, path, whole, keys):
+                        yield _unchanged(path, child, keys, states, steps)
 
 
 def _is_condition(node: Node) -> TypeGuard[Leaf]:
@@ -523,7 +525,8 @@ def _is_pure(text: str) -> bool:
 
 def _unchanging(
     context: Context, path: str, deciding: list[Leaf], region: list[Node], steps: SiblingSteps
-) -> Iterator[Finding]:
+) -> Iterator[tuple[Leaf, set[str]]]:
+    """The states of a region with conditions that never change, with the keys that they read."""
     names = frozenset(child.name for child in region)
     written = _written_in(region)
     if written is None:
@@ -543,7 +546,16 @@ def _unchanging(
         if child.name not in ways_out or not steps[child.name]:
             continue
         if ways_out <= constant or not types.isdisjoint(NUMBERS):
-            yield _unchanged(path, child, keys, region, steps)
+            yield child, keys
+
+
+def _is_set_by_hidden(context: Context, path: str, container: Linear, keys: set[str]) -> bool:
+    """Whether a state that cannot be reached sets one of some keys: it was meant to be in the loop,
+    and SM201 reports the cause."""
+    seen = context.of_container(reachable, path, container)
+    hidden = [child for child in container.children if child.name not in seen]
+    written = _written_in(hidden)
+    return written is None or not written.isdisjoint(keys)
 
 
 def _written_in(region: Iterable[Node]) -> frozenset[str] | None:

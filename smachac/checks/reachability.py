@@ -9,13 +9,12 @@ from typing import NamedTuple
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
-    children_names,
     is_open,
-    strays,
 )
 from smachac.analysis.misplaced_states import ends_of_misplaced
 from smachac.checks.hidden_conditions import hidden_conditions
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
+from smachac.checks.misled_failures import linear_outcomes, misled_failures
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
@@ -441,8 +440,11 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
             known.add(misnamed.meant.name)  # SM104
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in possible | known:
-                moved = ends_of_misplaced(context.misplaced) if moved is None else moved
-                if (path, outcome.name) not in moved:  # SM101
+                if moved is None:
+                    misled = misled_failures(context).items()
+                    moved = ends_of_misplaced(context.misplaced)
+                    moved |= {(place, each.meant.name) for (place, _), each in misled}
+                if (path, outcome.name) not in moved:  # SM101, SM301
                     yield _impossible(path, container, outcome)
 
 
@@ -453,7 +455,7 @@ def _possible_outcomes(container: Container) -> frozenset[str] | None:
         return None
     match container:
         case StateMachine() | Sequence():
-            return _linear_outcomes(container)
+            return linear_outcomes(container)
         case Concurrence():
             results = {entry.outcome for entry in container.rules}
             results.add(container.default_outcome)
@@ -466,24 +468,6 @@ def _possible_outcomes(container: Container) -> frozenset[str] | None:
 def _if_declared(container: Container, results: set[str]) -> frozenset[str] | None:
     """Results, or None where one is undeclared: it may be meant for the declared outcome."""
     return frozenset(results) if results.issubset(outcome_names(container)) else None
-
-
-def _linear_outcomes(container: Linear) -> frozenset[str] | None:
-    names = children_names(container)
-    exits = frozenset(outcome_names(container))
-    found: set[str] = set()
-    for child in container.children:
-        if strays(child, names, exits) or unhandled(child):
-            return None
-        found.update(step.target for step in child.transitions)
-    handled = [
-        frozenset(step.outcome for step in child.transitions)
-        for child in container.children
-        if is_open(child)
-    ]
-    if handled:
-        found |= exits.difference(frozenset.intersection(*handled))
-    return frozenset(found)
 
 
 def _iterator_outcomes(container: nodes.Iterator) -> frozenset[str] | None:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal
 
-from smachac.analysis.accesses import callback_names, scripted_steps, userdata_fields
-from smachac.analysis.code_slots import undeclared_slot_reads
+from smachac.analysis.accesses import (
+    callback_names,
+    fields_of,
+    scripted_steps,
+    userdata_fields,
+)
+from smachac.analysis.code_slots import code_slots, undeclared_slot_reads, userdata_parameter
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
+from smachac.checks.candidate_keys import keys_around, meant_input
 from smachac.checks.class_code import dropped_writes, unknown_reads
 from smachac.checks.code_slots import unknown_function_reads
 from smachac.checks.edits import listing, with_key_list, with_output
@@ -24,7 +31,6 @@ from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, StateType, Struct
-from smachac.ir.traversal import remapping
 
 
 @rule("SM308", "lossy-write", Severity.ERROR)
@@ -213,14 +219,19 @@ def lone_input(leaf: Leaf, container: Container) -> str | None:
     return left[0].name if sure else None
 
 
-def _keys_around(container: Container) -> set[str]:
-    """The keys of a container that it gets, or that a state in it sets."""
-    found = {preset.key for preset in container.userdata} | {key.name for key in container.inputs}
-    if isinstance(container, nodes.Iterator):
-        return found - {container.item_key}
-    for child in container.children:
-        names = remapping(child)
-        found |= {names.get(key.name, key.name) for key in child.outputs}
+def _read_by_code(leaf: Leaf, types: Mapping[str, StateType]) -> set[str]:
+    """The keys that code of the script in a leaf reads, and those that a variable lists; also all
+    inputs, if some code cannot be read."""
+    listed = (each.value.data for each in leaf.variables if isinstance(each.value.data, tuple))
+    found = {key for names in listed for key in names if isinstance(key, str)}
+    for slot in code_slots(leaf, types):
+        name, tree = userdata_parameter(slot), slot.tree
+        fields = userdata_fields(slot.code.text)
+        if name is not None and isinstance(tree, ast.Lambda):
+            fields = fields_of(tree.body, {name})
+        if fields is None:
+            return found | {key.name for key in leaf.inputs}
+        found.update(fields.read, fields.tested)
     return found
 
 
@@ -232,7 +243,7 @@ def _undeclared_accesses(
         lone = lone_input(leaf, container) if len(read) == 1 else None
         guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
         names = [key for key, _ in read]
-        if len(read) > 1 and not leaf.inputs and _keys_around(container).issuperset(names):
+        if len(read) > 1 and not leaf.inputs and keys_around(container).issuperset(names):
             place = key_place(read[0][1], names[0])
             yield _without_list(inner, leaf, "input", names, place)
             continue
@@ -240,21 +251,26 @@ def _undeclared_accesses(
             if isinstance(container, nodes.Iterator) and key == container.item_key:
                 continue
             span = key_place(code, key)
+            near = guess(key)
+            if near is not None:
+                near = meant_input(key, guess, _read_by_code(leaf, types), container)
+            added = listing([leaf], "input_keys", key)
+            if key not in keys_around(container):
+                added += f", and set it before, for example in `userdata: {{{key}: ...}}`"
             yield Finding(
                 span=span,
                 message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
                 " input keys",
                 arguments=(key,),
-                help=did_you_mean(guess(key))
+                help=did_you_mean(near)
                 or (
                     f"write `{lone}` in place of `{key}`: it is the only input key of"
                     f" `{leaf.name}` that its code does not read"
                     if lone
                     else None
                 )
-                or f"{listing([leaf], 'input_keys', key)}, and set it before, for"
-                f" example in `userdata: {{{key}: ...}}`",
+                or added,
                 related=calls(leaf, code.span),
                 node=inner,
-                edits=respelt(Word(key, span), guess.sure(key)),
+                edits=respelt(Word(key, span), guess.sure(key)) if near is not None else (),
             )

@@ -9,9 +9,15 @@ from collections.abc import Iterator
 from smachac.analysis.def_use import Use
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
-from smachac.analysis.type_lattice import is_open, misfit
+from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
-from smachac.checks.candidate_keys import fitting_keys, unread_output, written_place
+from smachac.checks.candidate_keys import (
+    fitting_keys,
+    keys_of,
+    may_be,
+    unread_output,
+    written_place,
+)
 from smachac.checks.initial_presets import counts, initial_value
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -21,7 +27,7 @@ from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
 from smachac.ir.traversal import remapping
-from smachac.ir.types import ANY, Type
+from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -136,7 +142,7 @@ def _meant_key(
     wanted, inside = types.inputs.get((reader.path, reader.key), ANY), witness.inner
     if inside is not None and is_open(wanted):
         wanted = types.inputs.get((inside.path, inside.key), ANY)
-    if guess is not None and not _may_be(types, scope, guess, wanted):
+    if guess is not None and not may_be(types, scope, guess, wanted):
         guess = None
     of_item = _item_help(scope.container, node, missing.key)
     help = did_you_mean(guess) or of_item
@@ -166,21 +172,6 @@ def _meant_key(
     if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
         help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
     return help, (*related, *_item_place(scope.container, node))
-
-
-def _may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:
-    """Whether the type of a key of a container, as far as it is known, is not a wrong one."""
-    given = types.keys.get((scope.path, key), ANY)
-    return is_open(given) or is_open(wanted) or misfit(given, wanted) is None
-
-
-def keys_of(scope: UserdataScope) -> set[str]:
-    """The keys of a container: the candidates for a misspelt name."""
-    keys = {*scope.held, *scope.inputs}
-    for steps in scope.steps.values():
-        for step in steps:
-            keys |= step.writes.perhaps
-    return keys
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:

@@ -2,30 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from smachac.analysis.accesses import callback_names
+from smachac.analysis.accesses import callback_names, received_part, unreceived_outputs
 from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of, uses_by_key
 from smachac.analysis.error_recovery import undeclared_writes
+from smachac.analysis.message_code import leaf_definitions
 from smachac.checks.messages import calls
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable_of
+from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Key, Leaf, Node, StateType
 from smachac.ir.traversal import remapping
 
 
 class Unwritten(NamedTuple):
-    """An output key that a state never writes; `names` are the keys that its type can write."""
+    """An output key that a state never writes; `names` are the keys that its type can write.
+
+    `slots`: the field of the state whose keys receive the fields of a response or result.
+    """
 
     path: str
     leaf: Leaf
     key: Key
     names: tuple[str, ...]
+    slots: str = ""
 
 
 def unwritten_keys(context: Context) -> tuple[Unwritten, ...]:
@@ -46,8 +52,15 @@ def _unwritten_in(
 def _unwritten(path: str, leaf: Node, types: Mapping[str, StateType]) -> Iterator[Unwritten]:
     if not isinstance(leaf, Leaf) or leaf.open or leaf.stand_in or not leaf.outputs:
         return
-    results = [key for key in leaf.outputs if key.role == "result"]
     type_ = types.get(leaf.type)
+    part = received_part(leaf)
+    if part is not None and type_ is not None:
+        slots = next((name for name, each in type_.variables.items() if each.role == part), "")
+        unset = unreceived_outputs(leaf) if slots else ()
+        yield from (Unwritten(path, leaf, key, (), slots) for key in leaf.outputs
+                    if key.name in unset)  # fmt: skip
+        return
+    results = [key for key in leaf.outputs if key.role == "result"]
     if not results or type_ is None or not _writes_only_known(leaf, type_):
         return
     undeclared = undeclared_writes(leaf)
@@ -91,7 +104,7 @@ def read_unwritten(
     found: dict[tuple[str, str], tuple[str, str]] = {}
     certain = [each for each in unwritten if each.leaf.built_in]
     never = {(each.path, each.key.name) for each in certain}
-    for path, leaf, key, _ in certain:
+    for path, leaf, key, _, _ in certain:
         outer = path.rpartition("/")[0], remapping(leaf).get(key.name, key.name)
         if outer not in missing or outer[0] not in flow.scopes:
             continue
@@ -105,7 +118,7 @@ def read_unwritten(
 def unwritten_finding(found: Unwritten, *, read: bool) -> Finding | None:
     """The finding on such a key. `read`: a state reads it, but it is unset; a state whose
     conditions alone are code of the script is harmless otherwise."""
-    path, leaf, key, names = found
+    path, leaf, key, names, _ = found
     if not read and variable_of(leaf, "conditions") is not None:
         return None
     span = place_of(leaf, key)
@@ -127,6 +140,42 @@ def unwritten_finding(found: Unwritten, *, read: bool) -> Finding | None:
         span=span,
         message=message,
         arguments=("output", key.name),
+        help=help,
+        effect="a state that reads the key afterwards finds it unset, or with an older value",
+        related=calls(leaf, span),
+        severity=Severity.ERROR if read else None,
+        node=path,
+    )
+
+
+def unreceived_finding(
+    every: Sequence[Unwritten], definitions: Definitions, *, read: bool
+) -> Finding:
+    """The finding on the output keys of one state that receive no field of a response or result.
+    `read`: a state reads one of them, but it is unset."""
+    path, leaf, key, _, slots = every[0]
+    part, span = received_part(leaf) or "response", place_of(leaf, key)
+    names = [each.key.name for each in every]
+    kinds = [one for _, found in leaf_definitions(leaf, definitions) for one in found]
+    known = {field.name for one in kinds for field in one.part(part).fields}
+    others = [name for name in names if kinds and name not in known]
+    held = next((each for each in leaf.variables if each.name == slots), None)
+    listed_ = held is not None and held.value.data
+    fits = [name for name in names if name not in others]
+    help = f"add `{slots}: [{', '.join(fits)}]` to `{leaf.name}`"
+    if listed_:
+        help = f"add {both(fits)} to the `{slots}` of `{leaf.name}`"
+    if not fits:
+        help = f"the {part} has no field {listed(others)}: set the key in `{part}_cb`"
+        if known:
+            help += f", or list a field of the {part} in `{slots}`: {listed(sorted(known))}"
+    what = f"key {both(names)}" if len(names) == 1 else f"keys {both(names)}"
+    them = "it" if len(names) == 1 else "them"
+    return Finding(
+        span=span,
+        message=f"`{leaf.name}` declares the output {what}, but neither `{slots}` nor one of its"
+        f" functions sets {them}",
+        arguments=("output", *names),
         help=help,
         effect="a state that reads the key afterwards finds it unset, or with an older value",
         related=calls(leaf, span),

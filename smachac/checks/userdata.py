@@ -10,6 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.def_use import place_of, uses_by_key
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
+from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import (
     Missing,
     Searches,
@@ -17,7 +18,7 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
-from smachac.checks.candidate_keys import unread_output
+from smachac.checks.candidate_keys import may_be, meant_by_remap, unread_output
 from smachac.checks.declarations import swapped_loop
 from smachac.checks.edits import listing, with_input, with_output
 from smachac.checks.empty_remaps import empty_remap_findings
@@ -27,6 +28,7 @@ from smachac.checks.initial_presets import (
 )
 from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.misled_failures import Misled, misled_failures
 from smachac.checks.races import raced_keys
 from smachac.checks.reachability import keys_of_hidden_states
 from smachac.checks.remap_slips import lacking_finding, swapped_remap
@@ -35,11 +37,12 @@ from smachac.checks.unset_read_findings import Guesses, unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import guesser, respelt, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
+from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -100,7 +103,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     searches = Searches(flow)
     guesses = Guesses()
     used = cache(lambda path: uses_by_key(flow, path))
-    presets = meant_keys(context)
+    presets, misled = meant_keys(context), misled_failures(context)
     misnamed = misnamed_keys(context)
     moved = {each.path for each in context.misplaced}
     causes = _with_their_own_cause(context)
@@ -134,6 +137,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
                 finding = _with_meant_key(finding, witness, meant)
             elif missing.cause != "nowhere":
                 finding = _with_outer_key(finding, missing, flow.scopes)
+                finding = _with_end(finding, missing, witness, misled)
             yield finding
 
 
@@ -175,6 +179,29 @@ def _with_outer_key(
         return finding
     help = listing([scope.container], "input_keys", key)
     return replace(finding, help=f"{help}: `{around.container.name}` has a value for it")
+
+
+def _with_end(
+    finding: Finding,
+    missing: Missing,
+    witness: Witness,
+    misled: Mapping[tuple[str, str], Misled],
+) -> Finding:
+    """The finding on a key that is unset after a failure, where an outcome of the container, to
+    which nothing leads, is probably meant as the target of its transition."""
+    found = misled.get((missing.scope.path, missing.key))
+    if found is None or found.step.target != witness.reader.node.name:
+        return finding
+    meant, step = found.meant, found.step
+    return replace(
+        finding,
+        help=f"write `{written_name(step.outcome)}: {meant.name}`, to which nothing leads",
+        related=(
+            *other_place(step.target_span, f"`{step.outcome}` leads to `{step.target}`"),
+            *other_place(meant.span, f"nothing leads to the outcome `{meant.name}`"),
+            *finding.related,
+        ),
+    )
 
 
 def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Finding:
@@ -270,7 +297,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     yield from context.at_containers(_unknown_remaps)
     guesses = Guesses()
     for missing in context.missing_keys("remapped"):
-        yield from _remapped(missing, guesses)
+        yield from _remapped(context.types, missing, guesses)
     yield from empty_remap_findings(context)
 
 
@@ -327,7 +354,7 @@ def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[
         )
 
 
-def _remapped(missing: Missing, guesses: Guesses) -> Iterator[Finding]:
+def _remapped(types: Types, missing: Missing, guesses: Guesses) -> Iterator[Finding]:
     """The remaps to a key that nothing sets."""
     scope, key = missing.scope, missing.key
     around = scope.container.name
@@ -335,11 +362,21 @@ def _remapped(missing: Missing, guesses: Guesses) -> Iterator[Finding]:
         for remap in child.remaps:
             if remap.to != key or child.name not in missing.vertices:
                 continue
-            guess = guesses.of(scope)(key)
-            unread = unread_output(scope, key) if guess is None else None
-            help = did_you_mean(guess) or (unread.help if unread is not None else None)
+            meant = meant_by_remap(types, scope, child, remap, guesses.of(scope))
+            unread = unread_output(scope, key) if meant is None else None
+            wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
+            fits = unread is not None and may_be(types, scope, unread.key, wanted)
+            help = unread.help if unread is not None and fits else None
+            related: tuple[Related, ...] = ()
+            if meant is not None:
+                help = did_you_mean(meant.key)
+            if meant is not None and meant.place is not None:
+                help = f"write `{remap.key}: {meant.key}`"
+                help += f", which `{meant.setter}` sets" if meant.setter else ""
+                related = other_place(meant.place, f"nothing reads `{meant.key}`")
             other = swapped_remap(missing, child, remap)
             if other is not None:
+                related = ()
                 help = f"the keys of `{remap.key}` and `{other.key}` have changed places: write"
                 help += f" `{remap.key}: {other.to}, {other.key}: {remap.to}`"
             yield Finding(
@@ -351,7 +388,7 @@ def _remapped(missing: Missing, guesses: Guesses) -> Iterator[Finding]:
                 or f"set `{key}` before this state, or give it an initial value in `{around}`:"
                 f" `userdata: {{{key}: ...}}`",
                 effect=UNSET,
-                related=calls(child, remap.span),
+                related=(*related, *calls(child, remap.span)),
                 node=f"{scope.path}/{child.name}",
             )
 
@@ -496,7 +533,8 @@ def lost_output(context: Context) -> Iterator[Finding]:
 
     Exactly: an error if the key is unset outside, a warning if it has an older value. The reader
     can be the container itself, where it runs again, in a loop or for the next item of `for_each`,
-    if no state in it reads the key after it is set.
+    if no state in it reads the key after it is set, or if it counts once in each run for one of its
+    conditions (`ud.tries + 1`) and nothing around it sets the key.
 
     Wrong:
         name: sm

@@ -147,6 +147,23 @@ def test_a_condition_that_never_changes(states: list[Node], ends: bool) -> None:
     assert found(root, "SM213") == (["SM213 sm/ASK"] if ends else [])
 
 
+@pytest.mark.parametrize(
+    ("cut", "expected"),
+    [
+        (leaf("COUNT", {"ok": "ASK"}, ins="n", outs="n"), ["SM201 sm/COUNT"]),
+        (leaf("COUNT", {"ok": "ASK"}, outs="k", remaps={"k": "n"}), ["SM201 sm/COUNT"]),
+        (leaf("COUNT", {"ok": "done"}, outs="n"), ["SM201 sm/COUNT"]),
+        (machine("COUNT", "ok", leaf("IN", {"ok": "ok"}, outs="n"), outs="n", to={"ok": "ASK"}),
+         ["SM201 sm/COUNT"]),
+        (leaf("COUNT", {"ok": "ASK"}, outs="m"), ["SM201 sm/COUNT", "SM213 sm/ASK"]),
+    ],
+    ids=["counter", "remapped", "leads elsewhere", "container", "another key"],
+)  # fmt: skip
+def test_the_state_that_changes_a_condition_is_cut_off(cut: Node, expected: list[str]) -> None:
+    root = machine("sm", "done", leaf("A", {"ok": "ASK"}), cut, asking("n", to=AGAIN))
+    assert [*found(root, "SM201"), *found(root, "SM213")] == expected
+
+
 def test_a_condition_in_python_can_change_by_itself() -> None:
     ask = asking("n", to=AGAIN)
     code = replace(ask.variables[0], value=value({"again": "`lambda ud: clock() < ud.n`"}))

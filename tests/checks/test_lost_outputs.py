@@ -202,3 +202,103 @@ def test_a_key_of_an_interface_that_is_no_input_is_not_lost() -> None:
     )
     only = only.replace("LIMIT", "").replace(", timeout: done", "").replace("NEXT", "SHOW_IT")
     assert added(only) == []
+
+
+CLEAR = """\
+name: deliver
+outcomes: [delivered, failed]
+userdata: {tries: 0, max_tries: 3}
+states:
+  - DRIVE:
+      template: ScriptedState
+      outcomes: [arrived, blocked]DRIVE
+      transitions: {arrived: delivered, blocked: CLEAR}
+  - CLEAR:
+      template: StateMachine
+      outcomes: [again, give_up]
+      input_keys: [tries, max_tries]OUT
+      transitions: {again: DRIVE, give_up: failed}
+      states:
+        - COUNT:
+            template: CallbacksState
+            input_keys: [tries]
+            output_keys: [tries]
+            callbacks: {tries: 'lambda ud: CODE'}
+            transitions: {succeeded: ENOUGH}
+        - ENOUGH:
+            template: ConditionalOutcomeState
+            outcomes: [give_up]
+            input_keys: [tries, max_tries]
+            callbacks: {give_up: 'lambda ud: ud.tries > ud.max_tries'}
+            default_outcome: go_on
+            transitions: {give_up: give_up, go_on: WAIT}
+        - WAIT:
+            template: SleepState
+            time: 2.0
+            transitions: {succeeded: again, preempted: give_up}
+"""
+KEPT = [("SM307", "CLEAR", "add `tries` to the `output_keys` of `CLEAR`")]
+
+
+def cleared(code: str = "ud.tries + 1", *, drive: str = "", out: str = "", old: str = "",
+            new: str = "") -> list[tuple[str, str, str | None]]:  # fmt: skip
+    text = CLEAR.replace("CODE", code).replace("OUT", out)
+    text = text.replace("blocked]DRIVE", f"blocked]{drive}").replace(old, new)
+    return [each for each in reported({"main.yml": text}) if each[0] != "SM203"]
+
+
+@pytest.mark.parametrize(
+    ("code", "initial"),
+    [
+        ("ud.tries + 1", "0"),
+        ("1 + ud.tries", "0"),
+        ("ud.tries - 1", "9"),
+        ('ud["tries"] + 2', "0"),
+        ("ud.tries + [ud.max_tries]", "[]"),
+    ],
+)
+def test_a_count_begins_again_in_each_run(code: str, initial: str) -> None:
+    compared = "len(ud.tries) > ud.max_tries" if initial == "[]" else "ud.tries > ud.max_tries"
+    text = CLEAR.replace("tries: 0", f"tries: {initial}").replace(
+        "DRIVE\n      trans", "\n      trans"
+    )
+    text = text.replace("ud.tries > ud.max_tries", compared).replace("OUT", "")
+    found = reported({"main.yml": text.replace("CODE", code)})
+    assert [each for each in found if each[0] == "SM307"] == KEPT
+
+
+def test_a_count_of_a_renamed_container_key() -> None:
+    text = CLEAR.replace("{tries: 0", "{rounds: 0").replace(
+        "OUT", "\n      remapping: {tries: rounds}"
+    )
+    text = text.replace("blocked]DRIVE", "blocked]").replace("CODE", "ud.tries + 1")
+    assert [each for each in reported({"main.yml": text}) if each[0] == "SM307"] == KEPT
+
+
+def test_a_count_that_is_passed_on_is_not_lost() -> None:
+    assert cleared(out="\n      output_keys: [tries]") == []
+
+
+def test_a_count_of_one_run_is_not_lost() -> None:
+    assert cleared(old="succeeded: again", new="succeeded: COUNT") == []
+    assert cleared(old="again: DRIVE", new="again: failed") == []
+
+
+def test_a_key_that_the_loop_sets_is_not_lost() -> None:
+    drive = "\n      output_keys: [tries]\n      steps: [{outcome: blocked, set: {tries: 2}}]"
+    assert cleared(drive=drive) == []
+
+
+def test_a_value_that_is_no_count_is_not_lost() -> None:
+    assert cleared("ud.tries * 2") == []
+    assert cleared("max(ud.tries, 1)") == []
+
+
+def test_the_item_of_a_loop_is_not_lost() -> None:
+    text = CLEAR[: CLEAR.index("  - DRIVE")] + CLEAR[CLEAR.index("  - CLEAR") :]
+    text = text.replace("tries: 0", "steps: [1, 2]").replace("CODE", "ud.tries + 1")
+    text = text.replace("OUT", "\n      for_each: {item: tries, in: steps, on: [again]}")
+    text = text.replace("again: DRIVE, ", "").replace(
+        "give_up: failed}", "give_up: failed, succeeded: delivered}"
+    )
+    assert [each for each in reported({"main.yml": text}) if each[0] == "SM307"] == []

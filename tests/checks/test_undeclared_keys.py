@@ -127,3 +127,62 @@ def test_the_key_that_is_meant_is_not_known(inputs: str, code: str, expected: li
     found = in_script(inputs, code)
     assert sorted(code for code, _, _ in found) == expected
     assert not any("is read by nothing" in help for _, _, help in found)
+
+
+COUNTED = """\
+name: sm
+template: Base
+outcomes: [again, done]
+userdata: {tries: 0, max_tries: 3, limit: 2}
+states:
+  - COUNT:
+      template: CallbacksState
+      input_keys: [tries]
+      output_keys: [tries]
+      callbacks: {tries: 'lambda ud: ud.tries + 1'}
+      transitions: {succeeded: AGAIN}
+  - AGAIN:
+      template: ConditionalOutcomeState
+      outcomes: [again]
+      input_keys: [INPUTS]
+      callbacks: {again: 'lambda ud: CODE'}
+      default_outcome: done
+      transitions: {again: again, done: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("inputs", "code", "help"),
+    [
+        ("tries", "ud.tries < ud.max_tries", "add `max_tries` to the `input_keys` of `AGAIN`"),
+        ("max_tries", "ud.tries < ud.max_tries", "add `tries` to the `input_keys` of `AGAIN`"),
+        ("tries", 'ud["tries"] < ud["max_tries"]',
+         "add `max_tries` to the `input_keys` of `AGAIN`"),
+        ("tries", "ud.limit < ud.tries", "add `limit` to the `input_keys` of `AGAIN`"),
+        ("max_tries", "ud.tries < 3", "did you mean `max_tries`?"),
+        ("tries", "ud.tires < 3", "did you mean `tries`?"),
+        ("tries, max_tries", "ud.tries < ud.max_tires", "did you mean `max_tries`?"),
+    ],
+)  # fmt: skip
+def test_a_key_of_the_container_is_no_slip_of_another_one(
+    inputs: str, code: str, help: str
+) -> None:
+    """The code reads the similar key too: with the guess it would read one key twice."""
+    text = COUNTED.replace("INPUTS", inputs).replace("CODE", code)
+    report = analysed({"main.yml": text}).report
+    assert [each.help for each in report if each.code == "SM310"] == [help]
+
+
+@pytest.mark.parametrize(
+    ("value", "preset", "help"),
+    [
+        ("userdata.order + userdata.orders", "orders: [b]",
+         "add `orders` to the `input_keys` of the interface `Detect` and of `__init__`"),
+        ("userdata.order + userdata.orders", "", "did you mean `order`?"),
+        ("userdata.orders", "orders: [b]", "did you mean `order`?"),
+    ],
+)  # fmt: skip
+def test_a_class_reads_a_key_of_the_container(value: str, preset: str, help: str) -> None:
+    (found,) = [each for each in reported(f"userdata.parts = {value}", preset=preset)
+                if each.code == "SM310"]  # fmt: skip
+    assert found.help == help
