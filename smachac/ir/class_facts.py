@@ -100,6 +100,7 @@ FaultKind = Literal[
     "no member",
     "called early",
     "other order",
+    "swapped arguments",
     "number of values",
     "no module here",
 ]

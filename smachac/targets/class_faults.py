@@ -218,6 +218,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " that only the {more} result has",
         "write `{near}`",
     ),
+    "swapped arguments": (
+        "the arguments of `{word}` have changed places",
+        "write `{near}`",
+    ),
     "number of values": (
         "the text has {more}, but gets {file}",
         "write one value for each place",
@@ -401,6 +405,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "no return",
         "called early",
         "other order",
+        "swapped arguments",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -438,6 +443,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no value": "the code raises UnboundLocalError when it runs: the machine stops",
     "called early": "the function runs at once, and not later",
     "other order": "the comparison has the same result in every run",
+    "swapped arguments": "{more}",
     "number of values": "the code raises {word} when it runs: the machine stops",
     "no module here": "the code raises AttributeError when it runs: the machine stops",
     "no member": "the code raises AttributeError when it runs: the machine stops",
@@ -538,6 +544,7 @@ WRITTEN = frozenset[FaultKind](
         "no quotes",
         "called early",
         "other order",
+        "swapped arguments",
         "no module here",
     ]
 )
@@ -583,7 +590,7 @@ def class_effect(fault: ClassFault, target: str) -> str | None:
     if fault.kind == "parameter order":
         return fault.more
     if fault.kind in EFFECTS:
-        return EFFECTS[fault.kind].format(word=fault.name.text, near=fault.near)
+        return EFFECTS[fault.kind].format(word=fault.name.text, near=fault.near, more=fault.more)
     if target == "cpp":
         return "the C++ compiler refuses the class"
     return PYTHON_EFFECTS.get(fault.kind)
