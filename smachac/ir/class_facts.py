@@ -133,10 +133,11 @@ class ClassFault:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """A parameter of a constructor that can be passed by its name."""
+    """A parameter of a constructor that can be passed by its name, with its uses there."""
 
     word: Word
     required: bool
+    uses: tuple[Span, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

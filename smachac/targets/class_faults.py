@@ -332,12 +332,12 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     "other parameter": (
         "`__init__` of `{name}` requires `{word}`, but the variable of the interface `{type}` is"
         " `{near}`",
-        "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
+        "rename the parameter `{word}` to `{near}`{more}, or the variable to `{word}`",
     ),
     "renamed parameter": (
         "`__init__` of `{name}` has the parameter `{word}`, but the variable of the interface"
         " `{type}` is `{near}`",
-        "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
+        "rename the parameter `{word}` to `{near}`{more}, or the variable to `{word}`",
     ),
     "no such parameter": (
         "`__init__` of `{name}` does not accept `{word}`, which is set here",
@@ -492,7 +492,6 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "missing argument": _CALLED,
     "not passed": _CALLED,
     "other guard": "the program stops with a NameError when it makes the state",
-    "argument order": "each parameter gets the value of another one",
     "no quotes": "the program stops with a NameError when it makes the state",
     "not accepted": _RAISED,
 }
@@ -588,6 +587,8 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
 def class_effect(fault: ClassFault, target: str) -> str | None:
     """The effect of a fault of a class; empty if its message contains it."""
     if fault.kind == "parameter order":
+        return fault.more
+    if fault.kind == "argument order" and target == "python":
         return fault.more
     if fault.kind in EFFECTS:
         return EFFECTS[fault.kind].format(word=fault.name.text, near=fault.near, more=fault.more)
