@@ -93,7 +93,7 @@ def used_here(leaf: Leaf) -> tuple[Related, ...]:
     "SM309",
     "undeclared-return",
     Severity.ERROR,
-    effect="SMACH accepts only declared outcomes: the machine stops with an error",
+    effect="SMACH raises InvalidTransitionError for an undeclared outcome: the machine stops",
 )
 def undeclared_return(context: Context) -> Iterator[Finding]:
     """The Python code of a state type returns a value that is not one of its outcomes, or no value.

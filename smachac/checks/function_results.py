@@ -147,7 +147,7 @@ def _true_condition(
         message=f"the function of {slot_owner(slot, node)} is always true: {words} always true",
         arguments=(slot.name, slot.code.text, "true"),
         help=help,
-        effect="the condition holds at each visit, whatever the values of its keys are",
+        effect="the condition is true at each visit: the other outcome never occurs",
         related=calls(node, span),
         node=path,
         severity=Severity.WARNING,

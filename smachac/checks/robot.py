@@ -89,8 +89,8 @@ def wrong_length(context: Context) -> Iterator[Finding]:
     "SM502",
     "joint-limit",
     Severity.ERROR,
-    effect="the joint cannot reach the angle: the state ends with `aborted`, or its controller raises an"
-    " error",
+    effect="the joint cannot reach the angle: the state ends with `aborted`, or its controller"
+    " raises an error",
 )
 def joint_limit(context: Context) -> Iterator[Finding]:
     """A joint position is outside the limits of the joint.

@@ -51,9 +51,7 @@ class Import(NamedTuple):
 
 def missing_imports(module: Module, library: Library) -> list[ClassFault]:
     """The imports of a module of the user that fail."""
-    return [
-        fault for each in _statements(module) for fault in _faults(each, library, module.text)
-    ]
+    return [fault for each in _statements(module) for fault in _faults(each, library, module.text)]
 
 
 def missing_in_template(source: Source, library: Library) -> list[ClassFault]:
@@ -112,9 +110,7 @@ def _placed(name: str, span: Span, after: int) -> Word:
     return Word(name, Span(span.source, start, start + len(name)))
 
 
-def _faults(
-    one: Import, library: Library, user: PythonText | None = None
-) -> Iterator[ClassFault]:
+def _faults(one: Import, library: Library, user: PythonText | None = None) -> Iterator[ClassFault]:
     """The faults of an import: of the module or a name, or of the text of the module. `user` is the
     code that has the import."""
     head, path = one.module.partition(".")[0], one.module.replace(".", "/")

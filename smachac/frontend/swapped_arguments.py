@@ -15,17 +15,109 @@ from smachac.frontend.silent_results import called_function
 from smachac.ir.class_facts import ClassFault
 
 TURNED = frozenset(
-    "start goal source target src dst dest destination origin from to begin end first second third"
-    " left right min max low high lower upper minimum maximum old new before after current previous"
-    " next parent child width height length depth rows columns row column horizontal vertical"
-    " expected actual base pose poses position point frame here there home one two other same"
-    " forward backward inner outer near far top bottom front back prefix suffix".split()
+    [
+        "start",
+        "goal",
+        "source",
+        "target",
+        "src",
+        "dst",
+        "dest",
+        "destination",
+        "origin",
+        "from",
+        "to",
+        "begin",
+        "end",
+        "first",
+        "second",
+        "third",
+        "left",
+        "right",
+        "min",
+        "max",
+        "low",
+        "high",
+        "lower",
+        "upper",
+        "minimum",
+        "maximum",
+        "old",
+        "new",
+        "before",
+        "after",
+        "current",
+        "previous",
+        "next",
+        "parent",
+        "child",
+        "width",
+        "height",
+        "length",
+        "depth",
+        "rows",
+        "columns",
+        "row",
+        "column",
+        "horizontal",
+        "vertical",
+        "expected",
+        "actual",
+        "base",
+        "pose",
+        "poses",
+        "position",
+        "point",
+        "frame",
+        "here",
+        "there",
+        "home",
+        "one",
+        "two",
+        "other",
+        "same",
+        "forward",
+        "backward",
+        "inner",
+        "outer",
+        "near",
+        "far",
+        "top",
+        "bottom",
+        "front",
+        "back",
+        "prefix",
+        "suffix",
+    ]
 )
 """Words of parameters that a correct program can pass in the other order, as for the way back."""
 
 ANYTHING = frozenset(
-    "value values item items data number object thing message text name key word result args arg"
-    " parameter param argument element entry list default".split()
+    [
+        "value",
+        "values",
+        "item",
+        "items",
+        "data",
+        "number",
+        "object",
+        "thing",
+        "message",
+        "text",
+        "name",
+        "key",
+        "word",
+        "result",
+        "args",
+        "arg",
+        "parameter",
+        "param",
+        "argument",
+        "element",
+        "entry",
+        "list",
+        "default",
+    ]
 )
 """Words of parameters that can get any value."""
 
@@ -46,7 +138,7 @@ def swapped_arguments(
 ) -> Iterator[ClassFault]:
     """The calls in a method two of whose arguments have changed places."""
     for call in every:
-        if not isinstance(call, ast.Call) or len(call.args) < 2:  # noqa: PLR2004
+        if not isinstance(call, ast.Call) or len(call.args) < 2:
             continue
         if not any(_name(each) for each in call.args):
             continue
@@ -107,7 +199,7 @@ def _can_be_turned(one: str, other: str, function: ast.FunctionDef) -> bool:
     kinds = [ast.unparse(each.annotation)
              for each in (*function.args.posonlyargs, *function.args.args)
              if each.arg.casefold() in (one, other) and each.annotation]  # fmt: skip
-    if len(kinds) == 2 and kinds[0] == kinds[1] and kinds[0] not in ("float", "int", "str"):  # noqa: PLR2004
+    if len(kinds) == 2 and kinds[0] == kinds[1] and kinds[0] not in ("float", "int", "str"):
         return True
     for each in ast.walk(function):
         match each:

@@ -286,9 +286,7 @@ class ClassFacts:
         return tuple(each.outcome for each in self.endings)
 
 
-def renamed_name(
-    declared: Iterable[Word] | None, known: Iterable[str]
-) -> tuple[Word, str] | None:
+def renamed_name(declared: Iterable[Word] | None, known: Iterable[str]) -> tuple[Word, str] | None:
     """The only name that a class declares and its interface does not have, with the only one that
     the interface has and the class does not: probably two names of the same thing."""
     words, names = [*(declared or ())], [*known]

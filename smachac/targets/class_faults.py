@@ -483,7 +483,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "exchanged arguments": "the state has other outcomes or keys than its code uses: the machine"
     " stops with an error",
     "no state class": "the definition of the class raises an error when the program starts",
-    "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
+    "no outcomes": "SMACH raises InvalidTransitionError for an undeclared outcome: the machine"
+    " stops",
     "no parameter": _PASSED,
     "no such parameter": _PASSED,
     "other parameter": _PASSED,

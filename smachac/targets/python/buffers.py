@@ -219,7 +219,8 @@ class ModuleParts:
                 continue
             tags = [tag for written in _written_lines(source, line) for tag in written.tags]
             for tag in tags:
-                quoted = f"{line[: tag.column]}{tag.printed!r}{line[tag.column + len(tag.printed) :]}"
+                rest = line[tag.column + len(tag.printed) :]
+                quoted = f"{line[: tag.column]}{tag.printed!r}{rest}"
                 if not isinstance(modern(text.replace(line, quoted, 1))[2], ast.Module):
                     continue
                 span = Span(source, tag.start, tag.end)
