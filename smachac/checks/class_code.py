@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple
 from smachac.analysis.context import Context
 from smachac.checks.candidate_keys import meant_input
 from smachac.checks.messages import did_you_mean, other_place
+from smachac.checks.renamed_names import renamed_in_interface
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
@@ -20,7 +21,7 @@ from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.class_facts import ANY, ClassFacts, Ending
+from smachac.ir.class_facts import ANY, ClassFacts, Ending, renamed_name
 from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf, StateType
@@ -93,7 +94,7 @@ def used_here(leaf: Leaf) -> tuple[Related, ...]:
     "SM309",
     "undeclared-return",
     Severity.ERROR,
-    effect="SMACH accepts only declared outcomes: the machine stops with an error",
+    effect="SMACH raises InvalidTransitionError for an undeclared outcome: the machine stops",
 )
 def undeclared_return(context: Context) -> Iterator[Finding]:
     """The Python code of a state type returns a value that is not one of its outcomes, or no value.
@@ -164,9 +165,11 @@ def _wrong_returns(
 ) -> Iterator[Finding]:
     guess = guesser(outcomes)
     known, alone = _known(leaf, outcomes), _only_left(leaf, facts, outcomes)
+    renamed = renamed_in_interface(leaf, "outcomes", facts, facts.outcomes, outcomes)
     for ending in facts.endings:
         word = ending.outcome
-        if word.text not in outcomes:
+        again = renamed is not None and word.text == renamed.old and word not in renamed.first
+        if word.text not in outcomes and not again:
             does = "can return" if ending.possible else "returns"
             near = f"write `{ending.meant}`" if ending.meant is not None else None
             near = near or did_you_mean(_meant(leaf, word.text, guess))
@@ -177,13 +180,16 @@ def _wrong_returns(
                 text = f'"{alone}"' if ending.defined else f'return "{alone}"'
                 near = f"write `{text}`, as no path returns `{alone}`"
                 near += "" if ending.possible else _or_declare(ending, leaf)
+            places: tuple[Related, ...] = ()
+            if renamed is not None and word.text == renamed.old:
+                near, places = renamed.help, renamed.places
             returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
                 span=ending.defined or word.span,
                 message=f"`{leaf.type}` {does} `{word.text}`, which is not one of its outcomes",
                 arguments=(leaf.type, word.text),
                 help=near or f"{known}{'' if ending.possible else _or_declare(ending, leaf)}",
-                related=(*(returned if ending.defined else ()), *used_here(leaf)),
+                related=(*(returned if ending.defined else ()), *places, *used_here(leaf)),
                 severity=Severity.WARNING if ending.possible else None,
                 node=path,
             )
@@ -366,6 +372,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             levels.append(containers[path_])
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
         used = {word.text for word in facts.reads}
+        old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
             message = (
@@ -400,13 +407,16 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 )
                 help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
                 effect = f"the userdata has no method `{word.text}`: AttributeError"
+            places: tuple[Related, ...] = ()
+            if old is not None and word.text == old.old and word.text not in outputs:
+                help, places = old.help, old.places
             yield Finding(
                 span=word.span,
                 message=message,
                 arguments=(word.text,),
                 help=help,
                 effect=effect,
-                related=used_here(leaf),
+                related=(*places, *used_here(leaf)),
                 node=path,
             )
 
@@ -458,6 +468,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
         unknown = {word.text for word in facts.reads}.difference(inputs)
         written = {word.text for word in facts.writes}
         sure = facts.endings and all(each.written is not None for each in facts.endings)
+        old = renamed_in_interface(leaf, "output_keys", facts, facts.outputs, outputs)
         for word in first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
             what = "only an input key" if only else "not an output key of its interface"
@@ -469,6 +480,9 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 near = lone[1]
                 guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
             never = f", and `{near}` is never set" if near in unset and sure else ""
+            places: tuple[Related, ...] = ()
+            if old is not None and word.text == old.old and not only:
+                guess, places = old.help, old.places
             yield Finding(
                 span=word.span,
                 message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
@@ -477,7 +491,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 help=guess
                 or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "output_keys", word.text),
-                related=used_here(leaf),
+                related=(*places, *used_here(leaf)),
                 node=path,
             )
 
@@ -493,7 +507,10 @@ def lone_output(
     wrong = written - {*inputs, *outputs, *(word.text for word in facts.reads)}
     unset = [key for key in outputs if key not in written and key not in inputs]
     known = facts.endings and all(each.written is not None for each in facts.endings)
-    if not known or len(wrong) != 1 or len(unset) != 1 or local & {*unset} or listed_ & wrong:
+    if not known or len(wrong) != 1 or len(unset) != 1 or local & {*unset}:
+        return None
+    renamed = renamed_name(facts.outputs, outputs)
+    if listed_ & wrong and (renamed is None or renamed[0].text not in wrong):
         return None
     return min(wrong), unset[0]
 

@@ -504,7 +504,7 @@ def _value_fault(
     context: Context, path: str, node: Node, slot: CodeSlot, result: ast.expr
 ) -> Fault | None:
     """The fault of a result that must be a value."""
-    nothing = NONE_EFFECTS.get(slot.role, "")
+    nothing = NONE_EFFECTS.get(slot.role, "").format(name=slot.name)
     a_value = RESULT_HELP.get(slot.role, "return a value")
     match result:
         case ast.Constant(value=None) if slot.role != "callbacks":

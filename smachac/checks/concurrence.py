@@ -336,7 +336,7 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
             arguments=(name,),
             help=(turned if inverted else did_you_mean(guesser(known)(name)))
             or f"use one of the outcomes with which it can end: {listed(known)}",
-            effect="the entry has no effect",
+            effect="SMACH never uses the entry",
             related=calls(container, span),
             node=path,
         )

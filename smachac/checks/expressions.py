@@ -263,7 +263,9 @@ def _endings(leaf: Leaf) -> Iterator[tuple[Word, str, str]]:
         if isinstance(end, str) and end and end not in outcome_names(leaf):
             place = place_of_part(held.value.span, (at, "outcome"))
             what = f"a step of `{leaf.name}` ends with"
-            effect = "SMACH accepts only declared outcomes: the machine stops with an error"
+            effect = (
+                "SMACH raises InvalidTransitionError for an undeclared outcome: the machine stops"
+            )
             yield Word(end, place), what, effect
 
 

@@ -49,7 +49,7 @@ def slot_owner(slot: CodeSlot, node: Node) -> str:
 WAIT_FAILS = "the state fails when it begins to wait"
 
 NONE_EFFECTS: Mapping[VariableRole, str] = {
-    "callbacks": "the key of this name gets the value None",
+    "callbacks": "SMACH sets the key `{name}` to the result of the function, which is None",
     "conditions": "the condition is never true",
     "duration": WAIT_FAILS,
 }
@@ -72,7 +72,7 @@ def silent_functions(context: Context) -> Iterator[Finding]:
                 " returns a value",
                 arguments=(slot.name, slot.code.text),
                 help=f"end `{facts.word.text}` with `return ...`",
-                effect=NONE_EFFECTS.get(slot.role, ""),
+                effect=NONE_EFFECTS.get(slot.role, "").format(name=slot.name),
                 related=(*other_place(slot.code.span, "its result is used here"),
                          *calls(node, slot.code.span)),
                 node=path,
@@ -147,7 +147,7 @@ def _true_condition(
         message=f"the function of {slot_owner(slot, node)} is always true: {words} always true",
         arguments=(slot.name, slot.code.text, "true"),
         help=help,
-        effect="the condition holds at each visit, whatever the values of its keys are",
+        effect="the condition is true at each visit: the other outcome never occurs",
         related=calls(node, span),
         node=path,
         severity=Severity.WARNING,

@@ -40,7 +40,7 @@ from smachac.ir.traversal import outcome_names
     "undeclared-container-outcome",
     Severity.ERROR,
     firm=True,
-    effect="SMACH accepts only declared outcomes: the program stops with an error",
+    effect="SMACH raises InvalidTransitionError for an undeclared outcome: the program stops",
 )
 def undeclared_container_outcome(context: Context) -> Iterator[Finding]:
     """A concurrence or iterator can end with an outcome that it does not declare.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.analysis.accesses import Accesses, callback_names
@@ -177,7 +177,7 @@ def _race(
         related=(
             *_places("writes", key, [one for one in writing if one is not here]),
             *_places("reads", key, reading),
-            *_inner(here[0], here[1], "writes"),
+            *_inner(here[0], here[1], "writes it"),
             *calls(here[0], span),
         ),
         node=f"{path}/{here[0].name}",
@@ -187,21 +187,21 @@ def _race(
 def _places(verb: str, key: str, accesses: list[tuple[Node, Node]]) -> Iterator[Related]:
     for child, origin in accesses[:MOST_PLACES]:
         yield from other_place(child.span, f"`{child.name}` {verb} `{key}`")
-        yield from _inner(child, origin, verb)
+        yield from _inner(child, origin, f"{verb} it")
 
 
 def _inner(branch: Node, origin: Node, verb: str) -> tuple[Related, ...]:
     """The node inside a branch that makes its access."""
     if origin.span == branch.span:
         return ()
-    return other_place(origin.span, f"in `{branch.name}`, `{origin.name}` {verb} it")
+    return other_place(origin.span, f"in `{branch.name}`, `{origin.name}` {verb}")
 
 
 @rule(
     "SM406",
     "resource-clash",
     Severity.ERROR,
-    effect="two commands reach one part of the robot at the same time",
+    effect="both states command the same part of the robot: each command can interrupt the other",
 )
 def resource_clash(context: Context) -> Iterator[Finding]:
     """Two branches of a concurrence claim the same resource.
@@ -340,8 +340,8 @@ def _clash_finding(machine: Machine, path: str, container: Concurrence, clash: _
         place
         for one, what, inner in others
         for place in (
-            *other_place(one.span, f"`{one.name}` claims `{what}`"),
-            *_inner(one, inner, "claims"),
+            *other_place(one.span, f"`{one.name}` claims {_claimed(clash, what)}"),
+            *(_inner(one, inner, f"claims `{what}`") if inner.span != clash.origin.span else ()),
         )
     ]
     free = _free(machine, clash)
@@ -360,9 +360,25 @@ def _clash_finding(machine: Machine, path: str, container: Concurrence, clash: _
         f" of `{container.name}`",
         arguments=(_as_written(clash.claim, clash.origin), *names),
         help=f"{use}, or {order}" if span != child.span else f"{order}, or {use}",
-        related=(*places, *_inner(child, clash.origin, "claims"), *calls(child, span)),
+        related=(*places, *_inner_claim(clash, others), *calls(child, span)),
         node=f"{path}/{child.name}",
     )
+
+
+def _claimed(clash: _Clash, claim: str) -> str:
+    """The resources of a clash, for a branch that claims the first one as `claim`."""
+    return both(clash.resources) if claim in clash.resources else f"`{claim}`"
+
+
+def _inner_claim(clash: _Clash, others: Sequence[tuple[Node, str, Node]]) -> Iterable[Related]:
+    """The state inside the reported branch that makes its claim; branches that call one sub-script
+    can have it at one place."""
+    child, origin = clash.child, clash.origin
+    same = [one.name for one, _, inner in others if inner.span == origin.span != one.span]
+    if origin.span == child.span or not same:
+        return _inner(child, origin, f"claims `{clash.claim}`")
+    names = both(sorted([*same, child.name]))
+    return other_place(origin.span, f"in {names}, `{origin.name}` claims `{clash.claim}`")
 
 
 def _same_choice(origin: Node, claim: str, span: Span) -> bool:

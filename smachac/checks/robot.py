@@ -89,12 +89,14 @@ def wrong_length(context: Context) -> Iterator[Finding]:
     "SM502",
     "joint-limit",
     Severity.ERROR,
-    effect="the arm stops at its limit, and the skill fails",
+    effect="the joint cannot reach the angle: the state ends with `aborted`, or its controller"
+    " raises an error",
 )
 def joint_limit(context: Context) -> Iterator[Finding]:
     """A joint position is outside the limits of the joint.
 
-    The arm stops at its limit and the skill fails.
+    The joint cannot reach the angle: the state ends with `aborted`, or the controller of the arm
+    raises an error.
 
     Exactly: the limits are those of the robot that `robot:` names, a built-in arm (panda, baxter)
     or a URDF file. The rule checks the literals that a state with a claim on an arm reads: lists of

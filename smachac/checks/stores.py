@@ -20,7 +20,7 @@ MOST_PLACES = 3
     "SM320",
     "dead-store",
     Severity.WARNING,
-    effect="the first value has no effect on the task",
+    effect="another value replaces the first one before a state reads it",
 )
 def dead_store(context: Context) -> Iterator[Finding]:
     """A state sets a key that every path sets again before a state reads it.

@@ -300,7 +300,7 @@ def _finding(group: list[Clash], aliases: Mapping[str, str], *, at_origin: bool)
             shown.add(where)
             related.extend(other_place(where, message))
 
-    for each in group:
+    for each in group[:1] if at_origin else group:
         if not at_origin:
             show(_place(each), written(each.flow.origin))
         for where, message in _remaps(each):

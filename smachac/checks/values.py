@@ -11,7 +11,7 @@ from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.analysis.units import conversion, other_units
-from smachac.checks.messages import calls, did_you_mean, own_name
+from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.misnamed_bodies import misnamed_body
 from smachac.checks.robot import (
     at,
@@ -264,8 +264,11 @@ def unknown_name(context: Context) -> Iterator[Finding]:
         guess = guesser(sorted(known[role]))
         for name in dict.fromkeys(names_in(flow.value)):
             if name not in known[role]:
-                help = did_you_mean(guess(name)) or _things_in_words(role, known[role])
-                yield at(flow, f"there is no {role} `{name}`", help, (name,), severity=severity)
+                near = guess(name)
+                help = did_you_mean(near) or _things_in_words(role, known[role])
+                message = f"there is no {role} `{name}`"
+                places = _in_scene(context, near) if role == "body" else ()
+                yield at(flow, message, help, (name,), places, severity=severity)
     if is_simulated(context):
         yield from _late_bodies(context)
     yield from _missing_grippers(context, severity)
@@ -370,6 +373,13 @@ def _known_things(context: Context) -> Mapping[str, frozenset[str]]:
     if simulated:
         known["model"] = frozenset(MODELS)
     return known
+
+
+def _in_scene(context: Context, name: str | None) -> tuple[Related, ...]:
+    """The place of a body in the file of the scene."""
+    robot = context.machine.robot
+    found = [each for each in (robot.bodies if robot is not None else ()) if each.text == name]
+    return other_place(found[0].span, f"the scene has the body `{name}`") if found else ()
 
 
 def _things_in_words(role: str, known: frozenset[str]) -> str:

@@ -17,6 +17,7 @@ from smachac.frontend.own_objects import Objects
 from smachac.frontend.python_functions import is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.frontend.silent_results import called_function, is_silent
+from smachac.frontend.swapped_arguments import swapped_arguments
 from smachac.frontend.userdata_parts import tried_code
 from smachac.ir.class_facts import ClassFault
 
@@ -55,6 +56,7 @@ def call_slips(own: OwnClass, library: Library) -> Iterator[ClassFault]:
                 *_in_other_order(own, module, method, every, library),
                 *_wrong_numbers(module, every),
                 *_no_modules(module, method, every, library),
+                *swapped_arguments(own, module, method, every, library),
             ]
             yield from (each for each in found if not module.text.is_filled(each.name.span))
 

@@ -573,7 +573,14 @@ def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
     words = {each: Word(each.arg, _place(module.text, each)) for each in named}
     if any(module.text.is_filled(word.span) for word in words.values()):
         return None
-    return tuple(Parameter(word=word, required=each in required) for each, word in words.items())
+    uses: dict[str, tuple[Span, ...]] = {}
+    for each in ast.walk(function):
+        if isinstance(each, ast.Name):
+            uses[each.id] = (*uses.get(each.id, ()), module.text.span(each))
+    return tuple(
+        Parameter(word=word, required=each in required, uses=uses.get(word.text, ()))
+        for each, word in words.items()
+    )
 
 
 def _place(text: PythonText, node: ast.arg) -> Span:

@@ -22,6 +22,7 @@ from smachac.frontend.python_modules import (
     module_name,
     source_module,
 )
+from smachac.frontend.renamed_members import renamed_member
 from smachac.ir.class_facts import ClassFault
 
 _WORD = re.compile(r"\w+")
@@ -199,7 +200,7 @@ def _missing(
         dotted, known = words[written]
         if not dotted or name in known or name in quoted or name.startswith("__"):
             continue
-        fault = _absent(dotted, name, library)
+        fault = _absent(dotted, name, module, library)
         if fault is not None:
             span = module.text.span(each)
             place = Span(span.source, span.end - len(name), span.end)
@@ -218,7 +219,9 @@ def _words(module: Module, written: str, library: Library) -> tuple[str, set[str
     return dotted, {*_WORD.findall(texts[0])}
 
 
-def _absent(dotted: str, name: str, library: Library) -> tuple[str | None, str, str] | None:
+def _absent(
+    dotted: str, name: str, user: Module, library: Library
+) -> tuple[str | None, str, str] | None:
     """The nearest name, the file and the help for a name that a module does not define; None where
     it can have it."""
     other = load_module(dotted, library)
@@ -235,4 +238,5 @@ def _absent(dotted: str, name: str, library: Library) -> tuple[str | None, str, 
     public = [each for each in other.names if not each.startswith("_")]
     functions = [each for each in public if isinstance(other.names[each][-1], ast.FunctionDef)]
     more = f"its functions are {listed(functions)}" if functions else "define it in the module"
-    return guesser(sorted(public))(name), file_of(other), more
+    near = guesser(sorted(public))(name) or renamed_member(name, other, user.text, library)
+    return near, file_of(other), more

@@ -24,6 +24,8 @@ from smachac.frontend.python_modules import (
     load_module,
     source_module,
 )
+from smachac.frontend.python_source import PythonText
+from smachac.frontend.renamed_members import renamed_member
 from smachac.ir.class_facts import ClassFault
 
 MAKES_NAMES = frozenset(["exec", "globals", "locals", "vars", "setattr", "__import__"])
@@ -50,7 +52,7 @@ class Import(NamedTuple):
 
 def missing_imports(module: Module, library: Library) -> list[ClassFault]:
     """The imports of a module of the user that fail."""
-    return [fault for each in _statements(module) for fault in _faults(each, library)]
+    return [fault for each in _statements(module) for fault in _faults(each, library, module.text)]
 
 
 def missing_in_template(source: Source, library: Library) -> list[ClassFault]:
@@ -109,8 +111,9 @@ def _placed(name: str, span: Span, after: int) -> Word:
     return Word(name, Span(span.source, start, start + len(name)))
 
 
-def _faults(one: Import, library: Library) -> Iterator[ClassFault]:
-    """The faults of an import: of the module or a name, or of the text of the module."""
+def _faults(one: Import, library: Library, user: PythonText | None = None) -> Iterator[ClassFault]:
+    """The faults of an import: of the module or a name, or of the text of the module. `user` is the
+    code that has the import."""
     head, path = one.module.partition(".")[0], one.module.replace(".", "/")
     if not one.module or head in sys.stdlib_module_names:
         return
@@ -121,7 +124,7 @@ def _faults(one: Import, library: Library) -> Iterator[ClassFault]:
         if isinstance(other, ClassFault):
             yield other
         elif other is not None:
-            yield from _no_names(one, file, other, library)
+            yield from _no_names(one, file, other, library, user)
         return
     folder = library.code_names(path)
     if not folder:
@@ -136,7 +139,9 @@ def _faults(one: Import, library: Library) -> Iterator[ClassFault]:
                 yield from _no_module(inner, word, library)
 
 
-def _no_names(one: Import, file: str, other: Module, library: Library) -> Iterator[ClassFault]:
+def _no_names(
+    one: Import, file: str, other: Module, library: Library, user: PythonText | None
+) -> Iterator[ClassFault]:
     """The names that a module does not define."""
     words = set(_WORD.findall(other.text.source.text))
     if all(word.text in words for word in one.names):
@@ -149,10 +154,11 @@ def _no_names(one: Import, file: str, other: Module, library: Library) -> Iterat
     for word in one.names:
         if word.text not in known | words and not word.text.startswith("__"):
             other_module = module_with(word.text, file, library) or ""
+            near = guess(word.text) or renamed_member(word.text, other, user, library)
             yield ClassFault(
                 kind="no imported name",
                 name=word,
-                near=guess(word.text),
+                near=near,
                 file=file,
                 more=other_module,
             )

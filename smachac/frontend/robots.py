@@ -16,7 +16,7 @@ from smachac.frontend.errors.references import bad_robot, package_help
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
 from smachac.frontend.urdf import XACRO, UrdfError, joints_to, read_joints, read_urdf
-from smachac.frontend.yaml_tree import Tree
+from smachac.frontend.yaml_tree import Map, Scalar, Tree
 from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
 from smachac.robots import description
@@ -56,7 +56,18 @@ def robot_of(base: State, source: Source, library: Library, report: Report) -> R
             reader.mistake(base.scene, scene[1], error, "scene")
     span = base.robot.span if base.robot is not None else NOWHERE
     added = frozenset(word.text for word in base.frames)
-    return replace(found, added=added, scene=found.scene | bodies, span=span)
+    places = tuple(_body_names(scene[1])) if scene is not None else ()
+    return replace(found, added=added, scene=found.scene | bodies, span=span, bodies=places)
+
+
+def _body_names(tree: Tree) -> Iterator[Word]:
+    """The names of the bodies in the file of a scene."""
+    for part in tree.entries if isinstance(tree, Map) else ():
+        inner = part.value
+        if isinstance(part.key, Scalar) and part.key.value == "bodies" and isinstance(inner, Map):
+            for each in inner.entries:
+                if isinstance(each.key, Scalar) and isinstance(each.key.value, str):
+                    yield Word(each.key.value, each.key.span)
 
 
 def default_robot(base: StateType, library: Library) -> Robot | None:

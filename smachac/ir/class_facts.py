@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -100,6 +101,7 @@ FaultKind = Literal[
     "no member",
     "called early",
     "other order",
+    "swapped arguments",
     "number of values",
     "no module here",
 ]
@@ -131,10 +133,11 @@ class ClassFault:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """A parameter of a constructor that can be passed by its name."""
+    """A parameter of a constructor that can be passed by its name, with its uses there."""
 
     word: Word
     required: bool
+    uses: tuple[Span, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -281,3 +284,14 @@ class ClassFacts:
     def returns(self) -> tuple[Word, ...]:
         """The constants that `execute` returns."""
         return tuple(each.outcome for each in self.endings)
+
+
+def renamed_name(declared: Iterable[Word] | None, known: Iterable[str]) -> tuple[Word, str] | None:
+    """The only name that a class declares and its interface does not have, with the only one that
+    the interface has and the class does not: probably two names of the same thing."""
+    words, names = [*(declared or ())], [*known]
+    more = [word for word in words if word.text not in names]
+    missing = {*names}.difference(word.text for word in words)
+    if len(more) != 1 or len(missing) != 1:
+        return None
+    return more[0], min(missing)

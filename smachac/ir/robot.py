@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from smachac.diagnostics.source import NOWHERE, Span
+from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.robots.description import Limb
 from smachac.robots.fields import IDENTITY, Pose
 
@@ -45,7 +45,8 @@ class Robot:
     the frame in which poses are given (world frame).
     `description` is what the simulation loads: the name of a built-in robot or the file of a
     description; empty for a robot that cannot be simulated. `scene` has the names of the bodies and
-    of the single robots that are in the world from the start. `frames` are the names of its links,
+    of the single robots that are in the world from the start, `bodies` the places of those in the
+    file of the scene. `frames` are the names of its links,
     empty if unknown; `added` are frames that the script declares. `span` is the place where the
     script names the robot, NOWHERE if its base does.
     """
@@ -60,6 +61,7 @@ class Robot:
     frames: frozenset[str] = frozenset()
     added: frozenset[str] = frozenset()
     span: Span = field(default=NOWHERE, compare=False, repr=False)
+    bodies: tuple[Word, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def limb_names(self) -> tuple[str, ...]:

@@ -218,6 +218,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         " that only the {more} result has",
         "write `{near}`",
     ),
+    "swapped arguments": (
+        "the arguments of `{word}` have changed places",
+        "write `{near}`",
+    ),
     "number of values": (
         "the text has {more}, but gets {file}",
         "write one value for each place",
@@ -328,12 +332,12 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     "other parameter": (
         "`__init__` of `{name}` requires `{word}`, but the variable of the interface `{type}` is"
         " `{near}`",
-        "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
+        "rename the parameter `{word}` to `{near}`{more}, or the variable to `{word}`",
     ),
     "renamed parameter": (
         "`__init__` of `{name}` has the parameter `{word}`, but the variable of the interface"
         " `{type}` is `{near}`",
-        "rename the parameter `{word}` to `{near}`, or the variable to `{word}`",
+        "rename the parameter `{word}` to `{near}`{more}, or the variable to `{word}`",
     ),
     "no such parameter": (
         "`__init__` of `{name}` does not accept `{word}`, which is set here",
@@ -401,6 +405,7 @@ CHECKED_ONLY = frozenset[FaultKind](
         "no return",
         "called early",
         "other order",
+        "swapped arguments",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
@@ -438,6 +443,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no value": "the code raises UnboundLocalError when it runs: the machine stops",
     "called early": "the function runs at once, and not later",
     "other order": "the comparison has the same result in every run",
+    "swapped arguments": "{more}",
     "number of values": "the code raises {word} when it runs: the machine stops",
     "no module here": "the code raises AttributeError when it runs: the machine stops",
     "no member": "the code raises AttributeError when it runs: the machine stops",
@@ -477,7 +483,8 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "exchanged arguments": "the state has other outcomes or keys than its code uses: the machine"
     " stops with an error",
     "no state class": "the definition of the class raises an error when the program starts",
-    "no outcomes": "SMACH accepts only declared outcomes: the machine stops with an error",
+    "no outcomes": "SMACH raises InvalidTransitionError for an undeclared outcome: the machine"
+    " stops",
     "no parameter": _PASSED,
     "no such parameter": _PASSED,
     "other parameter": _PASSED,
@@ -486,7 +493,6 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "missing argument": _CALLED,
     "not passed": _CALLED,
     "other guard": "the program stops with a NameError when it makes the state",
-    "argument order": "each parameter gets the value of another one",
     "no quotes": "the program stops with a NameError when it makes the state",
     "not accepted": _RAISED,
 }
@@ -538,6 +544,7 @@ WRITTEN = frozenset[FaultKind](
         "no quotes",
         "called early",
         "other order",
+        "swapped arguments",
         "no module here",
     ]
 )
@@ -590,8 +597,10 @@ def class_effect(fault: ClassFault, target: str) -> str | None:
     """The effect of a fault of a class; empty if its message contains it."""
     if fault.kind == "parameter order":
         return fault.more
+    if fault.kind == "argument order" and target == "python":
+        return fault.more
     if fault.kind in EFFECTS:
-        return EFFECTS[fault.kind].format(word=fault.name.text, near=fault.near)
+        return EFFECTS[fault.kind].format(word=fault.name.text, near=fault.near, more=fault.more)
     if target == "cpp":
         return "the C++ compiler refuses the class"
     return PYTHON_EFFECTS.get(fault.kind)

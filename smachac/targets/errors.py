@@ -103,7 +103,7 @@ class Difference(NamedTuple):
     "SM603",
     "interfaces-differ",
     Severity.ERROR,
-    effect="the rules check the interface, but the robot runs the class: it can stop with an error",
+    effect="the robot runs the class, not the interface: SMACH can stop the machine with an error",
 )
 def interfaces_differ(
     used: Related, target: str, state_type: str, name: str, differences: Sequence[Difference]
@@ -310,7 +310,7 @@ def python_2_code(span: Span, old: str, new: str) -> Finding:
     "SM607",
     "defined-twice",
     Severity.WARNING,
-    effect="the last definition counts, also for the states that need the other one",
+    effect="Python keeps the last definition: a state that needs the other one runs wrong code",
 )
 def defined_twice(
     span: Span, what: str, name: str, states: tuple[tuple[str, Span], tuple[str, Span]]
@@ -388,7 +388,7 @@ def defined_twice(
     "SM608",
     "code-not-found",
     Severity.ERROR,
-    effect="the generated program stops when it starts",
+    effect="Python raises an error for the module or import: the program stops when it starts",
 )
 def code_not_found(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]

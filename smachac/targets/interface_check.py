@@ -17,7 +17,7 @@ from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault, Parameter
+from smachac.ir.class_facts import ClassFault, Parameter, renamed_name
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import remapping, walk
 from smachac.targets.class_faults import CHECKED_ONLY, SET_IN_SCRIPT
@@ -326,7 +326,11 @@ def _without(words: Words | None, used: Words, known: Sequence[str]) -> Words | 
     if words is None:
         return None
     reported = {word.text for word in used}.difference(known)
-    near = guesser(known)
+    guess, renamed = guesser(known), renamed_name(words, known)
+
+    def near(name: str) -> str | None:
+        return renamed[1] if renamed is not None and renamed[0].text == name else guess(name)
+
     meant = (Word(near(word.text) or "", word.span) for word in words if word.text in reported)
     kept = (word for word in words if word.text not in reported)
     return (*kept, *(word for word in meant if word.text))
@@ -356,6 +360,22 @@ _LACKED = {
 """What happens where a class lacks a part of its interface, in Python."""
 
 
+def _whole_list(what: str, name: str, words: Words) -> str:
+    """The help that adds a name to the list of a class in Python, if the list is written there."""
+    added = f"add `{name}` to the {what}s of the class"
+    if not words or len({word.span.line for word in words}) > 1:
+        return added
+    for word in words:
+        if word.span.text not in (f"'{word.text}'", f'"{word.text}"'):
+            return added
+    quote = words[0].span.text[0]
+    first, last = words[0].span, words[-1].span
+    text = first.source.text
+    if text[first.start - 1 : first.start] != "[" or text[last.end : last.end + 1] != "]":
+        return added
+    return f"write `{text[first.start - 1 : last.end]}, {quote}{name}{quote}]`"
+
+
 def _unlike(
     file: str, what: str, words: Words, wanted: Sequence[str], found: Declared
 ) -> Iterator[Difference]:
@@ -372,9 +392,9 @@ def _unlike(
         yield Difference(Word(text, more[0].span), help, change=change)
         return
     for name in missing:
-        change = found.fields.get((what, name), f"add `{name}` to the {what}s of the class")
+        change = found.fields.get((what, name)) or _whole_list(what, name, words)
         place = Word(f"the {what} `{name}` is missing", words[0].span if words else found.span)
-        help = f"{change}, or remove it from {file}"
+        help = f"{change}, or remove `{name}` from {file}"
         yield Difference(place, help, _LACKED[what], change)
     for word in more:
         change = f"remove `{word.text}` from the {what}s of the class"

@@ -163,7 +163,11 @@ def _call_fault(
         near = ", ".join(by_name[each] for each in due)
         near = f"{name}({near})" if given[-1]["end"] == ")" else near
         place = Span(template, given[0].start(), given[-1].start("end"))
-        return ClassFault(kind="argument order", name=Word(place.text, place), near=near), name
+        gets = [f"`{wanted}` gets the value of `{name_}`"
+                for wanted, name_ in zip(due, order, strict=True) if wanted != name_]  # fmt: skip
+        word = Word(place.text, place)
+        more = ", and ".join(gets[:2])
+        return ClassFault(kind="argument order", name=word, near=near, more=more), name
     for each in given:
         value = variable(leaf, each["name"]) if not each["quote"] else None
         if isinstance(value, str) and value.isidentifier() and value not in names:

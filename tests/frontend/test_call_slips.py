@@ -181,3 +181,54 @@ def test_lists_that_have_changed_places(call: str, place: str) -> None:
 def test_the_collected_items_of_an_output_key() -> None:
     change = ("userdata.labels = labels", "userdata.labels.extend(labels)")
     assert reported(OK, change) == [("SM310", "labels", "write `userdata.labels = labels`")]
+
+
+PUMP = "\n\ndef pump(volume, flow):\n    return volume / flow\n\n\nclass Mark(Base):"
+
+
+def swapped(body: str, function: str = PUMP) -> list[tuple[str, str, str]]:
+    return reported(body, ("\n\nclass Mark(Base):", function))
+
+
+@pytest.mark.parametrize(
+    ("body", "place", "help"),
+    [
+        ("FLOW = 2\nneed = 3\nprint(pump(FLOW, need))", "FLOW, need", "write `pump(need, FLOW)`"),
+        ("need = 3\nprint(pump(self.speed, need))", "", ""),
+        ("flow = 2\nvolume = 3\nprint(pump(flow, volume))", "flow, volume",
+         "write `pump(volume, flow)`"),
+        ("flow = 2\nprint(pump(flow, self.speed * 3))", "flow, self.speed * 3",
+         "write `pump(self.speed * 3, flow)`"),
+        ("volume = 2\nprint(pump(self.speed, volume))", "self.speed, volume",
+         "write `pump(volume, self.speed)`"),
+        ("flow = 2\nprint(pump(flow, 3))", "", ""),
+        ("flow = 2\nprint(pump(flow, flow))", "", ""),
+        ("flow = 2\nprint(pump(self.speed, flow))", "", ""),
+        ("flow = 2\nneed = [flow, 2]\nprint(pump(*need))", "", ""),
+    ],
+)  # fmt: skip
+def test_arguments_that_have_changed_places(body: str, place: str, help: str) -> None:
+    assert swapped(body) == ([("SM609", place, help)] if help else [])
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        "def pump(volume, flow):\n    return volume * flow",
+        "def pump(volume, flow):\n    return max(volume, flow)",
+        "def pump(volume: Arm, flow: Arm):\n    return volume",
+        "def pump(value, flow):\n    return value / flow",
+        "def pump(start, flow):\n    return start / flow",
+        "def pump(*volume):\n    return volume",
+    ],
+)
+def test_arguments_that_can_be_in_another_order(function: str) -> None:
+    text = f"\n\n{function}\n\n\nclass Mark(Base):"
+    assert swapped("flow = 2\nneed = 3\nprint(pump(flow, need))", text) == []
+
+
+def test_arguments_of_a_method_that_have_changed_places() -> None:
+    method = ("    def handler(self):", "    def pump(self, volume, flow):\n"
+              "        return volume / flow\n\n    def handler(self):")  # fmt: skip
+    body = "flow = 2\nneed = 3\nprint(self.pump(flow, need))"
+    assert reported(body, method) == [("SM609", "flow, need", "write `self.pump(need, flow)`")]

@@ -53,3 +53,35 @@ def test_the_look_up_is_marked_once(
     printed = capsys.readouterr().out
     assert printed.count("error[SM605]") == count
     assert printed.count("help: write `'{{ channel }}'`") == count
+
+
+QUOTED = TEMPLATE.replace("({{ channel }})", "('{{ channel }}')")
+
+
+@pytest.mark.parametrize(
+    ("template", "place", "help"),
+    [
+        (TEMPLATE.replace("({{ channel }})", "({{ channel }}, {{ channel | length }})"),
+         "17:14", "help: write `'{{ channel }}'`"),
+        (QUOTED.replace("'{{ name }}'", "'{{ name }}"), "16:1",
+         "help: write the quotation mark at the end of the text; the printed line is"
+         " `smach.StateMachine.add('LIGHT,`"),
+        (QUOTED.replace("{% endif %})", "{% endif %}"), "16:1",
+         "help: close the bracket with `)`; the printed line is"
+         " `smach.StateMachine.add('LIGHT',`"),
+        (QUOTED.replace("'{{ channel }}'", "{{ '5 6' }}, {{ '7 8' }}"), "17:14",
+         "help: correct the value of `{{ '5 6' }}`, which is printed as `5 6`"),
+        (QUOTED.replace("'{{ channel }}'", "'{{ channel }}' 7"), "17:9",
+         "help: correct the printed line `Lamp('/front/lamp' 7),`"),
+    ],
+)  # fmt: skip
+def test_the_line_of_the_template_is_marked(
+    template: str, place: str, help: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "main.yml").write_text(SCRIPT)
+    (tmp_path / "templates" / "Lamp.tpl.py").write_text(template)
+    main(["check", str(tmp_path / "main.yml")])
+    printed = capsys.readouterr().out
+    assert f"Lamp.tpl.py:{place}\n" in printed
+    assert help in printed

@@ -206,7 +206,7 @@ def template_not_found(
     "SM014",
     "bad-sub-script",
     Severity.ERROR,
-    effect="a call stands for exactly one state",
+    effect="smachac replaces a call by exactly one state, so no program is generated",
 )
 def bad_sub_script(
     span: Span, message: str, call: Span, help: str, *, arguments: tuple[str, ...]

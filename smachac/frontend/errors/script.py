@@ -39,7 +39,7 @@ class Owner(NamedTuple):
     "SM001",
     "yaml-syntax",
     Severity.ERROR,
-    effect="smachac builds no program from a text that is not YAML",
+    effect="smachac cannot read the text as YAML, so no program is generated",
 )
 def yaml_syntax(
     span: Span,
@@ -156,7 +156,7 @@ ELSEWHERE = {
     "SM003",
     "unknown-variable",
     Severity.ERROR,
-    effect="nothing reads this name, so its value has no effect",
+    effect="no code reads a field of this name: the program runs without its value",
 )
 def unknown_variable(
     word: Word,
@@ -207,7 +207,7 @@ def unknown_variable(
         certain = f"`{word.text}` is a variable of `{type_name}`: write `template: {type_name}`"
     elif key is not None:
         certain = f"`{word.text}` is an input key: {key}"
-    lacks = f"nothing reads this name, and `{required}`, which is required, is missing"
+    lacks = f"no code reads a field of this name, and `{required}`, which is required, is missing"
     if certain is not None:
         return Finding(
             span=word.span,
@@ -296,7 +296,7 @@ def number_before(word: Word) -> str:
     "SM004",
     "wrong-shape",
     Severity.ERROR,
-    effect="the language does not allow this here, so no program is generated",
+    effect="smachac cannot read a value of this form here, so no program is generated",
 )
 def wrong_shape(
     span: Span,
@@ -548,7 +548,7 @@ def too_big(span: Span, message: str, help: str, *, arguments: tuple[str, ...]) 
     "SM007",
     "unreadable-file",
     Severity.ERROR,
-    effect="nothing is generated before this is corrected",
+    effect="smachac cannot use the file, so no program is generated",
 )
 def unreadable_file(
     span: Span,

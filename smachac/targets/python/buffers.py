@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity, identity
 from smachac.diagnostics.source import Source, Span
@@ -185,10 +186,29 @@ class ModuleParts:
                 self.fault(BlockError(unquoted), node)
                 return text
             span = self._place(page, block, line) or node.span
-            message = f"the block `{block}` does not print valid Python: {words}"
             help = printed_line_help(words, line.strip())
+            written = self._written(page, line)
+            if written is not None:
+                span = Span(written.source, *written.span)
+            column = (getattr(tree, "offset", None) or 1) - 1
+            tag = written.at(column) if written is not None else None
+            if (
+                written is not None
+                and tag is not None
+                and not isinstance(modern(tag.printed)[2], ast.Module)
+            ):
+                span = Span(written.source, tag.start, tag.end)
+                help = f"correct the value of `{span.text}`, which is printed as `{tag.printed}`"
+            message = f"the block `{block}` does not print valid Python: {words}"
             self.fault(BlockError(template_error(span, message, help, (block, line.strip()))), node)
         return text
+
+    def _written(self, page: Page, line: str) -> _WrittenLine | None:
+        """The line of a template of the page that has most probably printed a line."""
+        found = [each for one in walk_pages(page)
+                 if (source := self.blocks.source(one.file)) is not None
+                 for each in _written_lines(source, line) if each.literal]  # fmt: skip
+        return max(found, key=lambda each: each.literal, default=None)
 
     def _unquoted(self, page: Page, text: str, line: str) -> Diagnostic | None:
         """SM605 for a look-up `{{ x }}` of a template without quotes, if the printed text is Python
@@ -197,12 +217,16 @@ class ModuleParts:
             source = self.blocks.source(each.file)
             if source is None:
                 continue
-            for start, end, value, quoted in _printed_look_ups(source, line):
+            tags = [tag for written in _written_lines(source, line) for tag in written.tags]
+            for tag in tags:
+                rest = line[tag.column + len(tag.printed) :]
+                quoted = f"{line[: tag.column]}{tag.printed!r}{rest}"
                 if not isinstance(modern(text.replace(line, quoted, 1))[2], ast.Module):
                     continue
-                span = Span(source, start, end)
-                message = f"the template prints `{value}` without quotes, which is not valid Python"
-                return template_error(span, message, f"write `'{span.text}'`", (span.text,))
+                span = Span(source, tag.start, tag.end)
+                message = f"the template prints `{tag.printed}` without quotes, which is not valid"
+                help = f"write `'{span.text}'`"
+                return template_error(span, f"{message} Python", help, (span.text,))
         return None
 
     def _other_version(
@@ -224,27 +248,53 @@ class ModuleParts:
         return self.blocks.block_span(page.file, block)
 
 
-_TAG = re.compile(r"\{\{-?\s*\w+\s*-?\}\}|\{%.*")
+_TAG = re.compile(r"\{\{.*?\}\}|\{%.*")
 
 
-def _printed_look_ups(source: Source, line: str) -> Iterator[tuple[int, int, str, str]]:
-    """The look-ups in the lines of a template that can have printed a line: their places, the text
-    of each in the line, and the line with this text in quotes."""
+class _Tag(NamedTuple):
+    """A look-up of a template at its place, with the text that it has printed, and its column."""
+
+    start: int
+    end: int
+    printed: str
+    column: int
+
+
+class _WrittenLine(NamedTuple):
+    """A line of a template that can have printed a line of Python, with its look-ups, and how many
+    characters are no look-ups."""
+
+    source: Source
+    span: tuple[int, int]
+    tags: tuple[_Tag, ...]
+    literal: int
+
+    def at(self, column: int) -> _Tag | None:
+        """The look-up that has printed the text at a column."""
+        return next((tag for tag in self.tags
+                     if tag.column <= column < tag.column + len(tag.printed)), None)  # fmt: skip
+
+
+def _written_lines(source: Source, line: str) -> Iterator[_WrittenLine]:
+    """The lines of a template that can have printed a line."""
     printed, start = line.strip(), 0
+    indent = len(line) - len(line.lstrip())
     for written in source.text.splitlines(keepends=True):
-        pattern, at, tags = "", len(written) - len(written.lstrip()), []
+        pattern, tags = "", []
+        first = at = len(written) - len(written.lstrip())
         for tag in _TAG.finditer(written):
             pattern += re.escape(written[at : tag.start()])
             at = tag.end()
             pattern += ".*" if tag[0].startswith("{%") else "(.*?)"
             tags += [] if tag[0].startswith("{%") else [tag]
         found = re.fullmatch(pattern + re.escape(written[at:].rstrip()), printed) if tags else None
-        for number, tag in enumerate(tags if found is not None else (), 1):
-            assert found is not None
-            first, last = found.span(number)
-            quoted = f"{printed[:first]}{found[number]!r}{printed[last:]}"
-            indent = line[: len(line) - len(line.lstrip())]
-            yield start + tag.start(), start + tag.end(), found[number], indent + quoted
+        if found is not None:
+            places = [_Tag(start + tag.start(), start + tag.end(), found[number],
+                           indent + found.start(number))
+                      for number, tag in enumerate(tags, 1)]  # fmt: skip
+            literal = len(printed) - sum(len(tag.printed) for tag in places)
+            span = (start + first, start + len(written.rstrip()))
+            yield _WrittenLine(source, span, tuple(places), literal)
         start += len(written)
 
 
@@ -252,6 +302,11 @@ def printed_line_help(words: str, line: str) -> str:
     """The help for a printed line that is no Python, by the message of Python."""
     if words == "expected ':'" and ":" not in line:
         return f"write `{line}:`"
+    if words.endswith("was never closed"):
+        closing = {"'('": ")", "'['": "]", "'{'": "}"}.get(words.split(" ")[0], "")
+        return f"close the bracket with `{closing}`; the printed line is `{line}`"
+    if words.startswith("unterminated"):
+        return f"write the quotation mark at the end of the text; the printed line is `{line}`"
     return f"correct the printed line `{line}`"
 
 

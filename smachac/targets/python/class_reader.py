@@ -8,7 +8,7 @@ from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.class_reader import PARAMETERS
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFacts, ClassFault
+from smachac.ir.class_facts import ClassFacts, ClassFault, Parameter
 from smachac.ir.nodes import StateType
 from smachac.targets.interface_check import Declared
 from smachac.targets.python.ros import has_node_parameter
@@ -56,13 +56,15 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
         return
     unknown = sorted(passed - known)
     given = passed | type_.given | {"node" if node else "", "outcomes" if type_.optional else ""}
-    required = [p.word for p in facts.parameters if p.required and p.word.text not in given]
+    required = [p for p in facts.parameters if p.required and p.word.text not in given]
     if len(unknown) == len(required) == 1 and guess(unknown[0]) is None:
-        yield ClassFault(kind="other parameter", name=required[0], near=unknown[0])
+        yield ClassFault(kind="other parameter", name=required[0].word, near=unknown[0],
+                         more=_also(required[0]))  # fmt: skip
         return
-    extra = [p.word for p in facts.parameters if p.word.text not in {*given, *PARAMETERS, "node"}]
+    extra = [p for p in facts.parameters if p.word.text not in {*given, *PARAMETERS, "node"}]
     if len(unknown) == len(extra) == 1 and guess(unknown[0]) is None:
-        yield ClassFault(kind="renamed parameter", name=extra[0], near=unknown[0])
+        yield ClassFault(kind="renamed parameter", name=extra[0].word, near=unknown[0],
+                         more=_also(extra[0]))  # fmt: skip
         return
     meant = set()
     for name in unknown:
@@ -70,6 +72,14 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
         meant.add(near)
         place = next((p.word.span for p in facts.parameters if p.word.text == near), None)
         yield ClassFault(kind="no parameter", name=Word(name, place or facts.name.span), near=near)
-    for word in required:
-        if word.text not in meant:
-            yield ClassFault(kind="required parameter", name=word)
+    for each in required:
+        if each.word.text not in meant:
+            yield ClassFault(kind="required parameter", name=each.word)
+
+
+def _also(parameter: Parameter) -> str:
+    """The part of a help about a new name of a parameter: the lines that use it."""
+    lines = dict.fromkeys(span.line for span in parameter.uses)
+    source = parameter.word.span.source
+    written = [f"`{source.line(line).strip()}` (line {line})" for line in lines]
+    return f", also in {', '.join(written[:3])}" if written else ""
