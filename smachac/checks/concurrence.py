@@ -32,7 +32,7 @@ from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Condition, Leaf, Node, OutcomeRule
-from smachac.ir.outcome_names import PREEMPTED, is_failure
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
 
@@ -222,20 +222,17 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
         ((name, other),) = others.items()
         return f"write `{child.name}: {name}`, as in the rule for `{other}`"
     meant = meant or guesser(names)(outcome)
-    return did_you_mean(meant) or ends_of(child) or _ends_of_monitor(child, outcome) or known
+    return did_you_mean(meant) or ends_of(child) or _documented(child) or known
 
 
-def _ends_of_monitor(child: Node, outcome: str) -> str | None:
-    """The help for an unknown outcome of a MonitorState."""
-    if not isinstance(child, Leaf) or child.built_in != "MonitorState":
+def _documented(child: Node) -> str | None:
+    """The help for an unknown outcome of a state whose type says what its outcomes mean."""
+    docs = [(each.name, each.doc.strip().rstrip(".")) for each in child.outcomes
+            if each.name not in (PREEMPTED, child.catches)]  # fmt: skip
+    if not docs or not all(doc for _, doc in docs):
         return None
-    ends = "a MonitorState ends with"
-    if is_failure(outcome):
-        return f"write `{child.name}: invalid`: {ends} `invalid` when its condition is false"
-    return (
-        f"{ends} `invalid` when its condition is false, with `valid` after `max_checks` messages,"
-        " and with `preempted`"
-    )
+    first = (f"`{name}` ({doc[0].lower()}{doc[1:]})" for name, doc in docs)
+    return f"use {' or '.join(first)}"
 
 
 def _shadowed_rules(each: Judged) -> Iterator[Finding]:
