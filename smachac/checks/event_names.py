@@ -56,6 +56,7 @@ def name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
         message=f"there is no {subject} `{atom.name}`",
         arguments=("unknown", atom.subject, atom.name),
         help=_other_subject(atom, context)
+        or (_with_the_words(atom, known) if sure is None else None)
         or did_you_mean(atom.name, known)
         or _by_words(atom, known)
         or _of_same_work(beside, known, context)
@@ -130,6 +131,15 @@ def _led_to(given: Property, atom: Atom, known: Sequence[str], context: Context)
             ((name, before),) = each.items()
             return f"did you mean `{name}`, to which `{before}` leads?"
     return None
+
+
+def _with_the_words(atom: Atom, known: Sequence[str]) -> str | None:
+    """The guess for the path of a state whose words are words of the name of one state only:
+    `LOCK` of `LOCK_TOOL`, although `DOCK` has but one other letter."""
+    words = set(atom.name.split("_"))
+    found = [name for name in known if words <= set(name.split("_"))]
+    fits = atom.subject == "path" and len(found) == 1 and not are_opposite(atom.name, found[0])
+    return f"did you mean `{found[0]}`?" if fits else None
 
 
 def _by_words(atom: Atom, known: Sequence[str]) -> str | None:

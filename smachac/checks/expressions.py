@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -324,7 +325,8 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         severity = None if fault.always else Severity.WARNING
         finding = _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
         swapped = swapped_params_help(_places_of_values(site, fault), site.node.span.source)
-        yield replace(finding, help=swapped) if swapped else finding
+        help = swapped or _number_in_quotes(site, fault)
+        yield replace(finding, help=help) if help else finding
     yield from wrong_parts(context)
     yield from wrong_operations(context)
 
@@ -381,6 +383,9 @@ def mixed_units(context: Context) -> Iterator[Finding]:
         yield replace(finding, help=f"{finding.help}, {value}") if value else finding
 
 
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
+
+
 def _in_other_unit(site: ExpressionSite, fault: Fault) -> str:
     """The end of the help for a number in another unit: the initial value of its key in the right
     one; empty if it has not one value in the script."""
@@ -402,6 +407,19 @@ def _in_other_unit(site: ExpressionSite, fault: Fault) -> str:
                 new = f"{{type: {each.type.name}<{wanted}>, value: {number}}}"
                 return f"or write `{name}: {new}` in the `userdata` of `{node.name}`"
     return ""
+
+
+def _number_in_quotes(site: ExpressionSite, fault: Fault) -> str | None:
+    """The help for a number of the script in quotes, which is a text: `limit: '3'`."""
+    for key in fault.keys:
+        cell = site.cells.get(key)
+        for alike in cell.flows.values() if cell is not None else ():
+            for flow in alike:
+                text = flow.value if flow.origin.how == "value" else None
+                if isinstance(text, str) and _NUMBER.fullmatch(text):
+                    line = flow.origin.span.line
+                    return f"write `{key}: {text}` without quotes in line {line}"
+    return None
 
 
 def _places_of_values(site: ExpressionSite, fault: Fault) -> Iterator[Span]:

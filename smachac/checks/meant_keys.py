@@ -26,13 +26,15 @@ SHORTEST_WORD = 3
 
 class MeantKey(NamedTuple):
     """A key that nothing sets, and the only preset or input of its container that nothing reads,
-    which is probably meant for it: by a remapping or, if `looped`, by a `for_each` over its items.
-    `word` is the name of that preset or input, `state` the path of the state that reads the key."""
+    which is probably meant for it: by a remapping or, if `looped`, by a `for_each` over its items;
+    if `iterated`, the key is the list of a loop, which probably means it. `word` is the name of
+    that preset or input, `state` the path of the state that reads the key."""
 
     missing: Missing
     word: Word
     state: str
     looped: bool
+    iterated: bool = False
 
 
 def meant_keys(context: Context) -> dict[str, MeantKey]:
@@ -70,11 +72,13 @@ def meant_keys(context: Context) -> dict[str, MeantKey]:
         )
         alike = not set(word.text.split("_")).isdisjoint(first.key.split("_"))
         fits = alike if ANY in (wanted, given) else misfit(given, wanted) is None
+        iterated = isinstance(reader.node, nodes.Iterator) and reader.node.items_key == first.key
+        fits = fits or (iterated and isinstance(data, tuple))
         if not fits:
             if looped:
                 found[path] = MeantKey(first, word, reader.path, looped=True)
         else:
-            found[path] = MeantKey(first, word, reader.path, looped=False)
+            found[path] = MeantKey(first, word, reader.path, looped=False, iterated=iterated)
     return found
 
 

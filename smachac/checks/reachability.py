@@ -222,7 +222,7 @@ def _led_past(
         steps = [step for step in before.transitions if step.origin == "written"]
         for found in (
             [each for each in steps if each.target in after | good
-             and not fails(before, each.outcome)],
+             and each.outcome != PREEMPTED and not fails(before, each.outcome)],
             [each for each in steps if each.target in good and fails(before, each.outcome)],
         ):  # fmt: skip
             if found:

@@ -208,6 +208,13 @@ def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Find
     """The finding on a key that nothing sets, where a loop over a preset, or a remapping from a
     preset or input is missing."""
     name, key, other = witness.reader.node.name, meant.missing.key, meant.word.text
+    if meant.iterated and isinstance(witness.reader.node, nodes.Iterator):
+        field = "in" if witness.reader.node.sugar else "it"
+        return replace(
+            finding,
+            help=f"write `{field}: {other}`, or rename `{other}` to `{key}`",
+            related=(*other_place(meant.word.span, f"nothing reads `{other}`"), *finding.related),
+        )
     purpose, text = f"must read `{other}`", f"remapping: {{{key}: {other}}}"
     if meant.looped:
         purpose = f"must run for each item of `{other}`"

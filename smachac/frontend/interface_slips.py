@@ -4,9 +4,10 @@ entry that have changed places, outputs of `writes` without their declaration.""
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both
@@ -243,6 +244,20 @@ def undeclared_outputs(lost: Sequence[Word], section: Section) -> Diagnostic:
     )
 
 
+def _renamed_output(
+    lost: Sequence[Word], sections: Mapping[str, Section], facts: ClassFacts | None
+) -> Entry | None:
+    """The only output of an interface that neither `writes` nor the class has, if `writes` has one
+    key that the interface lacks: its old name."""
+    if len(lost) != 1 or facts is None:
+        return None
+    items = [each.value for each in sections["writes"]]
+    words = [name_of(word) for each in items if isinstance(each, Seq) for word in each.items]
+    used = {word.text for word in (*words, *facts.writes, *(facts.outputs or ())) if word}
+    left = [each for each in sections["output_keys"] if str(each.key.value) not in used]
+    return left[0] if len(left) == 1 else None
+
+
 def with_lost_outputs(
     sections: dict[str, Section], facts: ClassFacts | None, report: Report
 ) -> dict[str, Section]:
@@ -250,6 +265,21 @@ def with_lost_outputs(
     lost = lost_outputs(sections, facts) if sections["writes"] else ()
     if not lost:
         return sections
+    renamed = _renamed_output(lost, sections, facts)
+    if renamed is not None:
+        found = undeclared_outputs(lost, sections["output_keys"])
+        old = str(renamed.key.value)
+        help = f"write `{lost[0].text}` in place of `{old}` in `output_keys`"
+        place = Related(span=renamed.key.span, message=f"no outcome in `writes` has `{old}`")
+        finding = replace(found.finding, help=help, related=(place,))
+        report.append(replace(found, finding=finding))
+        outputs = tuple(
+            Entry(Scalar(lost[0].text, True, *lost[0].span), each.value)
+            if each is renamed
+            else each
+            for each in sections["output_keys"]
+        )
+        return sections | {"output_keys": outputs}
     report.append(undeclared_outputs(lost, sections["output_keys"]))
     more = tuple(Entry(Scalar(word.text, True, *word.span), Map((), word.span)) for word in lost)
     return sections | {"output_keys": (*sections["output_keys"], *more)}

@@ -423,6 +423,8 @@ def _use_implied(found: _Declarer, state: State) -> None:
     mapped = {key.text: to for key, to in state.final_outcome_map}
     for child in state.states:
         handled = {key.text for key, _ in child.transitions}
+        for part in (child.sugar.retry, child.sugar.for_each):
+            handled.update(word.text for word in (part.on if part is not None else ()))
         for name, span in _ends(child):
             if state.owner == "Iterator":
                 if not state.break_outcomes and name not in loops and name != ERROR:

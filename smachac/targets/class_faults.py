@@ -552,7 +552,7 @@ WRITTEN = frozenset[FaultKind](
 
 
 SET_IN_SCRIPT = ("no parameter", "other parameter", "renamed parameter")
-"""Faults of a parameter that has another name than a variable; `more` is that variable where the
+"""Faults of a parameter that has another name than a variable; `owner` is that variable where the
 script sets it."""
 
 
@@ -573,9 +573,10 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         for text in WORDS[fault.kind]
     )
     near = fault.near
-    if fault.kind in SET_IN_SCRIPT and fault.more and near is not None:
+    if fault.kind in SET_IN_SCRIPT and fault.owner and near is not None:
         one = near if fault.kind == "no parameter" else fault.name.text
-        return message, f"rename the parameter `{one}` to `{fault.more}`, which the script sets"
+        renamed = f"rename the parameter `{one}` to `{fault.owner}`, which the script sets"
+        return message, renamed + fault.more
     if fault.kind in ("skipped output", "early return") and fault.more:
         return message, f"write `{fault.more}` before this `return` too"
     if near is None or fault.kind in WRITTEN:

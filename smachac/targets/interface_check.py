@@ -233,7 +233,7 @@ def type_faults(
         if fault.kind in SET_IN_SCRIPT:
             variable = fault.name.text if fault.kind == "no parameter" else fault.near
             if any(each.name == variable for each in leaf.variables):
-                fault = replace(fault, more=variable or "")
+                fault = replace(fault, owner=variable or "")
         if fault.kind in NOT_FOUND:
             yield code_not_found(fault, target.name, type_.name, found.name, used)
         else:

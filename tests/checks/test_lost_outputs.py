@@ -237,7 +237,7 @@ states:
             time: 2.0
             transitions: {succeeded: again, preempted: give_up}
 """
-KEPT = [("SM307", "CLEAR", "add `tries` to the `output_keys` of `CLEAR`")]
+KEPT = [("SM307", "CLEAR", "write `output_keys: [tries]` in `CLEAR`")]
 
 
 def cleared(code: str = "ud.tries + 1", *, drive: str = "", out: str = "", old: str = "",

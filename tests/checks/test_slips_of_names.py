@@ -396,4 +396,4 @@ states:
 """
     found = [each for each in reported({"main.yml": main}) if each[0] in ("SM301", "SM303")]
     assert len(found) == 1
-    assert "`input_keys` of `EACH`" in (found[0][2] or "")
+    assert "`input_keys: [one, total]` in `EACH`" in (found[0][2] or "")
