@@ -154,11 +154,12 @@ states:
 @pytest.mark.parametrize(
     ("inputs", "code", "help"),
     [
-        ("tries", "ud.tries < ud.max_tries", "add `max_tries` to the `input_keys` of `AGAIN`"),
-        ("max_tries", "ud.tries < ud.max_tries", "add `tries` to the `input_keys` of `AGAIN`"),
+        ("tries", "ud.tries < ud.max_tries", "write `input_keys: [tries, max_tries]` in `AGAIN`"),
+        ("max_tries", "ud.tries < ud.max_tries",
+         "write `input_keys: [max_tries, tries]` in `AGAIN`"),
         ("tries", 'ud["tries"] < ud["max_tries"]',
-         "add `max_tries` to the `input_keys` of `AGAIN`"),
-        ("tries", "ud.limit < ud.tries", "add `limit` to the `input_keys` of `AGAIN`"),
+         "write `input_keys: [tries, max_tries]` in `AGAIN`"),
+        ("tries", "ud.limit < ud.tries", "write `input_keys: [tries, limit]` in `AGAIN`"),
         ("max_tries", "ud.tries < 3", "did you mean `max_tries`?"),
         ("tries", "ud.tires < 3", "did you mean `tries`?"),
         ("tries, max_tries", "ud.tries < ud.max_tires", "did you mean `max_tries`?"),
