@@ -149,16 +149,35 @@ def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
             yield _Hidden(path, container, group, past, way_out, led_twice if alone else None)
 
 
-def keys_of_hidden_states(context: Context) -> set[tuple[str, str]]:
+def keys_of_hidden_states(context: Context) -> dict[tuple[str, str], frozenset[str]]:
     """The keys that states set past which the state before them leads (SM201), each with the path
-    of its container."""
-    return {
-        (each.path, remapping(child).get(key.name, key.name))
-        for each in _hidden_groups(context)
-        if not isinstance(each, Finding) and each.past is not None and each.past.next
-        for child in each.group
-        for key in child.outputs
-    }
+    of its container; and the states that are entered without that transition."""
+    found = {}
+    for each in _hidden_groups(context):
+        if isinstance(each, Finding) or each.past is None or not each.past.next:
+            continue
+        entered = _entered_without(each.container, each.past.step)
+        for child in each.group:
+            names = remapping(child)
+            for key in child.outputs:
+                found[each.path, names.get(key.name, key.name)] = entered
+    return found
+
+
+def _entered_without(container: Linear, step: Transition) -> frozenset[str]:
+    """The states of a container that can be entered without a transition."""
+    ahead: dict[str, list[str]] = {}
+    for child in container.children:
+        targets = [each.target for each in child.transitions if each is not step]
+        ahead.setdefault(child.name, []).extend(targets)
+    seen: set[str] = set()
+    todo = [container.initial]
+    while todo:
+        name = todo.pop()
+        if name in ahead and name not in seen:
+            seen.add(name)
+            todo += ahead[name]
+    return frozenset(seen)
 
 
 def _first_hidden(

@@ -147,12 +147,12 @@ def _with_their_own_cause(context: Context) -> list[Missing]:
     misnamed = misnamed_keys(context)
     unwritten = set(read_unwritten(context, unwritten_keys(context)).values()) | raced_keys(context)
     found: list[Missing] = []
-    hidden: set[tuple[str, str]] | None = None
+    hidden: dict[tuple[str, str], frozenset[str]] | None = None
     for missing in context.missing_keys("unset", "nowhere"):
         place = missing.scope.path, missing.key
         if missing.cause == "unset" and hidden is None:
             hidden = keys_of_hidden_states(context)
-        if hidden and place in hidden:
+        if hidden and place in hidden and hidden[place].isdisjoint(map(str, missing.vertices)):
             continue  # SM201
         wrong = misnamed.get(place)
         if missing.cause == "nowhere" and _is_dropped(missing):
