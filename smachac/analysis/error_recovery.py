@@ -192,7 +192,7 @@ def _meant(node: Node, around: Container, *, raw: bool) -> Node:
         own = {key.name for key in (*node.inputs, *node.outputs)}
         wrong = {
             each.remap: replace(each.remap, key=each.remap.to, to=each.remap.key)
-            if each.remap.to in own
+            if each.remap.to in own and each.certain is None
             else replace(each.remap, key=each.meant or each.remap.key)
             for each in remaps
         }

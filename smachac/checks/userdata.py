@@ -337,7 +337,7 @@ def _unknown_remaps(path: str, container: Container) -> Iterator[Finding]:
 def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
     unknown = unknown_remaps(node, container)
-    turned = [remap for remap, _, _ in unknown if remap.to in own]
+    turned = [remap for remap, _, certain in unknown if remap.to in own and certain is None]
     for remap, meant, certain in unknown:
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
         if remap in turned:

@@ -104,7 +104,7 @@ states:
         input_keys: [level]
         output_keys: [sum, unset]
         callbacks: {sum: 'lambda ud: ud.lvl + factor', more: 'lambda ud: ud.level'}
-        transitions: {succeeded: NOWHERE}
+        transitions: {succeeded: nowhere}
     - SLIP:
         template: CallbacksState
         output_keys: [sum]

@@ -300,7 +300,7 @@ def unresolved_look_up(word: Word, scope: Iterable[str], turned: str | None = No
 
 def param_before_definition(item: Diagnostic, defined: Span) -> Diagnostic:
     """SM015 for a look-up in a param that names a later param of the same mapping."""
-    (name,) = item.finding.arguments
+    name, *_ = item.finding.arguments
     help = f"move `{name}` before this param: a param can use only those above it"
     if defined.source is not item.span.source:  # a call of the sub-script defines it
         help = f"add `{name}: ...` above this param, as the default value that a call replaces"
@@ -322,7 +322,7 @@ def look_up_of_call(
     scope of the call. `alone`: no other param is missing. `settled`: the finding is at a call
     inside that gives other params, so it stays there if this call has no other name for it."""
     found = item.finding
-    (name,) = found.arguments
+    name, *_ = found.arguments
     meant = guesser(each.text for each in given)(name)
     place = found.related[0].span if found.related else found.span
     related = (Related(span=place, message=f"it reads `{name}` here"),)
