@@ -217,7 +217,8 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
     alike = [each.name for each in container.children
              if each is not child and each.type == child.type]  # fmt: skip
     others = {part.outcome: part.child for rule in container.rules for part in rule.when
-              if part.child in alike and part.outcome in names}  # fmt: skip
+              if part.child in alike and part.outcome in names
+              and part.outcome != PREEMPTED}  # fmt: skip
     if meant is None and len(others) == 1:
         ((name, other),) = others.items()
         return f"write `{child.name}: {name}`, as in the rule for `{other}`"

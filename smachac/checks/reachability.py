@@ -18,6 +18,7 @@ from smachac.checks.misled_failures import linear_outcomes, misled_failures
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
+from smachac.checks.rule_slips import lost_condition
 from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Word
@@ -510,6 +511,10 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
         effect = f"a caller of `{name}` that waits for this outcome never gets it"
     if isinstance(container, Concurrence):
         help = f"add a rule for `{outcome.name}`, or {removed}"
+        condition = lost_condition(container)
+        if condition is not None:
+            rule = f"{written_name(outcome.name)}: {{{condition}}}"
+            help = f"write the rule `{rule}` in `outcome_map`, or {removed}"
         if outcome.name == PREEMPTED:
             # docs/semantics.md, Preemption.
             help = (

@@ -40,9 +40,9 @@ def _item_help(container: Container, reader: Node, key: str) -> str | None:
     read = f"read `{container.item_key}` in place of `{key}`"
     match container.sugar:
         case "":
-            return f"write `it_label: {key}`, or {read}: the loop calls its item so"
+            return f"write `it_label: {key}`, or {read}: `{container.item_key}` is the item of the loop"
         case "for_each":
-            return f"write `item: {key}` in `for_each`, or {read}: the loop calls its item so"
+            return f"write `item: {key}` in `for_each`, or {read}: `{container.item_key}` is the item of the loop"
     return None
 
 
@@ -135,6 +135,9 @@ def _meant_key(
     if isinstance(node, nodes.Iterator) and guess == node.item_key:
         # The item of an iterator is no list of items, although `item` resembles `items`.
         guess = guesser(sorted(keys_of(scope) - {node.item_key}))(missing.key)
+    loop = scope.container
+    if isinstance(loop, nodes.Iterator) and guess == loop.items_key:
+        guess = None  # what its state reads is the item, not the list
     names = remapping(node)
     own = {names.get(key.name, key.name) for key in node.inputs}
     if node is not scope.container and guess in own:
