@@ -37,12 +37,13 @@ def _item_help(container: Container, reader: Node, key: str) -> str | None:
     """The help for a key that nothing sets in a loop, whose item has another name."""
     if not isinstance(container, nodes.Iterator) or reader is container:
         return None
-    read = f"read `{container.item_key}` in place of `{key}`"
+    item = container.item_key
+    read = f"or read `{item}` in place of `{key}`: `{item}` is the item of the loop"
     match container.sugar:
         case "":
-            return f"write `it_label: {key}`, or {read}: `{container.item_key}` is the item of the loop"
+            return f"write `it_label: {key}`, {read}"
         case "for_each":
-            return f"write `item: {key}` in `for_each`, or {read}: `{container.item_key}` is the item of the loop"
+            return f"write `item: {key}` in `for_each`, {read}"
     return None
 
 

@@ -51,8 +51,6 @@ class Guesser:
         None without one. A name with another meaning is no guess."""
         index = self._slips()
         nearest = next((index[slip] for slip in slips(word) if slip in index), None)
-        if nearest is not None and not _one_slip(word.casefold(), nearest.casefold()):
-            nearest = None  # a short name with another letter: LIFT is not LEFT
         if nearest is None and len(self.names) <= MOST_COMPARED and len(word) <= LONGEST_SLIP:
             parts = [name for name in self.names if word.casefold() in name.casefold().split("_")]
             if len(parts) != 1 or len(word) < SHORTEST_PART:

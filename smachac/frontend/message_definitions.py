@@ -134,7 +134,8 @@ def definitions_of(base: State, classes: Iterable[ClassFacts], library: Library)
     found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
     todo: list[tuple[DefinitionKind, str]] = list(_named_types(base))
     for facts in classes:
-        todo += [(kind, text) for kind, text, _ in _readings(facts)]
+        for kind, text, _ in _readings(facts):
+            todo.append((kind, text))
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:

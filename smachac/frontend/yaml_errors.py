@@ -143,7 +143,7 @@ _MOST_TEXT = 40
 
 def _block_text(stop: _Stop) -> _Fault | None:
     """A line of a text below `|` that is indented too little."""
-    for index in dict.fromkeys([stop.at, *([] if stop.first is None else [stop.first])]):
+    for index in (stop.at, *(() if stop.first in (None, stop.at) else (stop.first,))):
         due = lost_of_block_text(stop.text, index)
         start = stop.text.rfind("\n", 0, index) + 1
         line = stop.text[start : _line_end(stop.text, index)].rstrip()
