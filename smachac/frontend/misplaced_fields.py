@@ -50,6 +50,16 @@ _NAMED = frozenset(["template", "script"])
 """The fields with one name that every state has, if it is not another kind of field."""
 
 
+_ONE_NAME: Mapping[str, frozenset[str]] = {
+    owner: frozenset(
+        key for key in schema.names_for(owner) if schema.VARIABLES[key].shape == "name"
+    )
+    - _NAMED
+    for owner in ("base", "state", *schema.CONTAINERS)
+}
+"""The fields with one name that not every state has, by owner."""
+
+
 def with_outer_fields(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
     """The fields of a state by long name, with those that are in the mapping of another one beside
     it."""
@@ -150,16 +160,15 @@ def _with_outer_names(
     name: Word, own: dict[str, Entry], owner: FieldOwner, type_: StateType, report: Report
 ) -> dict[str, Entry]:
     """The fields with those of one value that are in a mapping of declared outcomes or keys."""
-    fields = {key for key in schema.names_for(owner) if schema.VARIABLES[key].shape == "name"}
-    fields = (fields - _NAMED) | type_.variables.keys()
-    parts = {key for key, each in type_.variables.items() if each.role in _CODE}
+    fields, variables = _ONE_NAME[owner], type_.variables
+    parts = [key for key, each in variables.items() if key in own and each.role in _CODE]
     for part in ("transitions", "outcome_map", *sorted(parts)):
         entry = own.get(part)
         if entry is None or not isinstance(entry.value, Map):
             continue
         outer = {key: each for each in entry.value.entries
-                 if (key := str(each.key.value)) in fields and key not in own
-                 and _is_one_value(each.value)}  # fmt: skip
+                 if ((key := str(each.key.value)) in fields or key in variables)
+                 and key not in own and _is_one_value(each.value)}  # fmt: skip
         if outer:
             outer = {key: each for key, each in outer.items() if key not in _names(own, type_)}
             role = type_.variables[part].role if part in parts else ""
