@@ -9,12 +9,14 @@ import re
 import signal
 import sys
 from collections.abc import Generator, Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
+from smachac.commands import memory
 from tests.browser import pages
 from tests.ros.ros_graph import Graph, missing
 from tests.ros2 import ros2_graph
@@ -33,6 +35,24 @@ settings.load_profile("repeatable")
 
 PACKAGE = Path(__file__).parents[1] / "smachac"
 TEMPLATES = re.compile(r"\.tpl\.py$")
+
+
+KEPT_BY_TESTS = 16_000
+"""In MB. The address space that a process of many tests may have taken before a test."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def memory_beside_other_tests() -> Iterator[None]:
+    """The memory limit of a command counts the whole process: one that runs thousands of tests has
+    the memory and the threads of earlier ones. At its limit Python can crash."""
+    limited = memory.limited_memory
+
+    def beside(megabytes: int) -> AbstractContextManager[None]:
+        return limited(megabytes + KEPT_BY_TESTS if megabytes else 0)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(memory, "limited_memory", beside)
+        yield
 
 
 def pytest_configure(config: pytest.Config) -> None:
