@@ -227,7 +227,7 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
 
 
 def _documented(child: Node) -> str | None:
-    """The help for an unknown outcome of a state whose type says what its outcomes mean."""
+    """The help for an unknown outcome of a state whose type documents its outcomes."""
     docs = [(each.name, each.doc.strip().rstrip(".")) for each in child.outcomes
             if each.name not in (PREEMPTED, child.catches)]  # fmt: skip
     if not docs or not all(doc for _, doc in docs):
