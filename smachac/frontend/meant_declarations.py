@@ -7,7 +7,6 @@ is corrected before it is lowered, so that the fault is one finding, without its
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
@@ -15,6 +14,7 @@ from typing import TypeAlias
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
 from smachac.frontend.loader import Library
 from smachac.frontend.script import ANY_OUTCOME, ERROR, EXHAUSTED, TIMEOUT, Script, State
 from smachac.frontend.turned_transitions import with_turned_transitions
@@ -25,11 +25,6 @@ from smachac.ir.properties import atoms
 Place: TypeAlias = "tuple[int, ...]"
 """The place of a state in a script: its number in each container, outermost first."""
 
-
-_CPP_OUTCOMES = re.compile(r"enum class Outcome\b[^{;]*(\{[^}]*\})")
-"""The outcomes of a class in C++ (docs/targets.md)."""
-
-_NAME = re.compile(r"[A-Za-z_]\w*")
 
 _COMMON = frozenset(["succeeded", "aborted", PREEMPTED])
 """The outcomes of SMACH: a declared name that is one slip away, which nothing uses, means them."""
@@ -351,13 +346,11 @@ def _header_words(type_: StateType, library: Library) -> Iterator[Word]:
     """The outcomes in the header of a type's class in C++."""
     code = type_.classes.get("cpp", {})
     header = library.code(code.get("header", "")) if code else None
-    name = code.get("class", "").rpartition("::")[2]
-    begin = re.search(rf"\b(class|struct)\s+{re.escape(name)}\b", header.text) if header else None
-    if header is None or begin is None:
+    if header is None or len(header.text) > LONGEST:
         return
-    found = _CPP_OUTCOMES.search(header.text, begin.end())
-    for each in _NAME.finditer(header.text, *found.span(1)) if found is not None else ():
-        yield Word(each[0], Span(header, *each.span()))
+    whole = Part(source=header, text=without_literals(header.text))
+    body = whole.inside(whole.only(class_head(code.get("class", "").rpartition("::")[2])))
+    yield from (outcome_words(body) or ()) if body is not None else ()
 
 
 # --- outcomes and states of the script

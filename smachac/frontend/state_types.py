@@ -6,7 +6,7 @@ template without either is an open type: any field is accepted, and nothing is k
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TypeVar, get_args
 
@@ -242,6 +242,7 @@ def _listed_roles(section: Section, report: Report) -> dict[str, KeyRole]:
     }
 
 
+_T = TypeVar("_T")
 _Role = TypeVar("_Role", VariableRole, KeyRole)
 
 
@@ -345,14 +346,20 @@ def _variables(section: Section, report: Report) -> dict[str, VariableType]:
     return {key: _variable(key, value, report) for key, value in declared_in(section)}
 
 
-def _variable(name: str, tree: Tree, report: Report) -> VariableType:
+def _with_swapped_facts(read: Callable[[Tree], _T], tree: Tree, report: Report) -> _T:
+    """What `read` finds in the facts of a key or variable; facts whose values are swapped are one
+    finding, and are read as they are meant."""
     before = len(report)
-    found = _described_variable(name, tree, report)
+    found = read(tree)
     swapped = swapped_facts(tree) if len(report) > before else None
     if swapped is None:
         return found
     report[before:] = [swapped.finding]
-    return _described_variable(name, swapped.tree, report)
+    return read(swapped.tree)
+
+
+def _variable(name: str, tree: Tree, report: Report) -> VariableType:
+    return _with_swapped_facts(lambda facts: _described_variable(name, facts, report), tree, report)
 
 
 def _described_variable(name: str, tree: Tree, report: Report) -> VariableType:
@@ -447,13 +454,7 @@ def _with_turned_facts(entry: Entry, report: Report) -> Entry:
 
 
 def _key(name: Word, tree: Tree, report: Report) -> Key:
-    before = len(report)
-    found = _described_key(name, tree, report)
-    swapped = swapped_facts(tree) if len(report) > before else None
-    if swapped is None:
-        return found
-    report[before:] = [swapped.finding]
-    return _described_key(name, swapped.tree, report)
+    return _with_swapped_facts(lambda facts: _described_key(name, facts, report), tree, report)
 
 
 def _described_key(name: Word, tree: Tree, report: Report) -> Key:

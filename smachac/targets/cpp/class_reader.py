@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
 from smachac.frontend.loader import Library
 from smachac.frontend.other_modules import file_with
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
 from smachac.ir.types import STRUCTS, unknown_words
-from smachac.targets.cpp.header_text import Part, without_literals
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import member_faults, signature_faults
 from smachac.targets.cpp.types import UnportableError
@@ -25,19 +25,11 @@ from smachac.targets.cpp.user_classes import ClassCode, class_code, field_type, 
 from smachac.targets.errors import Difference
 from smachac.targets.interface_check import Declared, Words
 
-LONGEST = 200_000
-"""The length of the longest header that is read, in characters."""
-
-_CLASS = (
-    r"(?<!enum )\b(?:class|struct)\s+(?:\w+\s+)?(?P<name>{})\b(?P<base>[^;(){{}}=]{{0,1000}})\{{"
-)
-_OUTCOME = r"\benum\s+(?:class|struct)\s+Outcome\b[^;{]{0,1000}\{"
 _USED_OUTCOME = re.compile(r"(?<![\w:])Outcome\s*::\s*([A-Za-z_]\w*)")
 _STRUCT = r"\bstruct\s+{}\s*\{{"
 _NUMBER = (
     r"\bsmachac_interface\s*[={]\s*(0[xX][\da-fA-F']{1,20}|\d[\d']{0,20})[uUlL]*\s*(?:\}\s*)?;"
 )
-_ENUMERATOR = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*(?:=[^,]*)?")
 _LAST_WORD = re.compile(r"\b[A-Za-z_]\w*$")
 _MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\(")
 """A call of what is probably a macro."""
@@ -76,13 +68,13 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     if not re.search(rf"\b{re.escape(name)}\b|^\s*#\s*define\b", whole.text, re.M):
         word = Word(name, type_.class_spans.get(("cpp", "class"), NOWHERE))
         fault = _absent_class(word, whole, code.header)
-        pattern = re.compile(_CLASS.format(re.escape(name)))
+        pattern = re.compile(class_head(name))
         other = file_with(pattern, code.header, (".hpp", ".h", ".hh"), library) if fault else None
         if fault is not None and other is not None:
             header_span = type_.class_spans.get(("cpp", "header"), word.span)
             fault = replace(fault, name=Word(word.text, header_span), more=other)
         return _absent(code, fault)
-    head = whole.only(_CLASS.format(re.escape(name)))
+    head = whole.only(class_head(name))
     body = whole.inside(head)
     if head is None or body is None or "#" in body.text:
         return None
@@ -186,7 +178,7 @@ def _defines(text: str, code: ClassCode) -> bool:
     *spaces, name = code.name.removeprefix("::").split("::")
     plain = without_literals(text)
     opened = set(re.findall(r"\w+", " ".join(re.findall(r"\bnamespace\s+([\w:\s]+)\{", plain))))
-    pattern = _CLASS.format(re.escape(name))
+    pattern = class_head(name)
     return opened.issuperset(spaces) and re.search(pattern, plain) is not None
 
 
@@ -270,18 +262,10 @@ def _number(text: str) -> int | None:
 
 
 def _outcomes(body: Part, names: Iterable[str]) -> Words | None:
-    part = body.inside(body.member(_OUTCOME))
-    if part is None or re.search(r"[\[{(]", part.text):
-        return None
+    """The outcomes of a class, under the names that its interface gives them."""
     own = {identifier(name): name for name in names}
-    words = []
-    for at, piece in part.split(","):
-        found = _ENUMERATOR.fullmatch(piece.rstrip())
-        if found is None:
-            return None
-        name, (start, end) = found["name"], found.span("name")
-        words.append(part.word(own.get(name, name), at + start, at + end))
-    return tuple(words)
+    words = outcome_words(body)
+    return words and tuple([Word(own.get(each.text, each.text), each.span) for each in words])
 
 
 def _fields(body: Part, name: str, *, derived: bool) -> list[_Field] | None:

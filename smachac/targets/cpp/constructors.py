@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from smachac.diagnostics.source import NOWHERE, Word
+from smachac.frontend.cpp_text import Part
 from smachac.ir.class_facts import ClassFault
-from smachac.targets.cpp.header_text import Part
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import ClassCode, parameter_type

@@ -10,12 +10,12 @@ import re
 from collections.abc import Iterator
 
 from smachac.diagnostics.source import Word
+from smachac.frontend.cpp_text import Part
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import PREEMPTED
 from smachac.targets.cpp.constructors import constructor_faults
-from smachac.targets.cpp.header_text import Part
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.unused_calls import UnusedCall, unused_call
 from smachac.targets.cpp.user_classes import ClassCode, left_to_scripts, stops

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from smachac.diagnostics.source import Source
-from smachac.targets.cpp.header_text import without_literals
+from smachac.frontend.cpp_text import without_literals
 
 _TOKEN = re.compile(
     r"\bnamespace\s+(?P<space>[\w:]+)\s*\{"

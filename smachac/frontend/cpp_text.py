@@ -1,4 +1,5 @@
-"""Text of a C++ header without comments and literals, and parts of it between braces."""
+"""Text of a C++ header without comments and literals, parts of it between braces, and what is read
+of a class there: its body and its outcomes (docs/targets.md)."""
 
 from __future__ import annotations
 
@@ -8,12 +9,22 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
 
+LONGEST = 200_000
+"""The length of the longest header that is read, in characters."""
+
 _NO_CODE = re.compile(
     r"""(?P<kept>\b\d[\w.']*)|//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"?|'(?:\\.|[^'\\\n])*'?""",
     re.DOTALL,
 )
 """Comments and literals. A literal that is not closed ends with its line: a search for the quote
 from each start would take quadratic time."""
+
+
+_CLASS = (
+    r"(?<!enum )\b(?:class|struct)\s+(?:\w+\s+)?(?P<name>{})\b(?P<base>[^;(){{}}=]{{0,1000}})\{{"
+)
+_OUTCOME = r"\benum\s+(?:class|struct)\s+Outcome\b[^;{]{0,1000}\{"
+_ENUMERATOR = re.compile(r"\s*(?P<name>[A-Za-z_]\w*)\s*(?:=[^,]*)?")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,3 +86,23 @@ def without_literals(text: str) -> str:
 
 def _blank(found: re.Match[str]) -> str:
     return found["kept"] or re.sub(r"[^\n]", " ", found.group())
+
+
+def class_head(name: str) -> str:
+    """The pattern of the head of a class, up to its brace; the groups are `name` and `base`."""
+    return _CLASS.format(re.escape(name))
+
+
+def outcome_words(body: Part) -> tuple[Word, ...] | None:
+    """The names in `enum class Outcome` in the body of a class; None where it cannot be read."""
+    part = body.inside(body.member(_OUTCOME))
+    if part is None or re.search(r"[\[{(]", part.text):
+        return None
+    words = []
+    for at, piece in part.split(","):
+        found = _ENUMERATOR.fullmatch(piece.rstrip())
+        if found is None:
+            return None
+        start, end = found.span("name")
+        words.append(part.word(found["name"], at + start, at + end))
+    return tuple(words)
