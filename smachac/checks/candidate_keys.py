@@ -137,6 +137,7 @@ def meant_by_remap(
     key = unread[0] if len(unread) == 1 else guesser(unread)(remap.to)
     place = written_place(scope, key) if key is not None else None
     if key is None or place is None:
+        near = near or _named_by_state(types, scope, child, wanted)
         return MeantByRemap(near) if near is not None else None
     setters = [
         each.name
@@ -144,6 +145,28 @@ def meant_by_remap(
         if any(remapping(each).get(one.name, one.name) == key for one in each.outputs)
     ]
     return MeantByRemap(key, place, setters[0] if setters and key not in scope.held else "")
+
+
+def keys_of_type(types: Types, scope: UserdataScope, child: Node, wanted: Type) -> list[str]:
+    """The keys of a container that have the type of an input of a state, and that the state does
+    not use; none for a type that says little about what a value means."""
+    if is_open(wanted) or wanted.name in SCALARS:
+        return []
+    own = {each.to for each in child.remaps}
+    return [
+        key
+        for key in sorted(keys_of(scope) - own)
+        for given in [types.keys.get((scope.path, key), ANY)]
+        if not is_open(given) and widened(given) != ANY and fits(given, wanted)
+    ]
+
+
+def _named_by_state(types: Types, scope: UserdataScope, child: Node, wanted: Type) -> str | None:
+    """The only key that an input can have and that shares a word with the name of the state."""
+    words = words_of(child.name)
+    near = [key for key in sorted(keys_of(scope)) if words_of(key) & words]
+    found = [key for key in near if may_be(types, scope, key, wanted)]
+    return found[0] if len(found) == 1 else None
 
 
 def meant_by_remaps(context: Context) -> set[tuple[str, str]]:
@@ -169,12 +192,17 @@ def _unread_of_type(
 ) -> list[str]:
     """The keys of a container that nothing reads, that another state than `child` sets, and that
     have the type of one of its inputs; of a number, text or boolean only those with a word of the
-    remapping."""
+    remapping. If the type is unknown, the only initial value that nothing reads, if it is none of
+    these."""
+    read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
     if is_open(wanted):
-        return []
+        held = sorted(scope.held - read)
+        simple = any(
+            widened(types.keys.get((scope.path, key), ANY)).name in SCALARS for key in held
+        )
+        return held if len(held) == 1 and not simple else []
     names = remapping(child)
     own = {names.get(each.name, each.name) for each in child.outputs}
-    read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
     found = [
         key
         for key in sorted(keys_of(scope) - read - own)

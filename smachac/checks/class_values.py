@@ -28,6 +28,7 @@ from smachac.checks.class_code import leaves_by_type
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.type_words import HELP, example, in_words
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import Part, Step
@@ -298,8 +299,9 @@ def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:
             return _wrong_attribute(owner, last, _owner_text(part), which)
         case "item", str() if owner.name == "record" and last not in fields(owner):
             names = list(fields(owner))
-            meant = did_you_mean(guesser(names)(last)) or f"use one of its fields: {listed(names)}"
-            return f"{which} has no field `{last}`", meant
+            meant = did_you_mean(_meant_field(owner, last))
+            help = meant or f"use one of its fields: {listed(names)}"
+            return f"{which} has no field `{last}`", help
         case "names", int():
             size = length_of(owner)
             if size is None or size == last:
@@ -338,11 +340,21 @@ def _attribute_of_record(type_: Type, name: str, owner: str, which: str) -> tupl
     """What is wrong with an attribute of a record, which is a dictionary in Python."""
     if hasattr(dict, name):
         return None
-    meant = name if name in fields(type_) else guesser(list(fields(type_)))(name)
+    meant = name if name in fields(type_) else _meant_field(type_, name)
     what = f"{which} is a dictionary: it has no attribute `{name}`"
     if meant is None:
         return what, f"use one of its fields: {listed(list(fields(type_)))}"
     return what, f'write `{owner}["{meant}"]`'
+
+
+def _meant_field(record: Type, name: str) -> str | None:
+    """The field of a record that is meant by an unknown one: the nearest, or the only one whose
+    type has the name, as the field `at` of type `Pose` for `pose`."""
+    names = list(fields(record))
+    of_type = [each for each, type_ in fields(record).items()
+               if present(type_).name.casefold() == name.casefold()]  # fmt: skip
+    near = guesser(names)(name) or of_same_meaning(name, names)
+    return near or (of_type[0] if len(of_type) == 1 else None)
 
 
 def _owner_text(part: Part) -> str:

@@ -181,6 +181,20 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
             )
 
 
+def has_dead_rule(container: Concurrence) -> bool:
+    """Whether a rule of a concurrence has a state or an outcome that does not exist (SM403)."""
+    children = {child.name: child for child in container.children}
+    return any(
+        condition.child
+        and (
+            (child := children.get(condition.child)) is None
+            or not (is_open(child) or condition.outcome in outcome_names(child))
+        )
+        for rule in container.rules
+        for condition in rule.when
+    )
+
+
 def _swapped_outcomes(
     entry: OutcomeRule, children: Mapping[str, Node]
 ) -> tuple[Condition, Condition] | tuple[()]:

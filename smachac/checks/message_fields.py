@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -81,8 +82,6 @@ NO_MESSAGE = frozenset(["stop", "stop_all", "remove", "remove_all"])
 
 NUMBERS = frozenset([*INTEGERS, *FLOATS, "bool"])
 """The types of fields that are numbers in Python."""
-
-SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
 SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
@@ -438,9 +437,14 @@ def _faults(
 ) -> Iterator[Finding]:
     names = {each.name for message in messages for each in message.fields}
     inputs = {key.name for key in leaf.inputs}
+    remapped = _remapped_field(leaf, held, names)
     for use in _uses(held, messages):
         name = use.word.text
-        if name not in names:
+        if remapped is not None and use.key and name not in names:
+            help = f"write `{remapped}`, which the remapping has, in place of `{name}`"
+            text = f"{described(messages[0])} has no field `{name}`"
+            yield field_finding(path, leaf, use.word, text, help, messages)
+        elif name not in names:
             lists = (("input_keys", leaf.inputs), ("output_keys", leaf.outputs))
             named = [part for part, keys in lists if name in [key.name for key in keys]]
             also = f", in the `{named[0]}`" if use.key and named and len(named) == 1 else ""
@@ -454,6 +458,32 @@ def _faults(
                 message = f"`{name}` is `{given}`, but the field of {described(messages[0])} is"
                 help = f"remap `{name}` to a key whose values are `{wanted[0]}`"
                 yield field_finding(path, leaf, use.word, f"{message} `{type_}`", help, messages)
+
+
+def _remapped_field(leaf: Leaf, held: Variable, names: AbstractSet[str]) -> str | None:
+    """The field of a message that the remapping of a state has, and that its list of fields has
+    under an unknown name; None if there is not exactly one of each. `names` are all fields."""
+    listed_names = held.value.data
+    if not leaf.remaps or not isinstance(listed_names, tuple):
+        return None
+    used = {each for each in listed_names if isinstance(each, str)}
+    known = {key.name for key in (*leaf.inputs, *leaf.outputs)} - (used - names)
+    found = [each.key for each in leaf.remaps if each.key in names and each.key not in known]
+    return found[0] if len(found) == len(used - names) == 1 else None
+
+
+def remapped_fields(leaf: Leaf, found: Definitions) -> set[str]:
+    """The unknown keys in the remapping of a state for which SM512 has a finding: fields that its
+    list has under another name."""
+    fields: set[str] = set()
+    for kind, definitions in leaf_definitions(leaf, found):
+        for held in leaf.variables:
+            if held.role in PARTS[kind]:
+                parts = [each.part(held.role) for each in definitions]
+                names = {each.name for part in parts for each in part.fields}
+                field = _remapped_field(leaf, held, names)
+                fields.update([field] if field is not None else [])
+    return fields
 
 
 def _can_fit(given: Type, wanted: Type) -> bool:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import children_names, strays, unknown_outcomes
 from smachac.analysis.misplaced_states import stray_transitions
+from smachac.checks.concurrence import has_dead_rule
 from smachac.checks.event_names import name_fault, own_work, work
 from smachac.checks.messages import other_place
 from smachac.checks.outcomes import unhandled
@@ -449,9 +450,12 @@ def property_vacuous(context: Context) -> Iterator[Finding]:
               transitions: {done: LET_GO, preempted: LET_GO}
           - LET_GO: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    unreachable = _unreachable(context) if any(_with(context, "vacuous")) else ()
-    for each in _with(context, "vacuous"):
-        if any(f"{state}/".startswith(unreachable) for state in each.states):
+    vacuous = list(_with(context, "vacuous"))
+    unreachable = _unreachable(context) if vacuous else ()
+    dead = {path for path, node in context.containers if vacuous
+            and isinstance(node, Concurrence) and has_dead_rule(node)}  # fmt: skip
+    for each in vacuous:
+        if any(f"{state}/".startswith(unreachable) or state in dead for state in each.states):
             continue
         yield Finding(
             span=each.property.span,

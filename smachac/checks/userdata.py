@@ -18,7 +18,13 @@ from smachac.analysis.unset_reads import (
     container_name,
     reader_at,
 )
-from smachac.checks.candidate_keys import may_be, meant_by_remap, unread_output
+from smachac.checks.candidate_keys import (
+    MOST_FITTING,
+    keys_of_type,
+    may_be,
+    meant_by_remap,
+    unread_output,
+)
 from smachac.checks.declarations import swapped_loop
 from smachac.checks.edits import listing, with_input, with_output
 from smachac.checks.empty_remaps import empty_remap_findings
@@ -27,6 +33,7 @@ from smachac.checks.initial_presets import (
     together_finding,
 )
 from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
+from smachac.checks.message_fields import remapped_fields
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.checks.misled_failures import Misled, misled_failures
 from smachac.checks.races import raced_keys
@@ -38,8 +45,9 @@ from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt, written_name
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.wording import either, listed
 from smachac.ir import nodes
+from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.types import ANY
@@ -301,7 +309,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
               remapping: {pose: block_pose}
               transitions: {succeeded: held}
     """
-    yield from context.at_containers(_unknown_remaps)
+    yield from context.at_containers(_unknown_remaps, context.machine.definitions)
     guesses = Guesses()
     for missing in context.missing_keys("remapped"):
         yield from _remapped(context.types, missing, guesses)
@@ -320,12 +328,15 @@ def _ignored(node: Node, meant: str | None, outer: str) -> str:
     return f"SMACH ignores the entry: `{node.name}` {verb} the key `{meant}`, not `{outer}`"
 
 
-def _unknown_remaps(path: str, container: Container) -> Iterator[Finding]:
+def _unknown_remaps(path: str, container: Container, definitions: Definitions) -> Iterator[Finding]:
     lacking: set[tuple[Span, tuple[str, ...]]] = set()
     for node in container.children:
         if not node.remaps:
             continue
-        yield from _unknown_remaps_of(f"{path}/{node.name}", node, container)
+        found = list(_unknown_remaps_of(f"{path}/{node.name}", node, container))
+        leaf = node if found and isinstance(node, nodes.Leaf) else None
+        reported = remapped_fields(leaf, definitions) if leaf is not None else ()
+        yield from (each for each in found if each.arguments[0] not in reported)
         keys = lacking_inputs(node)
         if keys and not isinstance(node, nodes.Leaf):
             place = node.children[0].span, keys
@@ -386,6 +397,10 @@ def _remapped(types: Types, missing: Missing, guesses: Guesses) -> Iterator[Find
                 related = ()
                 help = f"the keys of `{remap.key}` and `{other.key}` have changed places: write"
                 help += f" `{remap.key}: {other.to}, {other.key}: {remap.to}`"
+            fitting = keys_of_type(types, scope, child, wanted)
+            if help is None and 0 < len(fitting) <= MOST_FITTING:
+                help = f"write {either(f'{remap.key}: {each}' for each in fitting)}, which"
+                help += f" {'has' if len(fitting) == 1 else 'have'} its type, or set `{key}` before"
             yield Finding(
                 span=remap.to_span,
                 message=f"`{remap.key}` of `{child.name}` is remapped to `{key}`, which nothing in"

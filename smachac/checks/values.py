@@ -155,11 +155,15 @@ def _out_of(flow: TypeFlow, limits: Limits) -> Iterator[Finding]:
 
 
 def _converted(number: int | float, unit: str, limits: Limits) -> str:
-    """The end of a help for a number that is within the limits if it is in another unit: 12 mm."""
+    """The end of a help for a number that is within the limits if it is in another unit: 12 mm, or
+    70 % of a ratio."""
     for other in other_units(unit):
         factor = conversion(other, unit)
         if factor is not None and _is_within(number * factor, limits):
             return f"; {number} `{other}` is `{number * factor:.6g}`"
+    is_ratio = not unit and limits.least >= 0 and limits.most == 1
+    if is_ratio and number > 1 and _is_within(number / 100, limits):
+        return f"; {number} % is `{number / 100:.6g}`"
     return ""
 
 

@@ -424,6 +424,8 @@ def _of_type(entry: Entry, report: Report) -> Entry:
     key, parts = entry.key.span.text, {part.key.value: part.value for part in value.entries}
     type_, preset = parts.get("type"), parts.get("value")
     help = None
+    if isinstance(type_, Map) and "\n" not in type_.span.text:
+        type_ = Scalar(type_.span.text, True, *type_.span)
     if isinstance(type_, Scalar):
         help = f"write `{key}: {type_.span.text}`"
     if help and preset is not None and "\n" not in preset.span.text:

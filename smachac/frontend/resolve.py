@@ -568,7 +568,8 @@ class _Resolver:
             searched = self.library.script_folders(caller)
             known = self.library.script_names(caller)
             other = self.library.folder_with(word.text, SUFFIXES[1:], searched)
-            self.not_found(script_not_found(word, searched, known, other))
+            template = word.text in self.known_templates()[1]
+            self.not_found(script_not_found(word, searched, known, other, template=template))
             return None
         self.texts[word.text, caller] = source
         if (word.text, caller) not in self.parsed:
@@ -660,9 +661,11 @@ class _Resolver:
             first = word.text not in self.unknown
             self.unknown.add(word.text)
             fitting: tuple[tuple[str, ...], ...] = ()
+            called = not role and word.text in self.library.script_names(around.source.name)
             if first and near is None and not other and not role:
                 fitting = types_with_the_names(entries, word.text, names, self.other_type)
-            self.not_found(template_not_found(word, searched, known, other, *fitting))
+            item = template_not_found(word, searched, known, other, *fitting, script=called)
+            self.not_found(item)
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
                 return StateType(name=meant, kind="container"), meant

@@ -6,12 +6,12 @@ Reported are unknown fields (SM003), values of the wrong shape (SM004) and missi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser_of, written_name
+from smachac.diagnostics.spelling import guesser_of, words_of, written_name
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema, value_facts
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
@@ -515,12 +515,34 @@ def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) 
             if word.text not in known:
                 what = part.replace("_", " ").removesuffix("s")
                 message = f"state type `{type_.name}` has no {what} `{word.text}`"
-                help = did_you_mean(word.text, known)
+                help = _meant_remap(word.text, known, read.get("remapping", ())) \
+                    if part != "outcomes" else None  # fmt: skip
+                help = help or did_you_mean(word.text, known)
                 help = help or (
                     f"use one of its {what}s: {listed(known)}" if known else "remove it"
                 )
                 arguments = (part, type_.name, word.text)
-                report.append(wrong_shape(word.span, message, help, arguments=arguments))
+                effect = f"the interface of `{type_.name}` lists all {what}s: this entry adds none"
+                item = wrong_shape(word.span, message, help, arguments=arguments, effect=effect)
+                report.append(item)
+
+
+def _meant_remap(name: str, known: Sequence[str], remapping: Pairs) -> str | None:
+    """The help for a listed key that the interface does not have, if it is no misspelt one: the
+    remapping that gives a key of the state this name."""
+    if guesser_of(tuple(known)).sure(name) is not None:
+        return None
+    for key, to in remapping:
+        if to.text == name and key.text in known:
+            return f"remove it: the remapping gives `{key.text}` the name `{name}`"
+    given = {key.text for key, _ in remapping}
+    free = [key for key in known if key not in given]
+    near = [key for key in free if words_of(key) & words_of(name)] or free
+    if len(near) != 1:
+        return None
+    entry = f"{near[0]}: {name}"
+    where = f"add `{entry}` to the remapping" if given else f"write `remapping: {{{entry}}}`"
+    return f"{where} in place of this entry"
 
 
 def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys]]:

@@ -59,7 +59,12 @@ def _where(
     effect="a part of the task is missing without the sub-script, so no program is generated",
 )
 def script_not_found(
-    word: Word, searched: Sequence[str], known: Iterable[str], other: str = ""
+    word: Word,
+    searched: Sequence[str],
+    known: Iterable[str],
+    other: str = "",
+    *,
+    template: bool = False,
 ) -> Finding:
     """A state calls a sub-script that is in none of the searched folders.
 
@@ -84,11 +89,13 @@ def script_not_found(
         - PICK_BLOCK: {template: ScriptedState, outcomes: [done]}
     """
     names = sorted(known)
+    help = f"`{word.text}` is a state type: write `template: {word.text}`" if template else None
     return Finding(
         span=word.span,
         message=f"the sub-script `{word.text}` was not found",
         arguments=(word.text,),
-        help=_package_of(word)
+        help=help
+        or _package_of(word)
         or _where(word, f"{word.text}.yml", searched, names, "scripts", other),
         edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
@@ -170,6 +177,8 @@ def template_not_found(
     other: str = "",
     fitting: Sequence[str] = (),
     used: Sequence[str] = (),
+    *,
+    script: bool = False,
 ) -> Finding:
     """The type of a state has neither an interface nor a template in any folder.
 
@@ -193,6 +202,8 @@ def template_not_found(
     help = _where(word, f"{word.text}.yml", searched, names, "templates", other)
     if fitting:
         help = f"did you mean {either(fitting)}, with {both(used)}?"
+    if script:
+        help = f"`{word.text}` is a sub-script: write `script: {word.text}`"
     return Finding(
         span=word.span,
         message=f"the template `{word.text}` was not found",
