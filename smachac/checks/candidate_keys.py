@@ -147,15 +147,14 @@ def meant_by_remap(
     return MeantByRemap(key, place, setters[0] if setters and key not in scope.held else "")
 
 
-def keys_of_type(types: Types, scope: UserdataScope, child: Node, wanted: Type) -> list[str]:
-    """The keys of a container that have the type of an input of a state, and that the state does
-    not use; none for a type that says little about what a value means."""
+def keys_of_type(types: Types, scope: UserdataScope, wanted: Type) -> list[str]:
+    """The keys of a container that have a type; none for one that says little about what a value
+    means."""
     if is_open(wanted) or wanted.name in SCALARS:
         return []
-    own = {each.to for each in child.remaps}
     return [
         key
-        for key in sorted(keys_of(scope) - own)
+        for key in sorted(keys_of(scope))
         for given in [types.keys.get((scope.path, key), ANY)]
         if not is_open(given) and widened(given) != ANY and fits(given, wanted)
     ]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 
 from smachac.analysis.type_lattice import POINT, QUATERNION, inside, length_of, present, unit_of
 from smachac.analysis.units import conversion
+from smachac.ir.nodes import Data, is_number
 from smachac.ir.types import Type
 
 LONGEST = 1000
@@ -53,6 +55,27 @@ def list_meant(text: str) -> str | None:
     if len(parts) < 2 or not all(re.fullmatch(_NUMBER, part) for part in parts):
         return None
     return f"write a list without quotes: `[{', '.join(parts)}]`"
+
+
+def rotation_meant(angles: Data) -> str | None:
+    """The help for a rotation of three numbers: the quaternion of these angles about the fixed axes
+    x, y and z (roll, pitch and yaw in rad, as `euler` "sxyz" of tf.transformations); None for
+    other values. Formula: the product of the quaternions of the three rotations, yaw first."""
+    if not isinstance(angles, tuple) or len(angles) != 3:
+        return None
+    halves = [each / 2 for each in angles if is_number(each) and math.isfinite(each)]
+    if len(halves) != 3:
+        return None
+    (sr, sp, sy), (cr, cp, cy) = (tuple(map(wave, halves)) for wave in (math.sin, math.cos))
+    rotation = (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+    text = ", ".join(str(round(each, 4) + 0.0) for each in rotation)
+    which = "for no rotation" if not any(halves) else "for these 3 angles (roll, pitch, yaw in rad)"
+    return f"write a quaternion, `[qx, qy, qz, qw]`: `[{text}]` {which}"
 
 
 def decimal_commas(text: str, sizes: Iterable[int]) -> str | None:

@@ -13,6 +13,13 @@ from smachac.ir.traversal import expressions, walk
 _PARAM_IN_CODE = re.compile(r"\bparams(?:\.|\[['\"])(\w+)")
 
 
+_SUBSTITUTION = re.compile(
+    r"\$\((?:(?:arg|param|var|optenv|env) )?\s*(\w+)\)|\$\{(?:params?[.:/])?(\w+)\}|\$(\w+)"
+    r"|\{\{\s*(?:params?\.)?(\w+)\s*\}\}|\{(\w+)\}|<(\w+)>"
+)
+"""The value of a param in the syntax of other tools: launch files of ROS, shells, templates."""
+
+
 def params_in_code(machine: Machine) -> set[str]:
     """The params that code of the script names as if they were variables: `params.limit`."""
     codes = [code.text for _, node in walk(machine.root) for code in expressions(node)]
@@ -21,7 +28,7 @@ def params_in_code(machine: Machine) -> set[str]:
 
 def params_as_text(context: Context) -> Mapping[str, Span]:
     """The params that nothing uses and whose name is the value of a variable of a state, as a text,
-    in one place."""
+    in one place; also in the syntax of other tools: `$(arg speed)`."""
     machine = context.machine
     names = {each.word.text for each in machine.unused if each.what == "param"}
     names -= params_in_code(machine) if names else set()
@@ -29,8 +36,12 @@ def params_as_text(context: Context) -> Mapping[str, Span]:
     for _, leaf in context.leaves_with_variables if names else ():
         for held in leaf.variables:
             data = held.value.data
-            if isinstance(data, str) and data in names and data == held.value.span.text:
-                found.setdefault(data, []).append(held.value.span)
+            if not isinstance(data, str):
+                continue
+            other = _SUBSTITUTION.fullmatch(data)
+            name = next(filter(None, other.groups())) if other is not None else data
+            if name in names and (other is not None or data == held.value.span.text):
+                found.setdefault(name, []).append(held.value.span)
     return {name: spans[0] for name, spans in found.items() if len(spans) == 1}
 
 

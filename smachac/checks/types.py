@@ -28,7 +28,13 @@ from smachac.analysis.type_lattice import (
 from smachac.analysis.units import conversion
 from smachac.checks.class_values import wrong_loops, wrong_writes
 from smachac.checks.messages import calls, did_you_mean, other_place
-from smachac.checks.number_help import decimal_commas, list_meant, number_meant, sizes_of
+from smachac.checks.number_help import (
+    decimal_commas,
+    list_meant,
+    number_meant,
+    rotation_meant,
+    sizes_of,
+)
 from smachac.checks.param_texts import look_up_help, params_as_text
 from smachac.checks.record_fields import (
     missing_fields,
@@ -41,6 +47,7 @@ from smachac.checks.rule import rule
 from smachac.checks.swapped_values import swapped_findings, swapped_values
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit, type_at
+from smachac.checks.wrong_remaps import wrong_remap_finding, wrong_remaps
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.source import NOWHERE, Span
@@ -110,6 +117,10 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
         cells = {cell for pair in swapped for cell in (pair.one.cell, pair.other.cell)}
         clashes = [each for each in clashes if each.cell not in cells]
         yield from swapped_findings(swapped)
+    remapped = list(wrong_remaps(context, clashes))
+    yield from map(wrong_remap_finding, remapped)
+    done = {found.clash.cell for found in remapped}
+    clashes = [each for each in clashes if each.cell not in done]
     params = {span: name for name, span in params_as_text(context).items()} if clashes else {}
     for found in clash_findings(clashes, context.machine.aliases):
         name = params.get(found.span)
@@ -532,7 +543,9 @@ def _help(clash: Clash) -> str:
         if meant is not None:
             return meant
     if clash.flow.how == "value" and wanted.name in HELP:
-        return HELP[wanted.name]
+        steps = steps_to_misfit(clash.flow.value, clash.cell.declared)
+        part = part_at(clash.flow.value, steps) if wanted.name == "Quaternion" else None
+        return rotation_meant(part) or HELP[wanted.name]
     if given.name == "none":
         return f"give it a value, or declare it as `{wanted}?` where it is read"
     if given.name == "optional" and fits(inside(given), wanted):

@@ -149,7 +149,9 @@ def _meant_key(
     if guess is not None and not may_be(types, scope, guess, wanted):
         guess = None
     of_item = _item_help(scope.container, node, missing.key)
-    help = did_you_mean(guess) or of_item
+    help = (
+        name_help(node, reader.key, missing.key, guess) if guess is not None else None
+    ) or of_item
     unread = unread_output(scope, missing.key) if guess is None else None
     fitting = []
     if guess is None and (of_item is None or isinstance(node, nodes.Leaf)):
@@ -176,6 +178,19 @@ def _meant_key(
     if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
         help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
     return help, (*related, *_item_place(scope.container, node))
+
+
+def name_help(node: Node, own: str, outer: str, meant: str) -> str:
+    """The help for a state that reads the key `own`, which is `outer` in its container, where the
+    key `meant` of the container is the right one: the remapping that the state lacks, if the name
+    is that of an interface; else the name itself."""
+    key = next((each for each in node.inputs if each.name == own), None)
+    if own != outer or key is None or key.span.source is node.span.source:
+        return did_you_mean(meant) or ""
+    pair = f"{own}: {meant}"
+    if node.remaps:
+        return f"add `{pair}` to the `remapping` of `{node.name}`"
+    return f"write `remapping: {{{pair}}}` in `{node.name}`"
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:

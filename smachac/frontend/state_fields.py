@@ -6,7 +6,7 @@ Reported are unknown fields (SM003), values of the wrong shape (SM004) and missi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Related, Report, did_you_mean
@@ -15,6 +15,7 @@ from smachac.diagnostics.spelling import guesser_of, words_of, written_name
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema, value_facts
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
+from smachac.frontend.extra_keys import check_interface
 from smachac.frontend.fields import (
     READERS,
     YAML_1_1_BOOLEANS,
@@ -40,8 +41,6 @@ from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.nodes import (
     ContainerKind,
-    Key,
-    Outcome,
     StateType,
     Struct,
     Value,
@@ -153,7 +152,7 @@ def read_fields(
     if "outcomes" in schema.REQUIRED[owner] and "outcomes" not in entries:
         read["outcomes"] = outcomes_used(entries)
     if owner == "state" and not type_.open:
-        _check_interface(read, type_, report)
+        check_interface(read, type_, report)
     for part, keys in _listed_keys(entries, type_):
         read[part] = (*read.get(part, ()), *keys)
     examples = {}
@@ -283,8 +282,11 @@ def _known_fields(
             if type_.used is not None and key not in type_.used:
                 words = [*schema.names_for(owner), *type_.used]
                 word = Word(str(entry.key.value), entry.key.span)
-                template = Owner(type_.name, f"`{type_.name}`")
-                report.append(unknown_variable(word, template, words, anything=True))
+                lacking = _lacking_variable(word.text, entries, type_)
+                owned = f"`{type_.name}`" if lacking is None else f"state type `{type_.name}`"
+                template = Owner(type_.name, owned)
+                report.append(unknown_variable(word, template, words, anything=lacking is None,
+                                               meant=lacking))  # fmt: skip
         else:
             known = schema.names_for(owner)
             word = Word(str(entry.key.value), entry.key.span)
@@ -410,6 +412,18 @@ def _outcomes(entries: Entries, type_: StateType) -> set[str]:
     return {each.name for each in (*type_.outcomes, *given)}
 
 
+def _lacking_variable(name: str, entries: Entries, type_: StateType) -> str | None:
+    """The variable of a meta block that a state lacks and that another name stands for: the only
+    one, or the one with a word of that name."""
+    lacking = [
+        each.name
+        for each in type_.variables.values()
+        if each.default is None and each.name not in entries and each.name in (type_.used or ())
+    ]
+    near = [each for each in lacking if words_of(each) & words_of(name)] or lacking
+    return near[0] if len(near) == 1 else None
+
+
 def _check_required(
     name: Word,
     entries: Entries,
@@ -491,58 +505,6 @@ def _example(variable: VariableType) -> str:
         shown += ".0"
     inside = low < float(shown) < high or (float(shown) in (low, high) and not limits.exclusive)
     return shown if inside else "..."
-
-
-def _check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:
-    """The keys and outcomes that a state lists beyond those of a complete interface."""
-    declared: dict[str, tuple[Key, ...] | tuple[Outcome, ...]] = {
-        "input_keys": type_.input_keys,
-        "output_keys": type_.output_keys,
-        "outcomes": type_.outcomes,
-    }
-    optional = {"input_keys": type_.listed_inputs, "output_keys": type_.listed_outputs}
-    for part, own in declared.items():
-        if part in type_.given or part not in read:
-            continue
-        known = [*(each.name for each in own), *optional.get(part, ())]
-        if part == "outcomes":
-            outcomes: tuple[Outcome, ...] = read[part]
-            words = [Word(each.name, each.span) for each in outcomes]
-        else:
-            keys: Keys = read[part]
-            words = [word for word, _ in keys]
-        for word in words:
-            if word.text not in known:
-                what = part.replace("_", " ").removesuffix("s")
-                message = f"state type `{type_.name}` has no {what} `{word.text}`"
-                help = _meant_remap(word.text, known, read.get("remapping", ())) \
-                    if part != "outcomes" else None  # fmt: skip
-                help = help or did_you_mean(word.text, known)
-                help = help or (
-                    f"use one of its {what}s: {listed(known)}" if known else "remove it"
-                )
-                arguments = (part, type_.name, word.text)
-                effect = f"the interface of `{type_.name}` lists all {what}s: this entry adds none"
-                item = wrong_shape(word.span, message, help, arguments=arguments, effect=effect)
-                report.append(item)
-
-
-def _meant_remap(name: str, known: Sequence[str], remapping: Pairs) -> str | None:
-    """The help for a listed key that the interface does not have, if it is no misspelt one: the
-    remapping that gives a key of the state this name."""
-    if guesser_of(tuple(known)).sure(name) is not None:
-        return None
-    for key, to in remapping:
-        if to.text == name and key.text in known:
-            return f"remove it: the remapping gives `{key.text}` the name `{name}`"
-    given = {key.text for key, _ in remapping}
-    free = [key for key in known if key not in given]
-    near = [key for key in free if words_of(key) & words_of(name)] or free
-    if len(near) != 1:
-        return None
-    entry = f"{near[0]}: {name}"
-    where = f"add `{entry}` to the remapping" if given else f"write `remapping: {{{entry}}}`"
-    return f"{where} in place of this entry"
 
 
 def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys]]:

@@ -56,6 +56,7 @@ from smachac.ir.nodes import (
     VariableRole,
     VariableType,
 )
+from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
 
 TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
@@ -535,11 +536,29 @@ def _check_declared(
     if word.text in names or _is_starred(sections[part]):
         return word.text
     message = f"`{word.text}` is not in the `{part}` of the interface"
-    help = did_you_mean(word.text, names) or f"add it to `{part}`, or remove it here"
+    left = _unwritten(sections, part)
+    help = did_you_mean(word.text, names) or (f"did you mean `{left}`?" if left else None)
+    help = help or f"add it to `{part}`, or remove it here"
     effect = f"only names in `{part}` have a meaning here, so no program is generated"
     arguments = (part, word.text)
     report.append(wrong_shape(word.span, message, help, arguments=arguments, effect=effect))
     return guesser_of(tuple(names)).sure(word.text)
+
+
+def _unwritten(sections: Mapping[str, Section], part: str) -> str | None:
+    """The only declared name that `writes` lacks: an output key, or an outcome that is no failure
+    and does not follow a stop request."""
+    writes = sections["writes"]
+    names = [name for name, _ in declared_in(sections[part])]
+    if part == "outcomes":
+        used = {str(entry.key.value) for entry in writes}
+        flags = dict(declared_in(sections[part]))
+        names = [each for each in names if each != PREEMPTED and not is_failure(each)
+                 and not _is_set(flags[each], "failure")]  # fmt: skip
+    else:
+        used = {word.text for entry in writes for word in as_names(entry.value, [])}
+    left = [each for each in names if each not in used]
+    return left[0] if len(left) == 1 else None
 
 
 def _read_template(

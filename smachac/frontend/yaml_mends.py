@@ -214,6 +214,12 @@ _EQUALS = re.compile(r"(?<=[\w\"'\0]) ?(?<![=<>!])=(?!=) ?(?=[\w\[{\"'.\0-])")
 _NO_SPACE = re.compile(r"(?<=\w):(?=[\w\[{\"'.\0-])(?<!::)")
 _GAP = re.compile(r"(?<=[\w\]})>?\"'\0])(?= +[\w\[{\"'.\0-])")
 
+_LISTED = ("on", "one_of", "outcomes", "loop_outcomes", "input_keys", "output_keys", "claims")
+_NUMBER = r"[-+]?\d*\.?\d+"
+_NUMBER_LIST = re.compile(rf"(?<=\w: )({_NUMBER}(?:, *{_NUMBER})+)(?=,? *[}}]|, *\w+:)")
+_NAME_LIST = re.compile(rf"\b(?:{'|'.join(_LISTED)}): (\w+(?:, *\w+)+)(?=,? *}}|, *\w+:)")
+"""A list without its brackets in a mapping in braces: `{value: 0.9, 1.2}`."""
+
 
 def _mends(part: str) -> Iterator[_Mend]:
     """The repairs of a part of a text that are possible."""
@@ -229,6 +235,8 @@ def _mends(part: str) -> Iterator[_Mend]:
         if surplus:
             missing, much = (closing, opening) if surplus > 0 else (opening, closing)
             yield from _with_sign(plain, missing, much)
+    for found in (*_NUMBER_LIST.finditer(plain), *_NAME_LIST.finditer(plain)):
+        yield _Mend(found.start(1), found[1], f"[{found[1]}]")
     if quotes:
         return
     for found in _EQUALS.finditer(plain):
@@ -333,6 +341,8 @@ def _cost_of_entry(entry: Entry, owner: str, flow: bool, text: str) -> float:
     above = LONG.get(owner, owner)
     if above in _NAMES_ONLY and name in VARIABLES:
         cost += 0.2
+    elif above in _NAMES_ONLY and isinstance(value, Seq):
+        cost += 1
     elif above not in _NAMES_ONLY and flow and name.isupper() and isinstance(value, Scalar):
         cost += 0.05
     return cost + _cost_of(value, name, text)
@@ -372,7 +382,11 @@ def _finding(
     at, sign = mend.at, mend.written
     end = at + len(mend.removed)
     left, right = _word_before(text, at), _word_after(text, end)
-    if sign == ": ":
+    effect = None if stops else _OTHER_MEANING
+    if sign == f"[{mend.removed}]":
+        effect = "YAML reads the values after the first one as fields without a value"
+        message = f"the brackets around `{mend.removed}` are missing"
+    elif sign == ": ":
         message = f"a `:` is due after `{left}`, not `=`"
         at += mend.removed.index("=")
         end = at + 1
@@ -394,7 +408,7 @@ def _finding(
         message,
         f"write `{_piece(repaired, mend)}`",
         arguments=("sign", sign, str(mend.at)),
-        effect=None if stops else _OTHER_MEANING,
+        effect=effect,
     )
 
 

@@ -399,6 +399,10 @@ def _is_torn(text: str) -> bool:
     return text.count(last) % 2 == 1 and " " not in text and not before.isdigit()
 
 
+def _is_empty(tree: Tree) -> bool:
+    return isinstance(tree, Scalar) and tree.value is None
+
+
 class _Builder:
     """Builds one tree from events, with a stack in place of recursion."""
 
@@ -608,6 +612,8 @@ class _Builder:
             if key.plain and not text.isidentifier() and _NO_KEY.search(text) is not None:
                 self.doubtful.append(key.start)
             if flow and isinstance(value, Scalar) and value.value is None:
+                if entries and value.start == value.end and not _is_empty(entries[-1].value):
+                    self.doubtful.append(key.start)
                 key, value = self._separated(key, value)
                 name = key.value
             known = first.setdefault(name if isinstance(name, str) else (type(name), name), key)

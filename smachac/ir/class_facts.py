@@ -44,6 +44,7 @@ FaultKind = Literal[
     "no quotes",
     "other guard",
     "no outcome",
+    "no key member",
     "wrong result",
     "wrong parameters",
     "wrong constructor",

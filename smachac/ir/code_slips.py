@@ -214,6 +214,8 @@ def _gaps(tokens: list[_Token]) -> Iterator[Slip]:
         if _ends(before) and _begins(after):
             what = f"there is no operator between `{before.text}` and `{after.text}`"
             help = "write an operator, such as `+`, `and` or `==`, or remove one of them"
+            if before.kind == "number" and after.kind == "name":
+                help = f"remove `{after.text}`: a number in code has no unit"
             yield Slip(after.start, after.end, what, help)
             return
 

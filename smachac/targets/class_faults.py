@@ -238,6 +238,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`Outcome` of `{name}` has no `{word}`",
         "write one of {file}, or add it to `Outcome` and to the interface",
     ),
+    "no key member": (
+        "`{more}` of `{name}` has no `{word}`",
+        "write one of {file}, or add it to `{more}` and to the interface",
+    ),
     "wrong result": (
         "`execute` of `{name}` returns `{word}`, not an outcome",
         "write `{near}`",

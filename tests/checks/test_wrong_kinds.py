@@ -30,9 +30,7 @@ writes: {good: [score]}
         ("script: Look", ("SM011", "Look", "`Look` is a state type: write `template: Look`")),
     ],
 )
-def test_a_sub_script_in_place_of_a_template_and_the_other_way_round(
-    fields: str, row: Row
-) -> None:
+def test_a_sub_script_in_place_of_a_template_and_the_other_way_round(fields: str, row: Row) -> None:
     text = f"""\
 name: sm
 outcomes: [done]
@@ -182,3 +180,227 @@ states:
 """
     help = "write `place: Point`: only userdata and interfaces have fields beside the type"
     assert reported({"main.yml": text}) == [("SM004", "{type: Point}", help)]
+
+
+DRIVE = """\
+variables: {speed: float}
+input_keys: {torque: float}
+output_keys: {angle: float}
+outcomes: {tight: {}, slipped: {failure: true}, preempted: {}}
+writes: {WRITES: [angle]}
+code: {cpp: {header: cell/drive.hpp, class: "cell::Drive"}}
+"""
+HEADER = """\
+#pragma once
+#include <cstdint>
+#include "smachac/smachac.hpp"
+namespace cell {
+class Drive {
+public:
+  enum class Outcome { tight, slipped, preempted };
+  struct In { double torque; };
+  struct Out { smachac::Key<double> &angle; };
+  explicit Drive(double speed) : speed_(speed) {}
+  Outcome execute(In in, Out out, smachac::Stop &stop) {
+    if (stop.requested()) {
+      stop.service();
+      return Outcome::preempted;
+    }
+    if (in.torque > speed_) {
+      return Outcome::slipped;
+    }
+    out.KEY = 1.0;
+    return Outcome::tight;
+  }
+private:
+  double speed_;
+};
+}  // namespace cell
+"""
+DRIVEN = """\
+name: sm
+outcomes: [done, failed]
+userdata: {torque: 0.5}
+states:
+  - A: {template: Drive, speed: 1.0, transitions: {tight: done, slipped: failed, preempted: failed}}
+"""
+
+
+@pytest.mark.parametrize("key", ["turns", "angel"])
+def test_a_member_that_the_struct_of_a_class_does_not_have(key: str) -> None:
+    files = {
+        "main.yml": DRIVEN,
+        "templates/Drive.yml": DRIVE.replace("WRITES", "tight"),
+        "cell/drive.hpp": HEADER.replace("KEY", key),
+    }
+    assert ("SM609", key, "did you mean `angle`?") in reported(files)
+
+
+def test_an_outcome_in_writes_that_is_not_declared() -> None:
+    files = {"main.yml": DRIVEN, "templates/Drive.yml": DRIVE.replace("WRITES", "done")}
+    found = [row for row in reported(files) if row[0] == "SM004"]
+    assert found == [("SM004", "done", "did you mean `tight`?")]
+
+
+KITTING = """\
+name: sm
+outcomes: [done]
+userdata:
+  home: {type: "float<rad>[7]", value: [0, 0, 0, 0, 0, 0, 0]}
+  above: [[0.0, 0.0, 0.12], ROTATION]
+states:
+  - MOVE:
+      template: Drive
+      remapping: {positions: POSITIONS, offset: above}
+      transitions: {tight: OVER}
+  - OVER: {template: Drive, remapping: {positions: home, offset: above}, transitions: {tight: done}}
+"""
+MOVED = """\
+input_keys: {positions: "list[float<rad>]", offset: Pose}
+outcomes: {tight: {}}
+"""
+
+
+def moved(positions: str, rotation: str) -> list[Row]:
+    text = KITTING.replace("POSITIONS", positions).replace("ROTATION", rotation)
+    return reported({"main.yml": text, "templates/Drive.yml": MOVED})
+
+
+def test_a_remapping_to_a_key_of_another_type() -> None:
+    assert moved("home", "[0.0, 0.0, 0.0, 1.0]") == []
+    help = "write `positions: home`: only `home` has this type"
+    assert moved("above", "[0.0, 0.0, 0.0, 1.0]") == [("SM304", "above", help)]
+
+
+@pytest.mark.parametrize(
+    ("angles", "rotation"),
+    [
+        ("[0.0, 0.0, 0.0]", "[0.0, 0.0, 0.0, 1.0]` for no rotation"),
+        (
+            "[3.14159, 0.0, 0.0]",
+            "[1.0, 0.0, 0.0, 0.0]` for these 3 angles (roll, pitch, yaw in rad)",
+        ),
+        (
+            "[0.0, 0.0, 1.5707963]",
+            "[0.0, 0.0, 0.7071, 0.7071]` for these 3 angles (roll, pitch, yaw in rad)",
+        ),
+    ],
+)
+def test_three_angles_in_place_of_a_quaternion(angles: str, rotation: str) -> None:
+    help = f"write a quaternion, `[qx, qy, qz, qw]`: `{rotation}"
+    assert {row[2] for row in moved("home", angles)} == {help}
+
+
+@pytest.mark.parametrize(
+    "written", ["$(suction)", "$(arg suction)", "'${suction}'", "'{{suction}}'"]
+)
+def test_a_param_in_the_syntax_of_another_tool(written: str) -> None:
+    text = f"""\
+name: sm
+outcomes: [done]
+params: {{suction: 0.4}}
+states:
+  - A: {{template: SleepState, time: {written}, transitions: {{succeeded: done, preempted: done}}}}
+"""
+    help = "write `[params, suction]` for the value of the param"
+    assert [row[2] for row in reported({"main.yml": text})] == [help]
+
+
+def test_lost_brackets_around_a_list_in_braces() -> None:
+    text = """\
+name: sm
+outcomes: [done]
+userdata: {home: 0.9, -1.2, count: 1}
+states:
+  - A: {template: PrintUserdataState, input_keys: [home, count], transitions: {succeeded: done}}
+"""
+    row = ("SM001", "0.9, -1.2", "write `home: [0.9, -1.2]`")
+    assert reported({"main.yml": text}) == [row]
+
+
+def test_a_unit_after_a_number_in_code() -> None:
+    text = """\
+name: sm
+outcomes: [done]
+userdata: {angle: 1.0}
+states:
+  - A:
+      template: ConditionalOutcomeState
+      input_keys: [angle]
+      outcomes: [far]
+      callbacks: {far: "lambda ud: ud.angle > 0.5 rad"}
+      default_outcome: near
+      transitions: {far: done, near: done}
+"""
+    help = "remove `rad`: a number in code has no unit"
+    assert reported({"main.yml": text}) == [("SM016", "rad", help)]
+
+
+def test_a_key_of_the_caller_in_a_sub_script() -> None:
+    text = """\
+name: sm
+outcomes: [done]
+userdata: {rock: {id: 1, at: [0.6, 0.1, -0.3]}}
+states:
+  - A: {script: pick, remapping: {sample: rock}, transitions: {done: done}}
+"""
+    pick = """\
+- PICK:
+    template: StateMachine
+    outcomes: [done]
+    input_keys: [sample]
+    states:
+      - LOOK: {script: part, transitions: {done: GRASP}}
+      - GRASP: {script: part, remapping: {sample: rock}, transitions: {done: done}}
+"""
+    found = reported({"main.yml": text, "pick.yml": pick, "part.yml": PART})
+    help = "write `sample: sample`: the remapping of `A` gives `rock` this name"
+    assert [row for row in found if row[0] == "SM303"] == [("SM303", "sample", help)]
+
+
+def test_a_forgotten_remapping_of_a_key_of_an_interface() -> None:
+    text = """\
+name: sm
+outcomes: [done]
+userdata: {hover_offset: [0.0, 0.0, 0.1]}
+states:
+  - A: {template: Hover, transitions: {done: B}}
+  - B: {template: Hover, remapping: {offset: hover_offset}, transitions: {done: done}}
+"""
+    interface = "input_keys: {offset: Point}\noutcomes: {done: {}}\n"
+    found = reported({"main.yml": text, "templates/Hover.yml": interface})
+    assert [row[2] for row in found] == ["write `remapping: {offset: hover_offset}` in `A`"]
+
+
+def test_another_name_for_the_variable_of_a_meta_block() -> None:
+    template = """\
+{% block meta %}
+name: Find
+type: State
+variables:
+- bin_name: {type: str}
+outcomes: [found]
+{% endblock meta %}
+{% extends "State.tpl.py" %}
+{% block class_defs %}
+class Find(smach.State):
+    def __init__(self, bin_name):
+        super().__init__(outcomes=["found"])
+        self.bin_name = bin_name
+
+    def execute(self, userdata):
+        print(self.bin_name)
+        return "found"
+{% endblock class_defs %}
+{% block body %}
+{{ add(class_name, bin_name) }}
+{% endblock body %}
+"""
+    text = """\
+name: sm
+outcomes: [done]
+states:
+  - A: {template: Find, bin: left, transitions: {found: done}}
+"""
+    found = reported({"main.yml": text, "templates/Find.tpl.py": template})
+    assert found == [("SM003", "bin", "did you mean `bin_name`?")]

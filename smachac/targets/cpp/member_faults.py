@@ -17,6 +17,7 @@ from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import PREEMPTED
 from smachac.targets.cpp.constructors import constructor_faults
 from smachac.targets.cpp.identifiers import identifier
+from smachac.targets.cpp.key_members import unknown_members
 from smachac.targets.cpp.unused_calls import UnusedCall, unused_call
 from smachac.targets.cpp.user_classes import ClassCode, left_to_scripts, stops
 
@@ -54,7 +55,9 @@ def member_faults(
     if head is None or any(each.kind in ("wrong result", "wrong parameters") for each in found):
         return
     run = _body_of(body, head.end())
-    if run is not None and outcomes is not None:
+    unknown = [*unknown_members(code, body, run, head[1])] if run is not None else []
+    yield from unknown
+    if run is not None and outcomes is not None and not unknown:
         for fault in _unused(whole, body, run, outcomes):
             yield _at_execute(code, body, run, fault, head, library)
         yield from _unset(code, body, run, head[1])
