@@ -1,7 +1,11 @@
-"""The number of examples of a law: all of them where the slow tests run as well, else a part."""
+"""The examples of a law or a table: all of them where the slow tests run as well, else a part."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+import pytest
+from _pytest.mark import ParameterSet
 from hypothesis import settings
 
 ALL, SOME = 100, 30
@@ -11,3 +15,11 @@ ALL, SOME = 100, 30
 def examples(count: int) -> int:
     """As many examples as the loaded profile of Hypothesis has in place of `count`."""
     return max(count * settings.default.max_examples // ALL, 5)
+
+
+def every(step: int, values: Iterable[object]) -> list[ParameterSet]:
+    """The values as parameters of a test; but for each `step`-th one the test is slow."""
+    return [
+        pytest.param(each, marks=[pytest.mark.slow] if place % step else [])
+        for place, each in enumerate(values)
+    ]
