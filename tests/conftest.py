@@ -11,7 +11,7 @@ import signal
 import sys
 from collections.abc import Generator, Iterator
 from contextlib import AbstractContextManager
-from functools import cache
+from functools import cache, partialmethod
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -63,10 +63,16 @@ def memory_beside_other_tests() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def targets_found_once() -> Iterator[None]:
-    """The targets are found in the metadata of all installed packages, which do not change."""
+def work_done_once() -> Iterator[None]:
+    """What does not change is done once: the targets are found in the metadata of all installed
+    packages, and the templates compiled."""
+    from smachac.targets.templates.sandbox import BoundedEnvironment
+    from tests.support.compiled_templates import CompiledTemplates
+
+    made = partialmethod(BoundedEnvironment.__init__, bytecode_cache=CompiledTemplates())
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(importlib.metadata, "entry_points", cache(importlib.metadata.entry_points))
+        patch.setattr(BoundedEnvironment, "__init__", made)
         yield
 
 

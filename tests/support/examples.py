@@ -14,7 +14,9 @@ ALL, SOME = 100, 30
 
 def examples(count: int) -> int:
     """As many examples as the loaded profile of Hypothesis has in place of `count`."""
-    return max(count * settings.default.max_examples // ALL, 5)
+    profile = settings.default
+    assert profile is not None
+    return max(count * profile.max_examples // ALL, 5)
 
 
 def every(step: int, values: Iterable[object]) -> list[ParameterSet]:
