@@ -155,12 +155,12 @@ def test_items_from_functions(code: str) -> None:
     assert differ(ours, of_generated(machine)) is None
 
 
-CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 40))]
+CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 24))]
 
 
 @pytest.mark.parametrize("chunk", CHUNKS)
 def test_random_machines(chunk: int) -> None:
-    """2,000 machines, in parts so that workers share them."""
+    """1,200 machines, in parts so that workers share them."""
 
     @seed(chunk)
     @settings(

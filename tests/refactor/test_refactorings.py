@@ -39,7 +39,7 @@ from tests.trust.random_projects import correct_project
 CASES = sorted(
     path.parent for path in (Path(__file__).parents[1] / "refactorings").glob("*/command")
 )
-SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 16))]
+SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 10))]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

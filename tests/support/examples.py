@@ -16,7 +16,7 @@ def examples(count: int) -> int:
     """As many examples as the loaded profile of Hypothesis has in place of `count`."""
     profile = settings.default
     assert profile is not None
-    return max(count * profile.max_examples // ALL, 5)
+    return max(count * profile.max_examples // ALL, 3)
 
 
 def every(step: int, values: Iterable[object]) -> list[ParameterSet]:

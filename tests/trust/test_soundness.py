@@ -33,7 +33,7 @@ from tests.trust.project_text import judged
 from tests.trust.random_projects import correct_project
 from tests.trust.random_runs import contradictions, runs
 
-PROJECTS = [*range(2), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 24))]
+PROJECTS = [*range(2), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 14))]
 DAMAGED = 6
 RUNS = 9
 
