@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import compileall
 import gc
+import importlib.metadata
 import os
 import re
 import signal
 import sys
 from collections.abc import Generator, Iterator
 from contextlib import AbstractContextManager
+from functools import cache, partialmethod
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +22,7 @@ from smachac.commands import memory
 from tests.browser import pages
 from tests.ros.ros_graph import Graph, missing
 from tests.ros2 import ros2_graph
+from tests.support.examples import ALL, SOME
 from tests.support.silent_smach import silent_smach
 
 if TYPE_CHECKING:
@@ -29,13 +32,17 @@ if TYPE_CHECKING:
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-settings.register_profile("repeatable", derandomize=True, deadline=None, print_blob=True)
-settings.load_profile("repeatable")
+settings.register_profile("all", derandomize=True, deadline=None, print_blob=True, max_examples=ALL)
+settings.register_profile("some", settings.get_profile("all"), max_examples=SOME)
 
 
 PACKAGE = Path(__file__).parents[1] / "smachac"
 TEMPLATES = re.compile(r"\.tpl\.py$")
 
+
+SELDOM = (200_000, 10, 10)
+"""When garbage is collected in a process of many tests: a compiler makes many objects that live to
+the end of its run, and the default of 700 takes a fifth of the time."""
 
 KEPT_BY_TESTS = 16_000
 """In MB. The address space that a process of many tests may have taken before a test."""
@@ -55,9 +62,24 @@ def memory_beside_other_tests() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def work_done_once() -> Iterator[None]:
+    """What does not change is done once: the targets are found in the metadata of all installed
+    packages, and the templates compiled."""
+    from smachac.targets.templates.sandbox import BoundedEnvironment
+    from tests.support.compiled_templates import CompiledTemplates
+
+    made = partialmethod(BoundedEnvironment.__init__, bytecode_cache=CompiledTemplates())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(importlib.metadata, "entry_points", cache(importlib.metadata.entry_points))
+        patch.setattr(BoundedEnvironment, "__init__", made)
+        yield
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """Compile the package once: where PYTHONDONTWRITEBYTECODE is set, each command that a test
-    starts would do it again."""
+    """Load the profile of Hypothesis; compile the package once: where PYTHONDONTWRITEBYTECODE is
+    set, each command that a test starts would do it again."""
+    settings.load_profile("some" if "not slow" in config.option.markexpr else "all")
     if not hasattr(config, "workerinput"):
         compileall.compile_dir(PACKAGE, rx=TEMPLATES, quiet=1)
 
@@ -76,6 +98,7 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
         gc.collect()
         gc.freeze()
+        gc.set_threshold(*SELDOM)
 
 
 def _fail_if_skipped(

@@ -73,11 +73,15 @@ exit codes: 0 success, 1 findings or failure, 2 wrong usage, 70 a bug in smachac
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code. Without `arguments` this is the whole program, whose
     arguments are in sys.argv."""
+    collecting = gc.isenabled()
     try:
         return _whole_program() if arguments is None else _guarded(arguments)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr, flush=True)
         return INTERRUPTED
+    finally:
+        if collecting and arguments is not None:  # the process of the caller goes on
+            gc.enable()
 
 
 def _whole_program() -> int:

@@ -3,7 +3,7 @@ its variables and outcomes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Word
@@ -29,7 +29,7 @@ def meant_type(
     entries: Mapping[str, Entry],
     type_: StateType,
     names: Iterable[str],
-    find: Callable[[str], StateType | None],
+    find: Callable[[str, Collection[str]], StateType | None],
     report: Report,
 ) -> StateType | None:
     """The only built-in type that has the variables and the outcomes of a state with an unknown
@@ -47,7 +47,7 @@ def meant_type(
     }
     fitting = []
     for name in names:
-        other = find(name)
+        other = find(name, own)
         if other is not None and _fits(other, own, ends, entries):
             fitting.append(other)
     if len(fitting) != 1:

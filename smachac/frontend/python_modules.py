@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 from smachac.diagnostics.source import Source, Span, Word
@@ -43,7 +44,7 @@ class Module:
     dynamic: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class OwnClass:
     """A class with its base classes that are known, the derived class first, and their root."""
 
@@ -68,8 +69,12 @@ class OwnClass:
         """Whether one of the classes binds a name."""
         return any(name in names for names in self.names)
 
-    def assigned(self) -> dict[str, list[tuple[Module, ast.expr | None, Span]]]:
+    def assigned(self) -> Mapping[str, list[tuple[Module, ast.expr | None, Span]]]:
         """The attributes of the object that its methods assign: `self.name = value`."""
+        return self._assigned
+
+    @cached_property
+    def _assigned(self) -> dict[str, list[tuple[Module, ast.expr | None, Span]]]:
         found: dict[str, list[tuple[Module, ast.expr | None, Span]]] = {}
         for module, node in self.classes:
             others = of_other_objects(node)

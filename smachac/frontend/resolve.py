@@ -6,7 +6,7 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import PurePath
@@ -76,7 +76,7 @@ from smachac.frontend.state_fields import (
     with_further_states,
     with_meant_fields,
 )
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.state_types import TEMPLATE_FILES, find_state_type
 from smachac.frontend.sub_scripts import (
     SUB_SCRIPT_HELP,
     one_for_each_param,
@@ -621,10 +621,16 @@ class _Resolver:
         found = meant_type(entries, type_, names, self.other_type, self.report)
         return self.state_type(found.name) if found is not None else None
 
-    def other_type(self, name: str) -> StateType | None:
-        """A type that the script need not use; its faults are not reported."""
+    def other_type(self, name: str, words: Collection[str]) -> StateType | None:
+        """A type that the script need not use; its faults are not reported. None for a built-in one
+        whose interface does not have all these words, or that has no interface."""
+        library = self.library
+        if not any(library.own_template(each.format(name)) for each in ("{}.yml", *TEMPLATE_FILES)):
+            interface = library.template(f"{name}.yml")
+            if interface is None or not all(word in interface.text for word in words):
+                return None
         if name not in self.others:
-            self.others[name] = find_state_type(name, self.library, [])
+            self.others[name] = find_state_type(name, library, [])
         return self.found_types.get(name) or self.others[name]
 
     def type_of(

@@ -3,7 +3,7 @@ and one finding for all states that name the same template."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
@@ -34,7 +34,7 @@ def types_with_the_names(
     entries: Mapping[str, Entry],
     word: str,
     names: Sequence[str],
-    find: Callable[[str], StateType | None],
+    find: Callable[[str, Collection[str]], StateType | None],
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The names of the types that have all variables, keys and outcomes of a state, and those
     variables and keys. Types that share a word with the unknown name `word` come alone, if there
@@ -48,7 +48,7 @@ def types_with_the_names(
         return (), ()
     steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
     ends = {outcome.text for outcome, _ in steps}
-    types = [each for each in map(find, names) if each is not None]
+    types = [each for name in names if (each := find(name, used)) is not None]
     fitting = [each for each in types if _has(each, used, ends)]
     common = words_of(word) - {"state"}
     near = [each for each in fitting if words_of(each.name) & common]
@@ -96,7 +96,7 @@ def missing_template_help(
     entries: Mapping[str, Entry],
     scripts: Sequence[str],
     names: Sequence[str],
-    find: Callable[[str], StateType | None],
+    find: Callable[[str, Collection[str]], StateType | None],
 ) -> str | None:
     """The help for a state without a template: the sub-script of its name, else the types that have
     the names that it uses; None if there are neither. `scripts` are the names of sub-scripts."""

@@ -216,7 +216,7 @@ _GAP = re.compile(r"(?<=[\w\]})>?\"'\0])(?= +[\w\[{\"'.\0-])")
 
 _LISTED = ("on", "one_of", "outcomes", "loop_outcomes", "input_keys", "output_keys", "claims")
 _NUMBER = r"[-+]?\d*\.?\d+"
-_NUMBER_LIST = re.compile(rf"(?<=\w: )({_NUMBER}(?:, *{_NUMBER})+)(?=,? *[}}]|, *\w+:)")
+_NUMBER_LIST = re.compile(rf"(?<=\w: )({_NUMBER}(?:, +{_NUMBER})+)(?=,? *[}}]|, *\w+:)")
 _NAME_LIST = re.compile(rf"\b(?:{'|'.join(_LISTED)}): (\w+(?:, *\w+)+)(?=,? *}}|, *\w+:)")
 """A list without its brackets in a mapping in braces: `{value: 0.9, 1.2}`."""
 

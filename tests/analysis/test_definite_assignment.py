@@ -14,6 +14,7 @@ from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 from tests.strategies.userdata_machines import Brute, data_machines, keys_of
+from tests.support.examples import examples
 
 
 @settings(max_examples=150)
@@ -60,7 +61,7 @@ def test_runs_find_what_is_called_always_set_and_miss_what_is_called_never(
     assert entered <= flow.entered
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(data_machines())
 def test_a_path_on_which_a_key_is_unset_leads_to_the_state(machine: Machine) -> None:
     flow = data_flow(machine)
@@ -71,7 +72,7 @@ def test_a_path_on_which_a_key_is_unset_leads_to_the_state(machine: Machine) -> 
         assert not way or way[-1] == path.rpartition("/")[2]
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(data_machines())
 def test_every_state_is_entered_or_said_not_to_be(machine: Machine) -> None:
     flow = data_flow(machine)

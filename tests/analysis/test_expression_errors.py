@@ -30,6 +30,7 @@ from smachac.ir.expressions import (
 )
 from smachac.ir.types import Type, parse_type
 from tests.strategies.expressions import COMPUTING_FORMS, trees
+from tests.support.examples import examples
 
 INT = st.integers(-3, 9)
 FLOAT = st.sampled_from([0.0, 0.5, -2.5, 3.0]) | INT
@@ -85,7 +86,7 @@ def outcome(expr: Expr, values: dict[str, object]) -> object:
 
 
 @given(trees(READS | CONSTANTS, FORMS, 3), typed_keys())
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_what_is_reported_comes_about_whatever_the_values_are(expr: Expr, typed: Typed) -> None:
     types, values = typed
     for fault in faults(expr, types):
@@ -140,7 +141,7 @@ def is_undecided(expr: Expr, types: dict[str, Type], values: dict[str, object]) 
 
 
 @given(trees(READS | CONSTANTS, FORMS, 2), typed_keys())
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_what_fails_by_its_types_is_reported(expr: Expr, typed: Typed) -> None:
     types, values = typed
     for each in inner(expr):

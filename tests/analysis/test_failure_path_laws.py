@@ -17,6 +17,7 @@ from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import walk
 from tests.strategies.machines import valid_machines
 from tests.strategies.userdata_machines import data_machines
+from tests.support.examples import examples
 
 MACHINES = st.one_of(valid_machines(), data_machines())
 
@@ -43,7 +44,7 @@ def ran(machine: Machine, seed: int) -> tuple[InterpreterResult, list[Event]]:
     return run(machine, builtin_behaviour(seed), trace.append, seed=seed, max_steps=200), trace
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(MACHINES, st.integers(0, 9))
 def test_every_failure_of_a_run_is_told_with_its_end(machine: Machine, seed: int) -> None:
     rows = told(machine)
@@ -71,7 +72,7 @@ def test_what_follows_a_failure_is_told(machine: Machine, seed: int) -> None:
             assert following in {row.next for row in rows[failure]}, (failure, rows[failure])
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(MACHINES, st.integers(0, 9))
 def test_every_state_of_a_run_has_a_way_to_it(machine: Machine, seed: int) -> None:
     ways = Context(machine).routes.before

@@ -15,6 +15,7 @@ from smachac.interpreter.counterexample import replay
 from smachac.ir.nodes import Machine
 from smachac.ir.properties import AlwaysEnds
 from tests.strategies.machines import machines
+from tests.support.examples import examples
 from tests.support.property_machines import (
     Monitor,
     random_machine,
@@ -74,7 +75,7 @@ def test_more_verdicts_agree_with_runs() -> None:
     assert counts.get("not followed", 0) <= MOST_NOT_FOLLOWED
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(machine=machines(), seed=st.integers(0, 1000))
 def test_any_graph_is_judged(machine: Machine, seed: int) -> None:
     """Also a graph with dangling targets, names that clash and containers without states."""

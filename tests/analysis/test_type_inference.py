@@ -24,6 +24,7 @@ from smachac.ir.traversal import walk
 from smachac.ir.types import Type, parse_type
 from tests.strategies.expressions import NAMES_OF_VALUES, VALUES, computations
 from tests.strategies.machines import machines, valid_machines
+from tests.support.examples import examples
 from tests.support.typed_machines import with_state_types
 
 
@@ -300,7 +301,7 @@ def type_findings(machine: Machine) -> list[object]:
 
 
 @given(well_typed())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_a_well_typed_machine_has_no_finding(drawn: tuple[Machine, int]) -> None:
     assert type_findings(drawn[0]) == []
 
@@ -321,7 +322,7 @@ def reading_leaves(machine: Machine) -> list[str]:
 
 
 @given(well_typed(), st.data())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_one_type_changed_is_found_where_it_stands(
     drawn: tuple[Machine, int], data: st.DataObject
 ) -> None:
@@ -357,7 +358,7 @@ def shuffled(node: Node, order: Mapping[str, int]) -> Node:
 
 
 @given(well_typed(), st.dictionaries(st.sampled_from(")'05"), st.integers(-999, 999)))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_the_order_of_the_script_does_not_count(
     drawn: tuple[Machine, int], order: dict[str, int]
 ) -> None:
@@ -370,7 +371,7 @@ def test_the_order_of_the_script_does_not_count(
 
 
 @given(machines())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_every_machine_is_typed_and_its_text_with_types_reads_as_the_same(
     machine: Machine,
 ) -> None:
@@ -381,7 +382,7 @@ def test_every_machine_is_typed_and_its_text_with_types_reads_as_the_same(
 
 
 @given(valid_machines())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_a_valid_machine_has_no_clash(machine: Machine) -> None:
     assert infer(machine).clashes == ()
 
@@ -414,7 +415,7 @@ def test_what_an_expression_gives_is_of_its_type(expr: Expr, values: dict[str, o
 
 
 @given(valid_machines())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_what_a_run_writes_is_of_the_type_of_its_key(machine: Machine) -> None:
     types = infer(machine)
     seen: list[Event] = []

@@ -17,6 +17,7 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.ir.types import ANY, Type, parse_type
 from tests.strategies.machines import types
+from tests.support.examples import examples
 
 
 def a(text: str) -> Type:
@@ -168,7 +169,7 @@ def test_every_type_fits_itself_any_and_its_optional(type_: Type) -> None:
 
 
 @given(MORE_TYPES, MORE_TYPES)
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_both_fit_what_joins_them(one: Type, other: Type) -> None:
     both = join(one, other)
     assert fits(one, both)
@@ -177,7 +178,7 @@ def test_both_fit_what_joins_them(one: Type, other: Type) -> None:
 
 
 @given(MORE_TYPES, MORE_TYPES)
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_what_meets_two_types_fits_both(one: Type, other: Type) -> None:
     both = meet(one, other)
     assert both == ANY or (fits(both, one) and fits(both, other))

@@ -16,6 +16,7 @@ from smachac.analysis.outcome_rules import Combination, Rules, UndecidedError, c
 from smachac.checks.concurrence import written
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.ir.nodes import Concurrence, Node, StateMachine
+from tests.support.examples import examples
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran
 from tests.support.rule_findings import report
 
@@ -89,7 +90,7 @@ def told(node: Concurrence, item: Diagnostic) -> list[Combination]:
     ]
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(concurrences())
 def test_a_combination_is_missed_if_and_only_if_one_is_uncovered(node: Concurrence) -> None:
     found = said(node, "SM401")
@@ -106,7 +107,7 @@ def test_a_combination_is_missed_if_and_only_if_one_is_uncovered(node: Concurren
         assert (item.severity is Severity.ERROR) == (not node.default_outcome)
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(concurrences())
 def test_rules_overlap_if_and_only_if_two_win_in_one_combination(node: Concurrence) -> None:
     ties = [ended for ended in every(node) if len(winners(node, ended)) > 1]
@@ -120,7 +121,7 @@ def test_rules_overlap_if_and_only_if_two_win_in_one_combination(node: Concurren
             )
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(concurrences())
 def test_a_rule_is_dead_if_and_only_if_it_wins_in_no_combination(node: Concurrence) -> None:
     alive = {name for ended in every(node) for name in winners(node, ended)}
@@ -182,7 +183,7 @@ def test_a_failure_is_masked_if_and_only_if_a_combination_hides_it(node: Concurr
         assert all(masks(node, ended, good) for ended in shown)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(concurrences(), st.integers(0, 9))
 def test_the_interpreter_ends_as_is_said(node: Concurrence, seed: int) -> None:
     """The combinations shown by SM402 and SM404 do give those results when they are played."""
@@ -197,7 +198,7 @@ def test_the_interpreter_ends_as_is_said(node: Concurrence, seed: int) -> None:
             assert end["outcome"] == promised
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(concurrences(join="any"))
 def test_with_join_any_the_first_to_end_decides(node: Concurrence) -> None:
     """What is said holds in a combination in which all others answer a request to stop."""
@@ -230,7 +231,7 @@ def test_with_join_any_the_first_to_end_decides(node: Concurrence) -> None:
     assert bool(hiding) <= bool(said(node, "SM404"))
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(concurrences(), st.data())
 def test_shown_parts_decide_and_are_as_small_as_they_can_be(
     node: Concurrence, data: st.DataObject

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.ir.nodes import Leaf, Node, StateMachine
+from tests.support.examples import examples
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran
 from tests.support.rule_findings import found, one, report
 
@@ -158,7 +159,7 @@ def machines(draw: st.DrawFn) -> StateMachine:
     return machine("sm", ROOT, *states("S", ROOT.split(), 1))
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(machines())
 def test_played_the_failure_is_the_last_that_happens(root: StateMachine) -> None:
     """A failure is unhandled if and only if a run that starts in its state ends well, with that

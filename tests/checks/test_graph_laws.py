@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from smachac.ir.nodes import StateMachine
 from smachac.ir.outcome_names import is_failure
+from tests.support.examples import examples
 from tests.support.ir_machines import leaf, machine
 from tests.support.rule_findings import found, report
 
@@ -67,7 +68,7 @@ def failing(flow: Steps) -> Steps:
     }
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(flows())
 def test_the_unreachable_states_lead_to_what_the_closure_lacks(flow: Steps) -> None:
     hidden = {name for name in flow if name not in closure("S0", flow)}
@@ -77,7 +78,7 @@ def test_the_unreachable_states_lead_to_what_the_closure_lacks(flow: Steps) -> N
     assert all(a not in closure(b, flow) for a in first for b in first if a != b)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(flows())
 def test_every_trap_is_found_and_nothing_else(flow: Steps) -> None:
     stuck = endless(flow) & closure("S0", flow)
@@ -87,7 +88,7 @@ def test_every_trap_is_found_and_nothing_else(flow: Steps) -> None:
     assert all(closure(a, flow).isdisjoint({b}) for a in trapped for b in trapped if a != b)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(flows())
 def test_a_loop_without_a_bound_is_one_that_failures_never_leave(flow: Steps) -> None:
     entered = closure("S0", flow) & flow.keys()
@@ -99,14 +100,14 @@ def test_a_loop_without_a_bound_is_one_that_failures_never_leave(flow: Steps) ->
     assert bool(tries) == bool(lasting)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(flows())
 def test_a_machine_that_goes_on_spins_only_where_it_is_never_left(flow: Steps) -> None:
     spinning = {line.rpartition("/")[2] for line in found(built(flow, forever=True), "SM204")}
     assert spinning <= endless(failing(without(flow, "preempted")))
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(flows(), st.booleans())
 def test_witnesses_follow_transitions(flow: Steps, forever: bool) -> None:
     for item in report(built(flow, forever)):
@@ -115,7 +116,7 @@ def test_witnesses_follow_transitions(flow: Steps, forever: bool) -> None:
             assert flow[state][outcome.strip("()")] == target
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(flows())
 def test_rules_find_the_same_wherever_the_states_stand(flow: Steps) -> None:
     root = built(flow)

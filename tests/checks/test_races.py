@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from smachac import driver
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Concurrence, Leaf, Node, StateMachine
+from tests.support.examples import examples
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran
 from tests.support.rule_findings import found, report
 
@@ -128,7 +129,7 @@ def works(path: str, node: Leaf, visit: int, userdata: Userdata) -> str:
     return "x"
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(branches())
 def test_without_a_race_the_order_of_branches_does_not_matter(root: StateMachine) -> None:
     ends = []

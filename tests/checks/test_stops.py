@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.ir.nodes import Leaf, Node, StateMachine
+from tests.support.examples import examples
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran, short
 from tests.support.rule_findings import found, one, report
 
@@ -209,7 +210,7 @@ def flows(draw: st.DrawFn) -> Flow:
     }
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(flows())
 def test_what_starts_again_does_so_in_a_run(flow: Flow) -> None:
     """Each witness path of SM209 can be run: a stop in its first state leads back to it."""

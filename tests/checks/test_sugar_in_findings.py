@@ -118,7 +118,9 @@ def words_of(item: Diagnostic) -> list[str]:
             *finding.arguments]  # fmt: skip
 
 
-@pytest.mark.parametrize("start", range(0, 160, 20))
+@pytest.mark.parametrize(
+    "start", [0, 20, *(pytest.param(each, marks=pytest.mark.slow) for each in range(40, 160, 20))]
+)
 def test_containers_made_of_sugar_are_not_named(start: int) -> None:
     found = 0
     for seed in range(start, start + 20):

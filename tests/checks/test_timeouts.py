@@ -13,6 +13,7 @@ from smachac.analysis.context import Context
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Severity
 from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, StateType, Value, VariableType
+from tests.support.examples import examples
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, value
 from tests.support.rule_findings import blocking, found, one, report
 
@@ -259,7 +260,7 @@ def exits(flow: Flow, left_out: str = "") -> set[str]:
         seen |= more
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(flows())
 def test_endings_are_the_exits_that_can_be_reached(flow: Flow) -> None:
     branch = machine("IN", "out lost", *(leaf(name, to) for name, to in flow.items()))

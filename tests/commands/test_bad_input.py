@@ -126,13 +126,11 @@ def test_huge_numbers(script: Path) -> None:
         assert ended.value.code == 2
 
 
-COMMANDS = [
+COMMANDS = [(["check", "main.yml"], 0)]
+MORE_COMMANDS = [
     (["--help"], 0),
-    (["check", "main.yml"], 0),
     (["build", "main.yml", "-t", "json", "-o", "-"], 0),
     (["run", "main.yml", "--mock", "scenario.yml"], 0),
-]
-MORE_COMMANDS = [
     (["--version"], 0),
     (["check", "--help"], 0),
     (["check", "broken.yml", "--format", "json"], 1),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import signal
@@ -320,3 +321,10 @@ def test_select_and_ignore(
     assert sorted(item["code"] for item in data["diagnostics"]) == codes
     assert main(["check", str(path), "--select", "SM29"]) == 2
     assert "there is no code `SM29`\ndid you mean" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["targets"], ["check", "none.yml"]])
+def test_a_command_that_python_calls_leaves_the_garbage_collector_on(words: list[str]) -> None:
+    assert gc.isenabled()
+    main(words)
+    assert gc.isenabled()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import resource
+import shutil
 import sqlite3
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -155,28 +156,31 @@ def broken(path: Path, change: str) -> None:
     connection.close()
 
 
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ("cut", "database disk image is malformed"),
-        ("steps = 'no JSON'", "the values of the run with seed 3 are wrong"),
-        ("states = '[1]'", "the values of the run with seed 3 are wrong"),
-        ("covered = NULL", "the values of the run with seed 3 are wrong"),
-        ("vary = '7'", "the values of the run with seed 3 are wrong"),
-        ("faults = '{}'", "the values of the run with seed 3 are wrong"),
-        ("wall = 'long'", "the values of the run with seed 3 are wrong"),
-    ],
-)
+VALUES_ARE_WRONG = "the values of the run with seed 3 are wrong"
+DAMAGE = {
+    "cut": "database disk image is malformed",
+    "steps = 'no JSON'": VALUES_ARE_WRONG,
+    "states = '[1]'": VALUES_ARE_WRONG,
+    "covered = NULL": VALUES_ARE_WRONG,
+    "vary = '7'": VALUES_ARE_WRONG,
+    "faults = '{}'": VALUES_ARE_WRONG,
+    "wall = 'long'": VALUES_ARE_WRONG,
+}
+
+
 def test_a_damaged_database_is_one_message(
-    folder: Path, capsys: pytest.CaptureFixture[str], change: str, reason: str
+    folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    swept(capsys, "--runs", "8", "--database", "sweep.db")
-    broken(folder / "sweep.db", change)
-    message = f"the database sweep.db cannot be used: {reason}\n"
-    assert main(["stats", "main.yml", "sweep.db"]) == 2
-    assert capsys.readouterr().err == f"smachac: error: {message}"
-    assert main([*MOCK, "--runs", "8", "--database", "sweep.db"]) in (1, 2)
-    assert capsys.readouterr().err.endswith(message)
+    """All in one test, as all damage one sweep."""
+    swept(capsys, "--runs", "8", "--database", "whole.db")
+    for change, reason in DAMAGE.items():
+        shutil.copy(folder / "whole.db", folder / "sweep.db")
+        broken(folder / "sweep.db", change)
+        message = f"the database sweep.db cannot be used: {reason}\n"
+        assert main(["stats", "main.yml", "sweep.db"]) == 2, change
+        assert capsys.readouterr().err == f"smachac: error: {message}"
+        assert main([*MOCK, "--runs", "8", "--database", "sweep.db"]) in (1, 2), change
+        assert capsys.readouterr().err.endswith(message), change
 
 
 @pytest.mark.parametrize(

@@ -98,6 +98,7 @@ def test_what_goes_wrong_ends_in_the_recovery(fault: str, path: str, header: Pat
     assert visited(events)[-3:] == [f"{root}/{path}", f"{root}/LET_GO", f"{root}/RETREAT"]
 
 
+@pytest.mark.slow
 def test_a_request_to_stop_holds_the_arm(header: Path) -> None:
     events = faulty("stopped", header)
     assert [event["path"] for event in events if event.get("outcome") == "preempted"] == 2 * [

@@ -17,6 +17,7 @@ from smachac.targets.cpp.user_classes import interface_hash
 from smachac.verify.players.cpp import HEADERS
 from tests.cpp.compilers import COMPILERS, Compiler
 from tests.cpp.test_user_classes import made
+from tests.support.examples import every
 
 ROOT = Path(__file__).parents[2]
 GOLDEN = sorted((ROOT / "tests" / "cases").glob("**/expected/cpp/*.hpp"))
@@ -152,7 +153,7 @@ SYSTEM_HEADERS = "".join(
 
 
 @COMPILERS
-@pytest.mark.parametrize("name", ["default", "open"])
+@pytest.mark.parametrize("name", every(2, ["default", "open"]))
 def test_words_of_cpp_are_names_in_scripts(name: str, compiler: Compiler, tmp_path: Path) -> None:
     _, header = made({"main.yml": HARD.replace("default\n", f"{name}\n", 1)})
     assert header

@@ -15,6 +15,7 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from tests.cpp.compiled_traces import NOBODY, header, traces
 from tests.cpp.compilers import compilers
+from tests.support.examples import every
 
 STATES = """\
       userdata: {tries: 0}
@@ -58,7 +59,9 @@ def picks(events: list[dict[str, Any]]) -> int:
     return sum(event["path"].endswith("/PICK") for event in entered)
 
 
-@pytest.mark.parametrize("text", [CYCLE, FOR_EACH, RETRY], ids=["cycle", "for_each", "retry"])
+@pytest.mark.parametrize(
+    "text", every(3, [CYCLE, FOR_EACH, RETRY]), ids=["cycle", "for_each", "retry"]
+)
 def test_three_visits_of_a_counter_give_three_tries_and_then_one_each(
     text: str, tmp_path: Path
 ) -> None:

@@ -194,6 +194,7 @@ def until_entered(trace: Path, started: subprocess.Popen[str]) -> None:
         assert started.poll() is None
 
 
+@pytest.mark.slow
 def test_arguments_and_a_trace_that_cannot_be_written(waiting: Path, tmp_path: Path) -> None:
     ran(waiting, "--speed", status=2)
     ran(waiting, "--trace", tmp_path / "no" / "folder.jsonl", status=1)

@@ -8,6 +8,7 @@ import pytest
 
 from smachac.version import __version__
 from tests.cpp.compilers import BARE, COMPILERS, SANITIZED, STRICT, THREADED, Compiler, last_with
+from tests.support.examples import every
 
 LATE_REQUESTS = """
 #include <memory>
@@ -208,7 +209,7 @@ int main() {}
 
 
 @COMPILERS
-@pytest.mark.parametrize("bare", [(), BARE], ids=["", "bare"])
+@pytest.mark.parametrize("bare", every(2, [BARE, ()]), ids=["bare", ""])
 def test_the_headers_have_no_warnings(
     compiler: Compiler, bare: tuple[str, ...], tmp_path: Path
 ) -> None:

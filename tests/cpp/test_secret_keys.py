@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from smachac.runtime.tracing.writer import SECRET
 from tests.cpp.compiled_traces import NOBODY, header
 from tests.cpp.compilers import last_with
@@ -41,6 +43,7 @@ states:
 """
 
 
+@pytest.mark.slow
 def test_traces_of_compiled_machines_hide_secret_keys(tmp_path: Path) -> None:
     machine = machine_of(SCRIPT)
     ours, printed = of_interpreter(machine), header(machine)

@@ -89,6 +89,7 @@ def test_keys_are_shared_where_a_copy_makes_no_difference(
     agree([((machine, printed, NOBODY), ours)], last_with("-O0"), tmp_path)
 
 
+@pytest.mark.slow
 def test_a_copy_of_userdata_is_independent(tmp_path: Path) -> None:
     text = header(machine_of(SCRIPT))
     assert text is not None

@@ -46,6 +46,7 @@ def test_a_stub_compiles_and_runs(
     compiler.run(PROGRAM, tmp_path, f"-I{tmp_path}", f"-I{tmp_path / 'include'}", "-pthread")
 
 
+@pytest.mark.slow
 @COMPILERS
 def test_variables_become_arguments(
     compiler: Compiler, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

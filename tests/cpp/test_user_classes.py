@@ -415,6 +415,7 @@ states:
 """
 
 
+@pytest.mark.slow
 @COMPILERS
 def test_a_script_that_catches_exceptions_needs_them(compiler: Compiler, tmp_path: Path) -> None:
     """Without exceptions the program ended where the script goes on."""

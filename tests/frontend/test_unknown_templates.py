@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from tests.trust.project_text import analysed
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from tests.trust.project_text import BUILT_IN, analysed
 
 TWO = """
 name: sm
@@ -56,3 +60,21 @@ def test_two_unknown_templates_are_two_findings() -> None:
     text = TWO.replace("NAME", "Wave", 1).replace("NAME", "Nod").replace("FIELDS, ", "")
     report = analysed({"main.yml": text}).report
     assert [item.span.text for item in report if item.code == "SM013"] == ["Wave", "Nod"]
+
+
+@pytest.mark.parametrize(
+    "fields", ["template: SleepState, time: 1, command: open", "command: open"]
+)
+def test_built_in_types_that_cannot_be_meant_are_not_read(fields: str) -> None:
+    """Those without an interface, whose classes take long, and those without the words."""
+    read: list[str] = []
+
+    def template(name: str) -> Source | None:
+        read.append(name)
+        return BUILT_IN.template(name)
+
+    text = TWO.replace("template: NAME, FIELDS", fields)
+    report = analyse(Source("main.yml", text), replace(BUILT_IN, template=template), []).report
+    assert {item.code for item in report} & {"SM003", "SM005"}
+    assert "GripperState.yml" in read
+    assert not {"ParsePose.tpl.py", "WaitForMsg.tpl.py", "ParsePose.tpl"} & {*read}

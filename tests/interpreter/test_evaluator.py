@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from smachac.interpreter.evaluator import FUNCTIONS, EvaluationError, evaluate
 from smachac.ir.expressions import Expr, parse_expression, print_expression
 from tests.strategies.expressions import FUNCTION_NAMES, NAMES_OF_VALUES, VALUES, computations
+from tests.support.examples import examples
 
 PYTHON = {name: getattr(__import__("builtins"), name) for name in FUNCTIONS}
 
@@ -29,7 +30,7 @@ def function_of(text: str, **names: object) -> Callable[..., object]:
 
 
 @given(computations(), st.tuples(VALUES, VALUES, VALUES))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_the_value_is_the_one_python_gives(tree: Expr, values: tuple[object, ...]) -> None:
     names = dict(zip(NAMES_OF_VALUES, values, strict=True))
     try:

@@ -25,6 +25,7 @@ from smachac.ir.expressions import (
     print_expression,
 )
 from tests.strategies.expressions import expressions
+from tests.support.examples import examples
 
 X, Y = Name("x"), Name("y")
 
@@ -92,7 +93,7 @@ def test_size_and_depth_are_limited() -> None:
 
 
 @given(expressions())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_reading_what_is_printed_gives_the_same_tree(tree: Expr) -> None:
     text = print_expression(tree)
     again = parse_expression(text)
@@ -101,7 +102,7 @@ def test_reading_what_is_printed_gives_the_same_tree(tree: Expr) -> None:
 
 
 @given(expressions())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_python_reads_what_is_printed(tree: Expr) -> None:
     assert python_tree(print_expression(tree))
 
@@ -111,7 +112,7 @@ TOKENS = st.sampled_from(SOME_TEXT.split())
 
 
 @given(st.lists(TOKENS, max_size=9).map(" ".join))
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_what_is_read_means_to_python_what_is_printed(text: str) -> None:
     tree = parse_expression(text)
     if tree is not None:

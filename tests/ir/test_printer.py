@@ -27,6 +27,7 @@ from smachac.ir.parser import IrSyntaxError, parse_machine
 from smachac.ir.printer import print_machine
 from smachac.ir.traversal import walk
 from tests.strategies.machines import machines
+from tests.support.examples import examples
 
 
 def holding(data: Data) -> Machine:
@@ -40,7 +41,7 @@ def held(machine: Machine) -> Data:
 
 
 @given(machines())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_reading_what_is_printed_gives_the_same_machine(machine: Machine) -> None:
     text = print_machine(machine)
     again = parse_machine(text)
@@ -234,7 +235,7 @@ def test_a_text_that_is_no_machine_is_an_error_with_its_place(
 
 
 @given(st.data())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_no_text_raises_anything_else(data: st.DataObject) -> None:
     start = data.draw(st.integers(0, len(EXAMPLE)))
     end = data.draw(st.integers(start, min(start + 20, len(EXAMPLE))))

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from smachac.ir.types import ANY, Type, parse_type, unknown_words
 from tests.strategies.machines import types
+from tests.support.examples import examples
 
 JOINTS = Type("array", (Type("float", ("rad",)), 7))
 
@@ -64,7 +65,7 @@ def test_reading_what_is_printed_gives_the_same_type(type_: Type) -> None:
 
 
 @given(st.text(alphabet='ab1 []<>?,"-/.of{}:', max_size=20))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_any_text_is_a_type_that_prints_or_none(text: str) -> None:
     type_ = parse_type(text)
     assert type_ is None or parse_type(str(type_)) == type_

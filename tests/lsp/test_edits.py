@@ -15,6 +15,7 @@ from smachac.batch import check_scripts
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.frontend.files import Disk
 from smachac.lsp.session import Session
+from tests.support.examples import examples
 from tests.support.lsp_answers import answers
 from tests.support.lsp_client import Client
 from tests.support.lsp_edits import Edit, edited, edits
@@ -99,7 +100,7 @@ def test_random_edits_in_a_server(client: Client, path: Path, steps: list[Edit])
         for place, path in enumerate(SCRIPTS)
     ],
 )
-@settings(max_examples=8, deadline=None, derandomize=True)
+@settings(max_examples=examples(8), deadline=None, derandomize=True)
 @given(st.lists(edits(), min_size=1, max_size=6))
 def test_random_edits_of_a_session(path: Path, steps: list[Edit]) -> None:
     session = Session([ROOT])

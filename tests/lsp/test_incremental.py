@@ -17,6 +17,7 @@ from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Container, Leaf
 from smachac.lsp.session import Session
+from tests.support.examples import examples
 from tests.support.lsp_edits import Edit, edited, edits
 from tests.support.lsp_projects import FAULTY, FILES, project
 
@@ -61,7 +62,7 @@ STEPS = st.lists(st.tuples(st.integers(0, 5), edits()), max_size=8)
 
 
 @pytest.mark.parametrize("files", [FILES, FAULTY], ids=["sound", "faulty"])
-@settings(max_examples=10, deadline=None, derandomize=True)
+@settings(max_examples=examples(10), deadline=None, derandomize=True)
 @given(steps=STEPS)
 def test_findings_after_edits_of_any_file_are_those_of_a_fresh_check(
     files: Mapping[str, str], steps: list[tuple[int, Edit]], tmp_path_factory: Any

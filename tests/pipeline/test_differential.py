@@ -22,6 +22,7 @@ from smachac.runtime.tracing import trace
 from smachac.runtime.tracing.compare import compare
 from smachac.targets.python import TARGET
 from tests.strategies.full_machines import busy_machines
+from tests.support.examples import examples
 from tests.support.silent_smach import silent_smach
 from tests.support.typed_machines import with_state_types
 
@@ -154,15 +155,17 @@ def test_items_from_functions(code: str) -> None:
     assert differ(ours, of_generated(machine)) is None
 
 
-CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 40))]
+CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 24))]
 
 
 @pytest.mark.parametrize("chunk", CHUNKS)
 def test_random_machines(chunk: int) -> None:
-    """2,000 machines, in parts so that workers share them."""
+    """1,200 machines, in parts so that workers share them."""
 
     @seed(chunk)
-    @settings(max_examples=50, derandomize=False, database=None, suppress_health_check=SLOW)
+    @settings(
+        max_examples=examples(50), derandomize=False, database=None, suppress_health_check=SLOW
+    )
     @given(busy_machines())
     def agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
         machine, asked = drawn

@@ -15,6 +15,7 @@ from smachac.frontend.loader import memory_library
 from smachac.report.json import render_json
 from smachac.report.text import render_text
 from smachac.targets import load_target, target_names
+from tests.support.examples import examples
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = [
@@ -36,7 +37,7 @@ PIECES = st.sampled_from([*SIGNS, *WORDS, *PHRASES, *SPACES])
 DAMAGE = st.tuples(st.floats(0, 1), st.integers(0, 20), PIECES)
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.sampled_from(SCRIPTS), st.lists(DAMAGE, min_size=1, max_size=4))
 def test_nothing_escapes(text: str, damage: list[tuple[float, int, str]]) -> None:
     for where, removed, piece in damage:

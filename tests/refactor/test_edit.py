@@ -25,7 +25,7 @@ from tests.refactor.test_refactorings import comments, project, texts
 
 __all__ = ["project"]
 
-SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 16))]
+SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 10))]
 ROUNDS = 4
 MAIN = Path("main.yml")
 

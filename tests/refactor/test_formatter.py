@@ -86,7 +86,7 @@ def with_comments(text: str, seed: int) -> tuple[str, Counter[str]]:
     return "\n".join(lines), Counter(comments)
 
 
-FIRST_QUICK = [*range(8), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(8, 40))]
+FIRST_QUICK = [*range(4), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(4, 24))]
 
 
 @pytest.mark.parametrize("seed", FIRST_QUICK)

@@ -31,6 +31,7 @@ from smachac.ir.traversal import outcome_names, walk
 from smachac.refactor.equivalence import normalized
 from smachac.refactor.formatter import format_script
 from smachac.runtime import smach
+from tests.support.examples import examples
 from tests.support.golden import compare_folder
 from tests.trust.project_text import written
 from tests.trust.random_projects import correct_project
@@ -38,7 +39,7 @@ from tests.trust.random_projects import correct_project
 CASES = sorted(
     path.parent for path in (Path(__file__).parents[1] / "refactorings").glob("*/command")
 )
-SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 16))]
+SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 10))]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
@@ -313,7 +314,7 @@ def transcript(whole: Machine, seed: int) -> list[object]:
     return [*told, outcome] if len(told) < 40 else told[:40]
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.integers(0, 10**9))
 def test_a_concurrence_decides_as_the_states_did_in_a_row(seed: int) -> None:
     draw = random.Random(seed)

@@ -19,6 +19,7 @@ from smachac.report.explain_key import key_names
 from smachac.report.explain_name import UnclearError, explain_name
 from tests.strategies.machines import machines
 from tests.strategies.userdata_machines import data_machines
+from tests.support.examples import examples
 
 ROOT = Path(__file__).parents[2]
 PICK = str(ROOT / "examples" / "08_pick_and_place" / "main.yml")
@@ -113,7 +114,7 @@ def explained(machine: Machine, name: str, form: str) -> str:
         return str(error)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.one_of(machines(), data_machines()), st.data())
 def test_every_name_of_any_machine_can_be_asked_for(machine: Machine, data: st.DataObject) -> None:
     paths = [path for path, _ in walk(machine.root)]

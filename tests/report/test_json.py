@@ -20,6 +20,7 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.json import render_json
+from tests.support.examples import examples
 from tests.support.json_schema import faults, load_schema
 
 SCHEMA = load_schema("report")
@@ -133,7 +134,7 @@ def test_reports_fit_the_schema_and_others_do_not() -> None:
     ]
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(st.text(), st.text(), st.data())
 def test_any_text_gives_a_report_in_ascii(text: str, message: str, data: st.DataObject) -> None:
     source = Source(message, text)

@@ -13,6 +13,7 @@ from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, PathStep, 
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.terminal import columns, lay_out, visible, wrapped
 from smachac.report.text import MOST_FINDINGS, Layout, render_text, steps, summary
+from tests.support.examples import examples
 
 SCRIPT = Source(
     "main.yml",
@@ -357,7 +358,7 @@ ODD = st.text(
 NUMBERS = st.integers(min_value=-3, max_value=210)
 
 
-@settings(derandomize=True, deadline=None, max_examples=300)
+@settings(derandomize=True, deadline=None, max_examples=examples(300))
 @given(ODD, ODD, st.lists(st.tuples(NUMBERS, NUMBERS), min_size=1, max_size=4), ODD, NUMBERS)
 def test_any_span_in_any_text(
     text: str, other: str, spans: list[tuple[int, int]], label: str, width: int
@@ -377,7 +378,7 @@ def test_any_span_in_any_text(
     assert [line.rstrip() for line in coloured.split("\n")] == squeezed
 
 
-@settings(derandomize=True, deadline=None, max_examples=300)
+@settings(derandomize=True, deadline=None, max_examples=examples(300))
 @given(ODD, NUMBERS, NUMBERS, st.integers(min_value=20, max_value=60))
 def test_a_laid_out_line_fits_and_keeps_the_span_in_view(
     text: str, start: int, size: int, room: int

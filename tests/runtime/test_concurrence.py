@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.runtime import smach
+from tests.support.examples import examples
 
 
 def leaf(
@@ -92,7 +93,7 @@ def test_children_run_at_the_same_time() -> None:
     assert concurrence(*states, outcome_map={"ok": {}}).execute() == "ok"
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     ended=st.lists(st.sampled_from(["done", "other"]), min_size=1, max_size=3),
     rules=st.lists(

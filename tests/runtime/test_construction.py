@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.runtime import smach
+from tests.support.examples import examples
 
 
 def leaf(*outcomes: str) -> smach.State:
@@ -310,7 +311,7 @@ def test_machines_can_be_pickled_and_copied_also_after_a_run() -> None:
         assert (twin.userdata.m, machine.userdata.m) == (2, 1)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     explicit=st.lists(
         st.dictionaries(st.sampled_from(["ok", "no"]), st.sampled_from([None, "", "ok", "no"])),

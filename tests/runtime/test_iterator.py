@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.runtime import smach
+from tests.support.examples import examples
 
 OUTCOMES = ["go", "stop"]
 
@@ -45,7 +46,7 @@ def test_the_exhausted_outcome_is_registered_once() -> None:
     assert iterator.get_registered_outcomes() == ("over",)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     results=st.lists(st.sampled_from(["go", "stop", "odd"]), max_size=6),
     loop=st.lists(st.sampled_from(OUTCOMES), unique=True),

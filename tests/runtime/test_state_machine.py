@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.runtime import smach
+from tests.support.examples import examples
 
 
 def leaf(
@@ -233,7 +234,7 @@ def test_the_userdata_may_be_replaced_between_runs() -> None:
 LABELS = ["A", "B", "C", "D"]
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     table=st.fixed_dictionaries(
         {label: st.lists(st.sampled_from([*LABELS, "end"]), max_size=2) for label in LABELS}

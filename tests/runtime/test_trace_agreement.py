@@ -13,6 +13,7 @@ from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf, Node, StateMachine
 from smachac.ir.traversal import walk
 from smachac.runtime.tracing.compare import compare
+from tests.support.examples import examples
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, ran
 from tests.support.smach_machines import Steps, interpreted, traced
 
@@ -90,7 +91,7 @@ def scripted_machines(draw: st.DrawFn) -> tuple[StateMachine, Steps]:
 
 
 @given(scripted_machines())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_built_machines_do_what_the_interpreter_does(case: tuple[StateMachine, Steps]) -> None:
     root, steps = case
     outcome, events = traced(root, steps)
@@ -101,7 +102,7 @@ def test_built_machines_do_what_the_interpreter_does(case: tuple[StateMachine, S
 
 
 @given(scripted_machines(), BELOW[5])
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_the_order_of_branches_does_not_change_what_is_done(
     case: tuple[StateMachine, Steps], seed: int
 ) -> None:

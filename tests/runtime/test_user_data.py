@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from smachac.runtime import smach
+from tests.support.examples import examples
 
 KEYS = st.sampled_from(["a", "b", "c", "d", "keys"])
 
@@ -194,7 +195,7 @@ def test_private_attributes_stay_on_the_view() -> None:
     assert content(ud) == {}
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     held=st.dictionaries(KEYS, st.integers()),
     inputs=st.lists(KEYS),

@@ -26,7 +26,7 @@ def slow(seed: int) -> ParameterSet:
     return pytest.param(seed, marks=pytest.mark.slow)
 
 
-@pytest.mark.parametrize("seed", [0, 1, *map(slow, range(2, 5))])
+@pytest.mark.parametrize("seed", [0, *map(slow, range(1, 4))])
 def test_pick_and_place(seed: int) -> None:
     found = run(*PICK_AND_PLACE, seed)
     assert found.outcome == "succeeded"
@@ -85,7 +85,7 @@ def test_a_displaced_block_never_counts_as_placed(way: tuple[float, ...]) -> Non
     assert found.outcome == "aborted"
 
 
-SEEDS = [0, *map(slow, range(1, 8))]
+SEEDS = [0, *map(slow, range(1, 5))]
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from smachac.sim import transforms
 from smachac.sim.transforms import IDENTITY, Pose, Quaternion, as_pose
+from tests.support.examples import examples
 
-LAW = settings(derandomize=True, deadline=None, max_examples=30)
+LAW = settings(derandomize=True, deadline=None, max_examples=examples(30))
 
 metres = st.floats(-2.0, 2.0)
 vectors = st.tuples(metres, metres, metres)

@@ -14,17 +14,18 @@ from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node, Sequenc
 from smachac.ir.traversal import containers, outcome_names, walk
 from tests.strategies.full_machines import busy_machines
 from tests.strategies.machines import valid_machines
+from tests.support.examples import examples
 
 
 @given(valid_machines())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_no_rule_finds_an_error_in_a_valid_machine(machine: Machine) -> None:
     errors = [item for item in check_machine(machine) if item.severity is Severity.ERROR]
     assert errors == []
 
 
 @given(valid_machines())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_every_state_of_a_valid_machine_is_reachable_and_can_end(machine: Machine) -> None:
     for _, container in containers(machine.root):
         names = {child.name for child in container.children}
@@ -32,7 +33,7 @@ def test_every_state_of_a_valid_machine_is_reachable_and_can_end(machine: Machin
 
 
 @given(valid_machines())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_every_run_of_a_valid_machine_ends(machine: Machine) -> None:
     assert run(machine, builtin_behaviour()).outcome in outcome_names(machine.root)
 
@@ -41,7 +42,7 @@ def test_valid_machines_have_all_there_is() -> None:
     nodes: list[Node] = []
 
     @given(valid_machines())
-    @settings(max_examples=60)
+    @settings(max_examples=examples(60))
     def collect(machine: Machine) -> None:
         nodes.extend(node for _, node in walk(machine.root))
 
@@ -59,7 +60,7 @@ def test_busy_machines_have_all_there_is() -> None:
     found: set[str] = set()
 
     @given(busy_machines())
-    @settings(max_examples=400)
+    @settings(max_examples=examples(400))
     def collect(drawn: tuple[Machine, tuple[str, int]]) -> None:
         machine, asked = drawn
         found.add("asked" if asked[0] else "not asked")

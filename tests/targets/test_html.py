@@ -25,6 +25,7 @@ from smachac.targets.html import TARGET
 from smachac.targets.html.model import SNIPPET_LINES, machine_model
 from smachac.targets.html.page import LAYOUT_ID, MODEL_ID, render_page
 from tests.strategies.machines import valid_machines
+from tests.support.examples import examples
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = [
@@ -136,7 +137,7 @@ def test_what_runs_is_drawn_for_random_machines(machine: Machine) -> None:
     assert undrawn(machine, 6) == set()
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(valid_machines())
 def test_every_edge_connects_states_of_one_container(machine: Machine) -> None:
     model = machine_model(machine)

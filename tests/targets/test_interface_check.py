@@ -18,6 +18,7 @@ from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
 from smachac.frontend.state_types import find_state_type
 from smachac.targets import load_target
+from tests.support.examples import examples
 
 GRASP = """
 name: Grasp
@@ -121,7 +122,7 @@ def machine(wanted: NewStateType) -> str:
     return "\n".join(line for line in lines if wanted.inputs or line != "input_keys:") + "\n"
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(wanted=WANTED, language=st.sampled_from(["python", "cpp"]))
 def test_a_stub_of_any_interface_is_what_that_says(wanted: NewStateType, language: str) -> None:
     text = interface(wanted, language)
@@ -132,7 +133,7 @@ def test_a_stub_of_any_interface_is_what_that_says(wanted: NewStateType, languag
     assert said({**texts, code_file("Grasp", language).removeprefix("include/"): code}) == []
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(one=WANTED, other=WANTED)
 def test_a_stub_of_another_interface_is_found(one: NewStateType, other: NewStateType) -> None:
     """In C++ all that a class depends on, in Python names alone."""

@@ -17,6 +17,7 @@ from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import walk
 from smachac.targets.mermaid.diagram import diagram
 from tests.strategies.machines import valid_machines
+from tests.support.examples import examples
 from tests.targets.test_dot import leaf, machine_of
 
 ROOT = Path(__file__).parents[2]
@@ -88,7 +89,7 @@ def test_random_machines() -> None:
     machines: list[Machine] = []
 
     @seed(3)
-    @settings(max_examples=200, database=None, suppress_health_check=list(HealthCheck))
+    @settings(max_examples=examples(200), database=None, suppress_health_check=list(HealthCheck))
     @given(valid_machines())
     def collect(machine: Machine) -> None:
         machines.append(machine)

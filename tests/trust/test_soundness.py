@@ -26,13 +26,14 @@ from tests.conformance_ir.ir_vectors import machine_of
 from tests.conformance_ir.test_ir_vectors import CASES
 from tests.strategies.full_machines import busy_machines
 from tests.strategies.userdata_machines import data_machines
+from tests.support.examples import examples
 from tests.trust.mutants import Subject
 from tests.trust.mutations import MUTATIONS
 from tests.trust.project_text import judged
 from tests.trust.random_projects import correct_project
 from tests.trust.random_runs import contradictions, runs
 
-PROJECTS = [*range(2), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 24))]
+PROJECTS = [*range(2), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 14))]
 DAMAGED = 6
 RUNS = 9
 
@@ -147,7 +148,9 @@ def expect_no_fault(machine: Machine) -> None:
         assert failures(*found, RUNS) == []
 
 
-@settings(max_examples=40, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@settings(
+    max_examples=examples(40), phases=[Phase.generate], suppress_health_check=list(HealthCheck)
+)
 @given(data_machines())
 def test_graphs_without_an_error_run_without_a_fault(machine: Machine) -> None:
     expect_no_fault(machine)

@@ -17,6 +17,7 @@ from smachac.verify import verify
 from smachac.verify.coverage import Coverage
 from smachac.verify.players.python import player
 from tests.strategies.full_machines import busy_machines
+from tests.support.examples import examples
 from tests.support.typed_machines import with_state_types
 
 ROOT = Path(__file__).parents[2]
@@ -25,7 +26,7 @@ LIBRARY = disk_library(ROOT / "main.yml", [])
 
 
 @seed(0)
-@settings(max_examples=30, database=None, deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=examples(30), database=None, deadline=None, suppress_health_check=SLOW)
 @given(busy_machines())
 def test_random_machines_agree(drawn: tuple[Machine, tuple[str, int]]) -> None:
     machine, _ = drawn

@@ -15,6 +15,7 @@ from smachac.ir.nodes import Machine
 from smachac.verify.trace_conformance import first_violation
 from tests.pipeline.test_differential import of_generated, of_interpreter
 from tests.strategies.full_machines import busy_machines
+from tests.support.examples import examples
 
 Event = dict[str, Any]
 SLOW = list(HealthCheck)
@@ -26,7 +27,7 @@ def words(machine: Machine, events: list[Event]) -> str | None:
 
 
 @seed(0)
-@settings(max_examples=250, database=None, suppress_health_check=SLOW)
+@settings(max_examples=examples(250), database=None, suppress_health_check=SLOW)
 @given(busy_machines())
 def test_runs_of_the_interpreter_are_allowed(drawn: tuple[Machine, tuple[str, int]]) -> None:
     machine, asked = drawn
@@ -55,7 +56,7 @@ def test_a_trace_without_one_of_its_events_is_refused(kind: str) -> None:
     found: list[str] = []
 
     @seed(1)
-    @settings(max_examples=60, database=None, suppress_health_check=SLOW)
+    @settings(max_examples=examples(60), database=None, suppress_health_check=SLOW)
     @given(busy_machines(), st.randoms(use_true_random=False))
     def refuse(drawn: tuple[Machine, tuple[str, int]], random: Any) -> None:
         events = traces(drawn)
@@ -76,7 +77,7 @@ def test_a_trace_with_another_outcome_or_path_is_refused(name: str) -> None:
     found: list[str] = []
 
     @seed(2)
-    @settings(max_examples=60, database=None, suppress_health_check=SLOW)
+    @settings(max_examples=examples(60), database=None, suppress_health_check=SLOW)
     @given(busy_machines(), st.randoms(use_true_random=False))
     def refuse(drawn: tuple[Machine, tuple[str, int]], random: Any) -> None:
         events = traces(drawn)

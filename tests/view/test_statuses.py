@@ -22,6 +22,7 @@ from smachac.runtime.tracing.writer import Event
 from smachac.view.statuses import Report, StatusEvents, report_of
 from tests.runtime.test_trace import everything
 from tests.runtime.test_trace_agreement import scripted_machines
+from tests.support.examples import examples
 from tests.support.ir_machines import short
 from tests.support.smach_machines import Steps, built
 
@@ -111,7 +112,7 @@ def test_statuses_of_every_kind_of_container_give_the_trace() -> None:
 
 
 @given(scripted_machines())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_statuses_give_the_trace(case: tuple[StateMachine, Steps]) -> None:
     node = Node(*case).run()
     events = without_writes(viewed(node.root, node.statuses))
@@ -120,7 +121,7 @@ def test_statuses_give_the_trace(case: tuple[StateMachine, Steps]) -> None:
 
 
 @given(scripted_machines())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_without_outcomes_the_states_are_the_same(case: tuple[StateMachine, Steps]) -> None:
     """Statuses of smach_msgs: an outcome that is shown is the right one. They do not show whether
     the child of an iterator ran before its end."""
@@ -147,7 +148,7 @@ def test_without_outcomes_the_states_are_the_same(case: tuple[StateMachine, Step
 
 
 @given(scripted_machines(), st.data())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_a_view_that_comes_late_or_misses_statuses_finds_the_active_states(
     case: tuple[StateMachine, Steps], data: st.DataObject
 ) -> None:
