@@ -94,7 +94,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               transitions: {done: stacked}
     """
     yield from misdeclared(context, "container", "child")
-    lost = context.at_containers(_lost)
+    lost = context.at_containers(_lost) if context.strays else ()
     misplaced = context.misplaced if lost else ()
     for each in misplaced:
         yield misplaced_finding(each)
@@ -357,7 +357,7 @@ def _unknown_outcomes(path: str, container: Container) -> Iterator[Finding]:
         for child in container.children:
             yield from _unknown_steps(path, child)
     for child in container.children:
-        if isinstance(child, Leaf):
+        if isinstance(child, Leaf) and child.variables:
             yield from unknown_endings(f"{path}/{child.name}", child)
 
 

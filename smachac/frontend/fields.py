@@ -338,7 +338,9 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
     becomes the empty name, as a look-up that fails does; so a key has a value all the same."""
     pairs = []
     entries = tree.entries if isinstance(tree, Map) else as_map(tree, report)
-    if isinstance(tree, Map) and tree.span.text.startswith("{"):
+    # Most keys are words without signs: a transition is no single word.
+    is_word = not entries or str(entries[0].key.value).isidentifier()
+    if not is_word and isinstance(tree, Map) and tree.span.text.startswith("{"):
         arrows = [_arrows(each.key) for each in entries if "\n" not in each.key.span.text]
         if arrows and len(arrows) == len(entries) and all(len(each) == 1 for each in arrows):
             entries = tuple(each[0] for each in arrows)

@@ -138,7 +138,7 @@ class _Environment:
     @property
     def via(self) -> tuple[Span, ...]:
         """The spans of the calls."""
-        return tuple(span for _, span in self.calls)
+        return tuple([span for _, span in self.calls]) if self.calls else ()
 
 
 def resolve(
