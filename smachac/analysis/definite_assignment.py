@@ -293,10 +293,14 @@ def _steps(
     each of its outcomes. One that is `filled` has none from its start past its child."""
     children = {child.name: child for child in reversed(container.children)}
     raw = isinstance(container, nodes.Iterator)
-    scopes = {name: inner.get(f"{path}/{name}") for name in children}
+    scopes = {
+        name: inner.get(f"{path}/{name}")
+        for name, child in children.items()
+        if not isinstance(child, Leaf)
+    }
 
     def writes(name: str, outcome: str) -> Writes | None:
-        return child_writes(children[name], scopes[name], outcome, raw=raw)
+        return child_writes(children[name], scopes.get(name), outcome, raw=raw)
 
     found: dict[Vertex, list[KeyStep]] = {}
     if isinstance(container, Concurrence):
