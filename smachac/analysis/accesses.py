@@ -301,6 +301,10 @@ class Accesses(NamedTuple):
     writes: Keys
 
 
+NO_ACCESSES = Accesses({}, {})
+"""The accesses of a leaf without keys, which many have."""
+
+
 def accesses(states: Sequence[tuple[str, Node]]) -> dict[str, Accesses]:
     """The accesses of every state, by path.
 
@@ -311,7 +315,8 @@ def accesses(states: Sequence[tuple[str, Node]]) -> dict[str, Accesses]:
     """
     found: dict[str, Accesses] = {}
     for path, node in reversed(states):
-        found[path] = around(node, inside(path, node, found))
+        has_keys = node.inputs or node.outputs or not isinstance(node, Leaf)
+        found[path] = around(node, inside(path, node, found)) if has_keys else NO_ACCESSES
     return found
 
 

@@ -19,7 +19,7 @@ from smachac.analysis.filled_lists import filled_loops
 from smachac.analysis.item_reads import ItemRead, item_reads
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
-from smachac.analysis.misplaced_states import Misplaced, misplaced_states, stray_transitions
+from smachac.analysis.misplaced_states import Misplaced, Stray, misplaced_states, stray_transitions
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
 from smachac.analysis.reaching_values import reaching_clashes
 from smachac.analysis.resource_claims import Held, claims
@@ -71,13 +71,14 @@ class Context:
         return cast(T, found[1])
 
     def at_states(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
-        """What a function finds at each state, in the order of `states`.
+        """What a function finds at each state that can have values, in the order of `states`: at
+        containers, and leaves with variables.
 
         It is a function of the path and the node. `given` are more arguments for it: of these it
         uses only what belongs to the state types below the node. So the result for a container and
         all below it holds for the next machine too, if the container is the same object.
         """
-        return self._found_at(self.states, self._ends_of_states, fact, given)
+        return self._found_at(self._with_values, self._ends_with_values, fact, given)
 
     def at_containers(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
         """What a function finds at each container, in the order of `containers`: see `at_states`.
@@ -149,9 +150,17 @@ class Context:
         )
 
     @cached_property
-    def _ends_of_states(self) -> Sequence[int]:
-        counts = [0 if isinstance(node, Leaf) else len(node.children) for _, node in self.states]
-        return _subtree_ends(counts)
+    def _with_values(self) -> Sequence[tuple[str, Node]]:
+        return [each for each in self.states if _has_values(each[1])]
+
+    @cached_property
+    def _ends_with_values(self) -> Sequence[int]:
+        return _subtree_ends(
+            [
+                0 if isinstance(node, Leaf) else sum(map(_has_values, node.children))
+                for _, node in self._with_values
+            ]
+        )
 
     @cached_property
     def _ends_of_containers(self) -> Sequence[int]:
@@ -225,7 +234,7 @@ class Context:
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
         """The type errors in the code of the script."""
-        sites = expression_sites(self.states, self.types, self.machine.state_types)
+        sites = expression_sites(self._with_values, self.types, self.machine.state_types)
         return [(site, fault) for site in sites for fault in site.faults()]
 
     @cached_property
@@ -277,10 +286,14 @@ class Context:
         return accesses(self.states)
 
     @cached_property
+    def strays(self) -> tuple[Stray, ...]:
+        """The transitions that lead nowhere."""
+        return self.at_containers(stray_transitions)
+
+    @cached_property
     def misplaced(self) -> tuple[Misplaced, ...]:
         """The states that are indented wrongly."""
-        strays = self.at_containers(stray_transitions)
-        return tuple(misplaced_states(self.containers, strays)) if strays else ()
+        return tuple(misplaced_states(self.containers, self.strays)) if self.strays else ()
 
     @cached_property
     def claims(self) -> Held:
@@ -362,5 +375,8 @@ def _subtree_ends(counts: Sequence[int]) -> Sequence[int]:
 def _slots_of(
     path: str, node: Node, types: Mapping[str, StateType]
 ) -> Iterator[tuple[str, Node, CodeSlot]]:
-    if not isinstance(node, Leaf) or node.variables:
-        yield from ((path, node, slot) for slot in code_slots(node, types))
+    yield from ((path, node, slot) for slot in code_slots(node, types))
+
+
+def _has_values(node: Node) -> bool:
+    return not isinstance(node, Leaf) or bool(node.variables)

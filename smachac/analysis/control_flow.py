@@ -41,7 +41,7 @@ def is_open(node: Node) -> bool:
 
 
 def children_names(container: nodes.Container) -> frozenset[str]:
-    return frozenset(child.name for child in container.children)
+    return frozenset([child.name for child in container.children])
 
 
 def places_of(container: nodes.Container) -> Guesser:
@@ -210,6 +210,9 @@ def corrected(container: Linear) -> Linear:
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
+    if not any(unknown_outcomes(child) or strays(child, names, exits)
+               for child in container.children):  # fmt: skip
+        return container
     # An unlike name can also be a missing state: then nothing follows from it.
     meant = {name: each for name, each in meant_targets(container).items() if not each.paired}
 

@@ -166,7 +166,8 @@ def _scope(
     children = {child.name: child for child in reversed(container.children)}
     inner_containers = frozenset(name for name, c in children.items() if not isinstance(c, Leaf))
     for child in reversed(children.values()):
-        reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
+        if child.inputs or raw:
+            reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
     steps = _steps(path, container, inner, filled=filled)
     order = flow_order(steps)
     reads = {vertex: keys for vertex, keys in reads.items() if keys}
@@ -292,10 +293,14 @@ def _steps(
     each of its outcomes. One that is `filled` has none from its start past its child."""
     children = {child.name: child for child in reversed(container.children)}
     raw = isinstance(container, nodes.Iterator)
-    scopes = {name: inner.get(f"{path}/{name}") for name in children}
+    scopes = {
+        name: inner.get(f"{path}/{name}")
+        for name, child in children.items()
+        if not isinstance(child, Leaf)
+    }
 
     def writes(name: str, outcome: str) -> Writes | None:
-        return child_writes(children[name], scopes[name], outcome, raw=raw)
+        return child_writes(children[name], scopes.get(name), outcome, raw=raw)
 
     found: dict[Vertex, list[KeyStep]] = {}
     if isinstance(container, Concurrence):
@@ -309,11 +314,17 @@ def _steps(
                 if stopped is not None and result in outcome_names(container):
                     step = KeyStep(exit_vertex(result), outcome, stopped)
                     found.setdefault(child.name, []).append(step)
+    # The others write nothing, whatever their outcome is.
+    writers = {
+        child.name
+        for child in container.children
+        if raw or child.outputs or not isinstance(child, Leaf) or child.open
+    }
     for edge in edges(container):
         given: Writes | None = NOTHING
         if filled and edge.source == START and not isinstance(edge.target, str):
             continue
-        if isinstance(edge.source, str):
+        if isinstance(edge.source, str) and edge.source in writers:
             given = writes(edge.source, edge.outcome)
         if given is None:
             continue

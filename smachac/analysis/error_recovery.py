@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from collections.abc import Sequence as PathSequence
 from dataclasses import replace
+from operator import is_
 from typing import NamedTuple, cast
 
 from smachac.analysis.accesses import scripted_steps, userdata_fields
@@ -139,10 +140,10 @@ def corrected_machine(
     built: list[Container] = []
     for path, container in reversed(containers):
         children = tuple(
-            child if isinstance(child, Leaf) else built.pop() for child in container.children
+            [child if isinstance(child, Leaf) else built.pop() for child in container.children]
         )
         whole = container
-        if any(new is not old for new, old in zip(children, container.children, strict=True)):
+        if not all(map(is_, children, container.children)):
             whole = replace(container, children=children)
         built.append(correct(path, whole))
     root = cast(StateMachine, built.pop())
@@ -154,10 +155,14 @@ def with_meant_keys(container: Container) -> Container:
     code of the script reads and writes in them."""
     raw = isinstance(container, nodes.Iterator)
     children = tuple(
-        _meant(child, container, raw=raw and isinstance(child, Leaf))
-        for child in container.children
+        [
+            _meant(child, container, raw=raw and isinstance(child, Leaf))
+            if child.remaps or (isinstance(child, Leaf) and child.variables)
+            else child
+            for child in container.children
+        ]
     )
-    if all(new is old for new, old in zip(children, container.children, strict=True)):
+    if all(map(is_, children, container.children)):
         return container
     return replace(container, children=children)
 

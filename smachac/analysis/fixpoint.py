@@ -34,13 +34,14 @@ def flow_order(steps: KeySteps) -> Order:
     stack = [(START, iter(steps.get(START, ())))]
     while stack:
         vertex, leading = stack[-1]
-        following = next((step.target for step in leading if step.target not in seen), None)
-        if following is None:
+        for following, _, _ in leading:
+            if following not in seen:
+                seen.add(following)
+                stack.append((following, iter(steps.get(following, ()))))
+                break
+        else:
             left.append(vertex)
             stack.pop()
-        else:
-            seen.add(following)
-            stack.append((following, iter(steps.get(following, ()))))
     return {vertex: number for number, vertex in enumerate(reversed(left))}
 
 

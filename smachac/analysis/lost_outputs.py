@@ -258,11 +258,14 @@ def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
     read = {
         names.get(key.name, key.name)
         for child in container.children
+        if child.inputs
         for names in [remapping(child)]
         for key in child.inputs
     }
     found: list[_Kept] = []
     for child in container.children:
+        if not child.outputs:
+            continue
         renamed = {remap.key for remap in child.remaps} - {key.name for key in child.inputs}
         whole = not _is_leaf(child)
         for key in child.outputs:

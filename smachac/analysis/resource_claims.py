@@ -37,7 +37,7 @@ def claims(
     for path, container in containers:
         for child in container.children:
             keys = values.get(path, {})
-            own = (_filled(claim, child, keys) for claim in child.claims)
+            own = [_filled(claim, child, keys) for claim in child.claims]
             found.setdefault(f"{path}/{child.name}", dict.fromkeys(own, child))
     for path, container in reversed(containers):
         held = found[path]

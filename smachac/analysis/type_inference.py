@@ -127,7 +127,13 @@ class _Inference:
             path, node, around = stack.pop()
             if not isinstance(node, Leaf):
                 scope = self.container(path, node, around)
-                stack.extend((f"{path}/{each.name}", each, scope) for each in node.children[::-1])
+                stack.extend(
+                    [
+                        (f"{path}/{each.name}", each, scope)
+                        for each in node.children[::-1]
+                        if not isinstance(each, Leaf) or _has_types(each)
+                    ]
+                )
             elif around is not None:
                 self.leaf(path, node, around)
 
@@ -377,6 +383,11 @@ def _is_quoted_function(held: Variable) -> bool:
 def _kind(flow: TypeFlow) -> Type:
     """The type of a flow, for literals as a script would write it."""
     return widened(flow.type) if flow.how == "value" else flow.type
+
+
+def _has_types(leaf: Leaf) -> bool:
+    """Whether the values that a leaf reads and writes may have types."""
+    return bool(leaf.variables or leaf.inputs or leaf.outputs or leaf.open)
 
 
 def _written(leaf: Leaf) -> dict[str, list[tuple[Span, Data]]]:

@@ -120,8 +120,9 @@ def provided_keys(scope: UserdataScope) -> Provided:
     if isinstance(container, nodes.Iterator):
         keys.add(container.item_key)
     for child in container.children:
-        names = remapping(child)
-        keys.update(names.get(each.name, each.name) for each in child.outputs)
+        if child.outputs:
+            names = remapping(child)
+            keys.update(names.get(each.name, each.name) for each in child.outputs)
     leading = [step for steps in scope.steps.values() for step in steps]
     keys.update(key for step in leading for key in step.writes.perhaps)
     return Provided(frozenset(keys), any(step.writes.anything for step in leading))

@@ -288,8 +288,9 @@ def _written_in(scope: UserdataScope) -> set[str]:
     if isinstance(container, nodes.Iterator):
         found.add(container.item_key)
     for child in container.children:
-        names = remapping(child)
-        found.update(names.get(key.name, key.name) for key in child.outputs)
+        if child.outputs:
+            names = remapping(child)
+            found.update(names.get(key.name, key.name) for key in child.outputs)
     return found
 
 

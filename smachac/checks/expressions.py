@@ -86,8 +86,6 @@ def bad_expression(context: Context) -> Iterator[Finding]:
 
 
 def _bad_expressions(path: str, node: Node) -> Iterator[Finding]:
-    if isinstance(node, Leaf) and not node.variables:
-        return
     conditions = functions(node, "conditions") if isinstance(node, Leaf) else None
     compared = {code.span for code in (conditions or {}).values()}
     for expression in expressions(node):

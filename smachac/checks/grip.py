@@ -93,9 +93,11 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
               command: close
               transitions: {succeeded: succeeded, aborted: aborted, preempted: aborted}
     """
+    closing = [path for path, leaf in context.leaves_with_variables if grip_of(leaf) == "close"]
+    if len(closing) < 2:
+        return
     leaves = {path: node for path, node in context.states if isinstance(node, Leaf)}
-    closing = [path for path, leaf in leaves.items() if grip_of(leaf) == "close"]
-    if len(closing) < 2 or not any(map(comes_to_body, leaves.values())):
+    if not any(map(comes_to_body, leaves.values())):
         return
     visits = 0
     for path in closing:

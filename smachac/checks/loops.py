@@ -238,11 +238,11 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
 def _goes_back(container: Linear) -> bool:
     """Whether a transition leads to its own state or to one above it, as every loop needs."""
     order = {child.name: number for number, child in enumerate(container.children)}
-    return any(
-        order.get(step.target, len(order)) <= number
-        for number, child in enumerate(container.children)
-        for step in child.transitions
-    )
+    for number, child in enumerate(container.children):
+        for step in child.transitions:
+            if order.get(step.target, len(order)) <= number:
+                return True
+    return False
 
 
 def _waiting(context: Context) -> frozenset[str]:

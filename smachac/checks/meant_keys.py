@@ -226,8 +226,9 @@ def used_in(scope: UserdataScope) -> set[str]:
     it iterates, and the outputs of the container."""
     found = {*scope.reads.get(START, ()), *scope.outputs}
     for child in scope.container.children:
-        names = remapping(child)
-        found.update(names.get(key.name, key.name) for key in child.inputs)
+        if child.inputs:
+            names = remapping(child)
+            found.update(names.get(key.name, key.name) for key in child.inputs)
         if isinstance(child, Leaf) and child.class_facts is not None:
             found.update(word.text for word in child.class_facts.reads)  # SM310
     return found

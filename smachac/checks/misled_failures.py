@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, children_names, is_open, strays
+from smachac.analysis.control_flow import Linear, children_names, is_open
 from smachac.analysis.fixpoint import flow_order, may_be_unset
 from smachac.analysis.unset_reads import Missing
 from smachac.checks.outcomes import unhandled
@@ -76,9 +76,11 @@ def linear_outcomes(container: Linear) -> frozenset[str] | None:
     exits = frozenset(outcome_names(container))
     found: set[str] = set()
     for child in container.children:
-        if strays(child, names, exits) or unhandled(child):
+        if unhandled(child):
             return None
-        found.update(step.target for step in child.transitions)
+        found.update([step.target for step in child.transitions])
+    if not found <= names | exits:
+        return None
     handled = [
         frozenset(step.outcome for step in child.transitions)
         for child in container.children

@@ -94,7 +94,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               transitions: {done: stacked}
     """
     yield from misdeclared(context, "container", "child")
-    lost = context.at_containers(_lost)
+    lost = context.at_containers(_lost) if context.strays else ()
     misplaced = context.misplaced if lost else ()
     for each in misplaced:
         yield misplaced_finding(each)
@@ -355,9 +355,10 @@ def _unknown_outcomes(path: str, container: Container) -> Iterator[Finding]:
         yield from _unknown_loops(path, container)
     elif not isinstance(container, Concurrence):
         for child in container.children:
-            yield from _unknown_steps(path, child)
+            if unknown := unknown_outcomes(child):
+                yield from _unknown_steps(path, child, unknown)
     for child in container.children:
-        if isinstance(child, Leaf):
+        if isinstance(child, Leaf) and child.variables:
             yield from unknown_endings(f"{path}/{child.name}", child)
 
 
@@ -371,10 +372,9 @@ def _catch_all(child: Node, step: Transition) -> str | None:
     return f"each outcome has its own transition: write `{rows}`"
 
 
-def _unknown_steps(path: str, child: Node) -> Iterator[Finding]:
-    unknown = unknown_outcomes(child)
-    if not unknown:
-        return
+def _unknown_steps(
+    path: str, child: Node, unknown: list[tuple[Transition, str | None]]
+) -> Iterator[Finding]:
     guess = guesser([*outcome_names(child), EXCEPTIONS])
     default = missing_default(child)
     for step, known_meant in unknown:

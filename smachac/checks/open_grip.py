@@ -83,12 +83,12 @@ def open_gripper(context: Context) -> Iterator[Finding]:
               template: CheckGraspState
               transitions: {succeeded: succeeded, aborted: aborted}
     """
+    if not is_simulated(context):
+        return
     leaves = {path: node for path, node in context.states if isinstance(node, Leaf)}
     types = context.machine.state_types
     checking = {name for name, type_ in types.items() if type_.checks_grasp}
     checks = [path for path, leaf in leaves.items() if leaf.type in checking]
-    if not is_simulated(context):
-        return
     if not checks:
         yield from _never_closed(context, leaves)
     visits, reported = 0, set()

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import children_names, strays, unknown_outcomes
-from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.concurrence import has_dead_rule
 from smachac.checks.event_names import name_fault, own_work, work
 from smachac.checks.messages import other_place
@@ -530,7 +529,7 @@ def unknown_event(context: Context) -> Iterator[Finding]:
     faults = [(each.property, fault) for each in _with(context, "unclear") for fault in each.faults]
     if not faults:
         return
-    lost = {each.step.target for each in context.at_containers(stray_transitions)}  # SM101
+    lost = {each.step.target for each in context.strays}  # SM101
     alike: dict[tuple[str, ...], list[tuple[Property, NameFault]]] = {}
     for given, fault in faults:
         atom = fault.atom

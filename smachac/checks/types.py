@@ -646,11 +646,12 @@ def _other_change(clash: Clash) -> str:
 
 def _long_form(clash: Clash) -> str | None:
     """The help for a reader whose record has the fields of an interface, such as `{type: float}`,
-    while the value is no mapping: the type was meant."""
+    while the value is no mapping, or has no field `type`: the type was meant."""
     wanted = fields(clash.misfit.wanted)
     if "type" not in wanted or not KEY_FIELDS.issuperset(wanted) or clash.cell.role != "input":
         return None
-    if clash.misfit.given.name in ("mapping", "record", "dict"):
+    given = clash.misfit.given
+    if given.name in ("mapping", "dict") or (given.name == "record" and "type" in fields(given)):
         return None
     return (
         f"write `{clash.cell.key}: {wanted['type']}` in the `input_keys` of {_owner(clash.cell)}:"

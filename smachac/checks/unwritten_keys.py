@@ -17,7 +17,7 @@ from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.message_types import Definitions
-from smachac.ir.nodes import Container, Key, Leaf, Node, StateType
+from smachac.ir.nodes import Container, Key, Leaf, StateType
 from smachac.ir.traversal import remapping
 
 
@@ -46,12 +46,11 @@ def _unwritten_in(
     if isinstance(container, nodes.Iterator) and not container.sugar:
         return  # its child can use keys that it does not declare
     for child in container.children:
-        yield from _unwritten(f"{path}/{child.name}", child, types)
+        if child.outputs and isinstance(child, Leaf) and not (child.open or child.stand_in):
+            yield from _unwritten(f"{path}/{child.name}", child, types)
 
 
-def _unwritten(path: str, leaf: Node, types: Mapping[str, StateType]) -> Iterator[Unwritten]:
-    if not isinstance(leaf, Leaf) or leaf.open or leaf.stand_in or not leaf.outputs:
-        return
+def _unwritten(path: str, leaf: Leaf, types: Mapping[str, StateType]) -> Iterator[Unwritten]:
     type_ = types.get(leaf.type)
     part = received_part(leaf)
     if part is not None and type_ is not None:

@@ -338,7 +338,9 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
     becomes the empty name, as a look-up that fails does; so a key has a value all the same."""
     pairs = []
     entries = tree.entries if isinstance(tree, Map) else as_map(tree, report)
-    if isinstance(tree, Map) and tree.span.text.startswith("{"):
+    # Most keys are words without signs: a transition is no single word.
+    is_word = not entries or str(entries[0].key.value).isidentifier()
+    if not is_word and isinstance(tree, Map) and tree.span.text.startswith("{"):
         arrows = [_arrows(each.key) for each in entries if "\n" not in each.key.span.text]
         if arrows and len(arrows) == len(entries) and all(len(each) == 1 for each in arrows):
             entries = tuple(each[0] for each in arrows)
@@ -424,8 +426,6 @@ def _of_type(entry: Entry, report: Report) -> Entry:
     key, parts = entry.key.span.text, {part.key.value: part.value for part in value.entries}
     type_, preset = parts.get("type"), parts.get("value")
     help = None
-    if isinstance(type_, Map) and "\n" not in type_.span.text:
-        type_ = Scalar(type_.span.text, True, *type_.span)
     if isinstance(type_, Scalar):
         help = f"write `{key}: {type_.span.text}`"
     if help and preset is not None and "\n" not in preset.span.text:

@@ -254,8 +254,7 @@ def _inner_words(state: State) -> Iterator[Word]:
     elif state.owner == "Iterator":
         yield from (to for _, to in state.final_outcome_map)
     elif state.owner != "state":
-        for child in state.states:
-            yield from (target for _, target in child.transitions)
+        yield from [target for child in state.states for _, target in child.transitions]
         if state.on_error is not None:
             yield state.on_error
         if state.initial is not None:

@@ -27,10 +27,19 @@ _COLLECTIONS = frozenset(
 )
 """The fields that are certain in a mapping that may have any names, if the state has none."""
 
-_WITHOUT_NAMES = frozenset(["params", "states", "properties", "types", *_OF_NAMES, *_COLLECTIONS])
+_WITHOUT_FIELDS = frozenset(
+    ["params", "states", "properties", "types", *_OF_NAMES, *_COLLECTIONS]
+).difference(["retry", "for_each"])
 """The fields that may contain anything, or whose parts are no fields of a state for other rules."""
 
-_SUGAR = ("retry", "for_each")
+_FIELDS = frozenset(
+    name
+    for row in schema.VARIABLES.values()
+    if row.owners != {"base"}
+    for name in (row.name, row.short)
+    if name
+)
+"""The short and long names of the fields of states."""
 
 _CODE = ("callbacks", "conditions")
 """The roles of variables that are mappings of declared names to code."""
@@ -76,9 +85,9 @@ def with_outer_fields(name: Word, own: dict[str, Entry], report: Report) -> dict
                 if id(each) in found or not (_is_text(each.value) or look_up_word(each.value))
             }
         own = _moved(name, own, part, outer, report)
-    for part in [key for key, entry in own.items() if isinstance(entry.value, Map)]:
+    for part in [key for key in own if key not in _WITHOUT_FIELDS]:
         tree = own[part].value
-        if not isinstance(tree, Map) or (part in _WITHOUT_NAMES and part not in _SUGAR):
+        if not isinstance(tree, Map):
             continue
         outer = {key: each for each in tree.entries
                  if (key := str(each.key.value)) in _COLLECTIONS and key not in own
@@ -161,13 +170,15 @@ def _with_outer_names(
 ) -> dict[str, Entry]:
     """The fields with those of one value that are in a mapping of declared outcomes or keys."""
     fields, variables = _ONE_NAME[owner], type_.variables
-    parts = [key for key, each in variables.items() if key in own and each.role in _CODE]
-    for part in ("transitions", "outcome_map", *sorted(parts)):
+    parts = sorted(
+        [key for key, each in variables.items() if key in own and each.role in _CODE]
+    )  # fmt: skip
+    for part in ("transitions", "outcome_map", *parts):
         entry = own.get(part)
         if entry is None or not isinstance(entry.value, Map):
             continue
-        outer = {key: each for each in entry.value.entries
-                 if ((key := str(each.key.value)) in fields or key in variables)
+        outer = {str(key): each for each in entry.value.entries
+                 if ((key := each.key.value) in fields or key in variables)
                  and key not in own and _is_one_value(each.value)}  # fmt: skip
         if outer:
             outer = {key: each for key, each in outer.items() if key not in _names(own, type_)}
@@ -240,13 +251,10 @@ def _is_twice(item: Diagnostic, spans: Set[Span]) -> bool:
 def _outer_fields(tree: Map, own: Mapping[str, Entry]) -> Iterator[tuple[str, Entry]]:
     """The entries of a mapping of names that are fields of the state, by long name: none of these
     values is a name."""
-    for entry in tree.entries:
-        name = str(entry.key.value)
+    for entry in [each for each in tree.entries if each.key.value in _FIELDS]:
+        name, value = str(entry.key.value), entry.value
         key = schema.LONG.get(name, name)
-        row = schema.VARIABLES.get(key)
-        if row is None or row.owners == {"base"}:
-            continue
-        value = entry.value
+        row = schema.VARIABLES[key]
         is_time = key == "timeout" and duration(value, []) is not None
         is_type = key in _NAMED and _NAMED.isdisjoint(own) and _is_text(value)
         has_shape = _has_shape(row.shape, value) and len(name) > 1

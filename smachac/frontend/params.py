@@ -121,7 +121,7 @@ def texts_meant(
     """The variables of a state type that are texts, but have lists in which a look-up is meant,
     with their texts."""
     found: dict[str, Entry] = {}
-    for key, entry in own.items() if scope else ():
+    for key, entry in own.items():
         held = type_.variables.get(key) if isinstance(entry.value, Seq) else None
         word = _lone_word(entry.value, scope) if held is not None else None
         if held is not None and word is not None and _is_single(held.type):

@@ -138,7 +138,7 @@ class _Environment:
     @property
     def via(self) -> tuple[Span, ...]:
         """The spans of the calls."""
-        return tuple(span for _, span in self.calls)
+        return tuple([span for _, span in self.calls]) if self.calls else ()
 
 
 def resolve(
@@ -295,7 +295,8 @@ class _Resolver:
         type_, owner = self.type_of(name, entries, role, around)
         entries = with_outer_variables(name, entries, owner, type_, self.report)
         entries |= self.lists(own, scope, type_)
-        entries |= texts_meant(own, scope, type_, self.report)
+        if scope:
+            entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_, self.report)
         self.uses.type(type_)
         if scope:

@@ -69,6 +69,13 @@ _BASE_VARIABLES = ("node_name", "function_name", "manifest")
 """The fields of the base that are variables of every base type."""
 
 
+_ONLY_OF: Mapping[str, frozenset[str]] = {
+    kind: frozenset(row.name for row in schema.VARIABLES.values() if row.owners == {kind})
+    for kind in schema.CONTAINERS.values()
+}
+"""The fields that only one kind of container has."""
+
+
 def meant_container(
     name: Word, word: Word, kind: ContainerKind, entries: Mapping[str, Entry], report: Report
 ) -> ContainerKind:
@@ -81,11 +88,13 @@ def meant_container(
     """
     rows = [schema.VARIABLES[key] for key in entries if key in schema.VARIABLES]
     others = [row for row in rows if row.owners and kind not in row.owners]
+    if not others and (kind == "StateMachine" or not entries.keys().isdisjoint(_ONLY_OF[kind])):
+        return kind
     shared: list[ContainerKind] = []
     for each in schema.CONTAINERS.values():
         if all(row.owners.issuperset([each]) for row in others):
             shared.append(each)
-    own = {row.name for row in schema.VARIABLES.values() if row.owners == {kind}}
+    own = _ONLY_OF[kind]
     meant: ContainerKind = kind
     why = ""
     leads_inside = _leads_inside(entries.get("states"))

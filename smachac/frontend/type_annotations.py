@@ -208,11 +208,9 @@ def _is_type(tree: Tree, aliases: Aliases) -> bool:
 
 
 def _key_type(tree: Tree, aliases: Aliases, report: Report) -> Tree:
-    """The type of a key. A mapping with the fields of an interface stays, also one with `type`
-    alone, which is no record: the reader of the keys reports it."""
+    """The type of a key. A mapping with the fields of an interface stays: the reader of the keys
+    reports it."""
     if isinstance(tree, Map) and tree.get("type") is not None:
-        if len(tree.entries) == 1:
-            return tree
         text = as_record(tree)
         if isinstance(text, Scalar) and parse_type(_filled(str(text.value), aliases)) is None:
             return tree

@@ -470,7 +470,7 @@ class _Builder:
             start = end = self.end
         self.end = end
         value: bool | int | float | str | None = text
-        if event.tag is not None:
+        if event.ctag is not None:  # `tag` makes a text of it
             self._check_tag(event)
         elif plain:
             value = _resolve(text)
@@ -512,7 +512,7 @@ class _Builder:
 
     def _open(self, event: Any) -> None:
         start = event.start_mark.index
-        if event.tag is not None:
+        if event.ctag is not None:
             self._unknown_tag(event)
         depth = len(self.stack)
         if depth >= MAX_DEPTH:

@@ -65,13 +65,12 @@ def edges(container: Container) -> Iterator[Edge]:
     """
     match container:
         case nodes.StateMachine() | nodes.Sequence():
-            yield from _transition_edges(container)
+            return _transition_edges(container)
         case Concurrence():
-            yield from _concurrence_edges(container)
+            return _concurrence_edges(container)
         case nodes.Iterator():
-            yield from _iterator_edges(container)
-        case _:
-            assert_never(container)
+            return _iterator_edges(container)
+    return assert_never(container)
 
 
 def _live_transitions(child: Node) -> Sequence[Transition]:
@@ -208,8 +207,7 @@ def can_end(container: Container) -> frozenset[str]:
     for child in container.children:
         steps = _live_transitions(child)
         handled = {step.outcome for step in steps}
-        loose = any(outcome.name not in handled for outcome in child.outcomes)
-        if loose or (_is_open(child) and not steps):
+        if not handled.issuperset(outcome_names(child)) or (_is_open(child) and not steps):
             leaving.append(child.name)
         for step in steps:
             if leads_to_child(step, names):

@@ -137,8 +137,6 @@ def _names_used(
 ) -> Iterator[_Use | _Attribute | Word]:
     """The names that the code of a state uses from its module, the attributes that modules of the
     library do not have, and the names of types of messages."""
-    if isinstance(node, Leaf) and not node.variables:
-        return
     for word in _message_types(node, types):
         if word.text.isidentifier() and not hasattr(builtins, word.text):
             yield word

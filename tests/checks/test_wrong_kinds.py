@@ -166,20 +166,24 @@ states:
     assert reported(files) == [("SM311", '"pose"', "did you mean `at`?")]
 
 
-def test_the_long_form_of_a_key_in_a_script() -> None:
+def test_the_long_form_of_a_record_in_a_script() -> None:
     text = """\
 name: sm
 outcomes: [done]
-userdata: {place: [0.6, 0.1, -0.3]}
+userdata: {part: {id: 1, at: [0.6, 0.1, -0.3]}}
 states:
   - A:
       template: ScriptedState
       outcomes: [done]
-      input_keys: {place: {type: Point}}
+      input_keys: {part: {type: {id: int, at: Point}}}
       transitions: {done: done}
 """
-    help = "write `place: Point`: only userdata and interfaces have fields beside the type"
-    assert reported({"main.yml": text}) == [("SM004", "{type: Point}", help)]
+    help = (
+        "write `part: {id: int, at: Point}` in the `input_keys` of `A`: only userdata and"
+        " interfaces have the fields `type` and `value`"
+    )
+    found = reported({"main.yml": text})
+    assert found == [("SM304", "{id: 1, at: [0.6, 0.1, -0.3]}", help)]
 
 
 DRIVE = """\
