@@ -91,6 +91,7 @@ from smachac.frontend.unknown_templates import (
     missing_template,
     missing_template_help,
     one_for_each_template,
+    type_of_other_framework,
     types_with_the_names,
     with_meant_call,
 )
@@ -660,9 +661,13 @@ class _Resolver:
             first = word.text not in self.unknown
             self.unknown.add(word.text)
             fitting: tuple[tuple[str, ...], ...] = ()
+            foreign = ""
             if first and near is None and not other and not role:
+                foreign = type_of_other_framework(word.text, entries, names, self.other_type)
                 fitting = types_with_the_names(entries, word.text, names, self.other_type)
-            self.not_found(template_not_found(word, searched, known, other, *fitting))
+            self.not_found(
+                template_not_found(word, searched, known, other, *fitting, foreign=foreign)
+            )
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
                 return StateType(name=meant, kind="container"), meant

@@ -56,6 +56,26 @@ def types_with_the_names(
     return (found, used) if len(found) <= MOST_MEANT else ((), ())
 
 
+def type_of_other_framework(
+    word: str,
+    entries: Mapping[str, Entry],
+    names: Sequence[str],
+    find: Callable[[str], StateType | None],
+) -> str:
+    """The help for a state whose `template` is the name of a type in another framework: the type
+    here, and the fields and outcomes of the state that have another name; empty without one."""
+    if len(names) > MOST_TYPES:
+        return ""
+    type_ = next((each for each in map(find, names) if each and word in each.other_names), None)
+    if type_ is None:
+        return ""
+    steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    used = [*entries, *(outcome.text for outcome, _ in steps)]
+    renamed = type_.other_names[word]
+    changes = [f"`{renamed[each]}` in place of `{each}`" for each in used if each in renamed]
+    return f"write `template: {type_.name}`" + (f", with {', '.join(changes)}" if changes else "")
+
+
 def with_meant_call(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
     """The fields of a state with neither `template` nor `script`, in which a misspelt `script` is
     corrected, which is reported (SM003)."""
@@ -145,6 +165,8 @@ def one_for_each_template(found: Sequence[Diagnostic]) -> Report:
             continue
         first, *others = places[item.finding.arguments[0]]
         if item is first:
+            # The calls of one sub-script lead to one place.
+            others = list({each.span: each for each in others if each.span != item.span}.values())
             shown = (
                 Related(span=each.span, message="the same here") for each in others[:MOST_PLACES]
             )

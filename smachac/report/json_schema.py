@@ -286,6 +286,10 @@ def interface_schema() -> Schema:
         "claims": names,
         **dict.fromkeys(FLAGS, flag | {"default": False}),
         "adds_frames": names,
+        "other_names": {
+            "type": "object",
+            "additionalProperties": {"type": "object", "additionalProperties": text},
+        },
         "code": {"type": "object", "additionalProperties": {"anyOf": [text, class_]}},
     }
     whole = {"title": "The interface of a state type of smachac"}

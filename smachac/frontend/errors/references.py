@@ -170,6 +170,7 @@ def template_not_found(
     other: str = "",
     fitting: Sequence[str] = (),
     used: Sequence[str] = (),
+    foreign: str = "",
 ) -> Finding:
     """The type of a state has neither an interface nor a template in any folder.
 
@@ -197,8 +198,8 @@ def template_not_found(
         span=word.span,
         message=f"the template `{word.text}` was not found",
         arguments=(word.text,),
-        help=help,
-        edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
+        help=foreign or help,
+        edits=() if foreign else respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 
