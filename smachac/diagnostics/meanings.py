@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 MEANINGS = (
-    frozenset(["open", "opened", "opening", "release", "released", "ungrasp", "ungrip", "drop"]),
+    frozenset(
+        ["open", "opened", "opening", "release", "released", "ungrasp", "ungrip", "unclamp", "drop"]
+    ),
     frozenset(["close", "closed", "closing", "shut", "clamp", "grab", "grasp", "grip", "hold"]),
     frozenset(["add", "append", "attach", "insert"]),
     frozenset(["remove", "delete", "detach", "erase"]),

@@ -548,7 +548,7 @@ class _Resolver:
             known = [*around.scope, *(str(each.key.value) for each in _entries_of(params))]
             for script, given in called:
                 findings = params_at_call(
-                    findings, name.text, script, given, known, used, self.settled
+                    findings, name.text, script, given, known, used, self.settled, self.uses.trees
                 )
             self.report[before:] = findings
         return state
