@@ -1,0 +1,86 @@
+"""Helps that name the one repair that the files decide."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+
+SCALE = """\
+{% block meta %}
+name: Scale
+language: Python
+framework: SMACH
+type: State
+input_keys:
+- tare:
+    description: Weight of the carrier.
+    type: float
+output_keys:
+- net:
+    description: Weight without the carrier.
+    type: float
+outcomes:
+- succeeded
+{% endblock meta %}
+{% extends "State.tpl.py" %}
+{% block class_defs %}
+class Scale(smach.State):
+    def __init__(self, input_keys=['tare'], output_keys=['net'], callbacks={}):
+        smach.State.__init__(self, input_keys=input_keys, output_keys=output_keys,
+                             outcomes=['succeeded'])
+
+    def execute(self, userdata):
+        userdata.weight = 10.0 - userdata.tare
+        return 'succeeded'
+{% endblock class_defs %}
+"""
+
+WEIGH = """\
+name: sm
+outcomes: [succeeded]
+userdata: {tare: 1.5}
+output_keys: [net]
+states:
+  - READ: {template: Scale, input_keys: [tare], output_keys: [net], transitions: {succeeded: SHOW}}
+  - SHOW: {template: PrintUserdataState, input_keys: [net], transitions: {succeeded: succeeded}}
+"""
+
+
+def test_a_key_that_a_template_class_sets_in_place_of_its_output() -> None:
+    files = {"main.yml": WEIGH, "templates/Scale.tpl.py": SCALE}
+    assert reported(files) == [("SM308", "weight", "write `userdata.net`")]
+
+
+MONITOR = """\
+name: sm
+outcomes: [succeeded, stopped]
+properties:
+  - never: {after: "WORK:unsafe", enter: GO_ON}
+states:
+  - WORK:
+      template: Concurrence
+      outcomes: [done, unsafe, preempted]
+      default_outcome: done
+      join: any
+      outcome_map:
+        preempted: {WATCH: preempted, DRIVE: preempted}
+        done: {DRIVE: arrived}
+      transitions: {done: GO_ON, unsafe: stopped, preempted: stopped}
+      states:
+        - WATCH: {template: ScriptedState, outcomes: [WATCHED, preempted]}
+        - DRIVE: {template: ScriptedState, outcomes: [arrived, lost, preempted]}
+  - GO_ON: {template: ScriptedState, outcomes: [ok], transitions: {ok: succeeded}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("watched", "condition"),
+    [("invalid, valid", "invalid"), ("unsafe, odd", "unsafe"), ("odd", "odd"), ("odd, even", None)],
+)
+def test_the_condition_of_a_lost_rule(watched: str, condition: str | None) -> None:
+    found = reported({"main.yml": MONITOR.replace("WATCHED", watched)})
+    ((code, text, help),) = [each for each in found if each[0] != "SM408"]
+    assert (code, text) == ("SM203", "unsafe")
+    rule = f"write the rule `unsafe: {{WATCH: {condition}}}` in `outcome_map`"
+    assert str(help).startswith(rule if condition else "add a rule for `unsafe`")
