@@ -220,6 +220,13 @@ FLAGS = ("blocking", "stand_in", "simulation", "checks_grasp")
 """The fields of an interface that are true or false."""
 
 
+OTHER_NAMES: Schema = {
+    "type": "object",
+    "additionalProperties": {"type": "object", "additionalProperties": {"type": "string"}},
+}
+"""The names of a type in other frameworks, each with words there and here."""
+
+
 def interface_schema() -> Schema:
     """The schema of the interfaces of state types."""
 
@@ -286,10 +293,7 @@ def interface_schema() -> Schema:
         "claims": names,
         **dict.fromkeys(FLAGS, flag | {"default": False}),
         "adds_frames": names,
-        "other_names": {
-            "type": "object",
-            "additionalProperties": {"type": "object", "additionalProperties": text},
-        },
+        "other_names": OTHER_NAMES,
         "code": {"type": "object", "additionalProperties": {"anyOf": [text, class_]}},
     }
     whole = {"title": "The interface of a state type of smachac"}

@@ -84,3 +84,49 @@ def test_the_condition_of_a_lost_rule(watched: str, condition: str | None) -> No
     assert (code, text) == ("SM203", "unsafe")
     rule = f"write the rule `unsafe: {{WATCH: {condition}}}` in `outcome_map`"
     assert str(help).startswith(rule if condition else "add a rule for `unsafe`")
+
+
+LATCH = """\
+name: sm
+outcomes: [succeeded, aborted]
+properties:
+  - never: {after: ATTACH, until: DETACH, enter: DOCK}
+states:
+  - ATTACH: {template: Latch, closed: true, transitions: {succeeded: UNLATCH, aborted: DETACH_ABORT}}
+  - UNLATCH: {template: Latch, closed: false, transitions: {succeeded: DOCK, aborted: aborted}}
+  - DOCK: {template: Latch, closed: true, transitions: {succeeded: succeeded, aborted: aborted}}
+  - DETACH_ABORT: {template: Latch, closed: CLOSED, transitions: {succeeded: aborted, aborted: aborted}}
+"""
+LATCH_TYPE = "name: Latch\nvariables: {closed: bool}\noutcomes: {succeeded: {}, aborted: {}}\n"
+
+
+def test_an_event_is_no_state_after_a_failure() -> None:
+    files = {"main.yml": LATCH.replace("CLOSED", "false"), "templates/Latch.yml": LATCH_TYPE}
+    help = "write `UNLATCH`: it does the same as `DETACH_ABORT`"
+    assert [each for each in reported(files) if each[0] == "SM703"] == [("SM703", "DETACH", help)]
+    files["main.yml"] = LATCH.replace("CLOSED", "true")
+    ((_, _, other),) = [each for each in reported(files) if each[0] == "SM703"]
+    assert other is not None
+    assert not other.startswith("did you mean `DETACH_ABORT`")
+
+
+BATTERY = """\
+name: sm
+template: ROSBase
+outcomes: [full, low, preempted]
+states:
+  - WATCH:
+      template: MonitorState
+      topic: /battery
+      msg_type: sensor_msgs/BatteryState
+      cond_cb: 'lambda userdata, message: message.FIELD > 0.25'
+      transitions: {valid: full, invalid: low, preempted: preempted}
+"""
+
+
+@pytest.mark.parametrize("field", ["charge_percent", "level", "percent", "prcentage"])
+def test_a_field_with_a_word_of_the_same_meaning(field: str) -> None:
+    found = reported({"main.yml": BATTERY.replace("FIELD", field)})
+    assert [each for each in found if each[0] == "SM512"] == [
+        ("SM512", field, "did you mean `percentage`?")
+    ]
