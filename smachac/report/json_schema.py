@@ -220,6 +220,8 @@ FLAGS = ("blocking", "stand_in", "simulation", "checks_grasp")
 """The fields of an interface that are true or false."""
 
 
+INTERFACE_TITLE = "The interface of a state type of smachac"
+
 OTHER_NAMES: Schema = {
     "type": "object",
     "additionalProperties": {"type": "object", "additionalProperties": {"type": "string"}},
@@ -296,8 +298,7 @@ def interface_schema() -> Schema:
         "other_names": OTHER_NAMES,
         "code": {"type": "object", "additionalProperties": {"anyOf": [text, class_]}},
     }
-    whole = {"title": "The interface of a state type of smachac"}
-    return {"$schema": DRAFT, **whole, **facts(schema.INTERFACE_FIELDS, shapes)}
+    return {"$schema": DRAFT, "title": INTERFACE_TITLE, **facts(schema.INTERFACE_FIELDS, shapes)}
 
 
 def project_schema(codes: Mapping[str, Code]) -> Schema:

@@ -92,10 +92,16 @@ outcomes: [succeeded, aborted]
 properties:
   - never: {after: ATTACH, until: DETACH, enter: DOCK}
 states:
-  - ATTACH: {template: Latch, closed: true, transitions: {succeeded: UNLATCH, aborted: DETACH_ABORT}}
+  - ATTACH:
+      template: Latch
+      closed: true
+      transitions: {succeeded: UNLATCH, aborted: DETACH_ABORT}
   - UNLATCH: {template: Latch, closed: false, transitions: {succeeded: DOCK, aborted: aborted}}
   - DOCK: {template: Latch, closed: true, transitions: {succeeded: succeeded, aborted: aborted}}
-  - DETACH_ABORT: {template: Latch, closed: CLOSED, transitions: {succeeded: aborted, aborted: aborted}}
+  - DETACH_ABORT:
+      template: Latch
+      closed: CLOSED
+      transitions: {succeeded: aborted, aborted: aborted}
 """
 LATCH_TYPE = "name: Latch\nvariables: {closed: bool}\noutcomes: {succeeded: {}, aborted: {}}\n"
 
