@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from smachac.diagnostics.source import Source
+from smachac.driver import analyse
+from smachac.frontend.loader import memory_library
 from tests.checks.test_first_scripts import reported
+from tests.trust.project_text import BUILT_IN
 
 SCALE = """\
 {% block meta %}
@@ -136,3 +140,94 @@ def test_a_field_with_a_word_of_the_same_meaning(field: str) -> None:
     assert [each for each in found if each[0] == "SM512"] == [
         ("SM512", field, "did you mean `percentage`?")
     ]
+
+
+SORT = """\
+name: sm
+outcomes: [succeeded]
+userdata: {level: 0.5}
+states:
+  - LOOK: {template: Look,REMAPPING transitions: {seen: LOG}}
+  - LOG:
+      template: PrintUserdataState
+      input_keys: [part_score, level]
+      transitions: {succeeded: succeeded}
+"""
+LOOK_TYPE = "name: Look\noutput_keys: {score: float, place: Pose}\noutcomes: {seen: {}}\n"
+
+
+@pytest.mark.parametrize(
+    ("remapping", "help"),
+    [
+        ("", "write `remapping: {score: part_score}` in `LOOK`, whose `score` nothing reads"),
+        (" remapping: {place: spot},",
+         "add `score: part_score` to the `remapping` of `LOOK`, whose `score` nothing reads"),
+    ],
+)  # fmt: skip
+def test_the_output_that_is_not_remapped(remapping: str, help: str) -> None:
+    files = {"main.yml": SORT.replace("REMAPPING", remapping), "templates/Look.yml": LOOK_TYPE}
+    found = [each for each in reported(files) if each[0] == "SM301"]
+    assert found == [("SM301", "part_score", help)]
+
+
+POUR = """\
+name: sm
+outcomes: [succeeded]
+userdata: {level: 0.8}
+states:
+  - POUR: {template: Pour, remapping: {amount: poured}, transitions: {full: SHOW}}
+  - SHOW: {template: PrintUserdataState, input_keys: [poured], transitions: {succeeded: succeeded}}
+"""
+POUR_TYPE = """\
+name: Pour
+input_keys: {fill: float}
+output_keys: {amount: float}
+outcomes: {full: {}}
+"""
+
+
+def test_an_entry_that_a_remapping_lacks() -> None:
+    found = reported({"main.yml": POUR, "templates/Pour.yml": POUR_TYPE})
+    ((code, _, help),) = [each for each in found if each[0] == "SM301"]
+    assert str(help).startswith(
+        "if `POUR` must read `level`, add `fill: level` to the `remapping` of `POUR`; otherwise"
+    ), code
+
+
+VACUUM = """\
+{% extends "State.tpl.py" %}
+{% block class_defs %}
+class Vacuum(smach.State):
+    def __init__(self, pressure):
+        super().__init__(outcomes=["done"], input_keys=["offset"])
+        self.pressure = pressure
+
+    def execute(self, userdata):
+        print(self.pressure, userdata.offset)
+        return "done"
+{% endblock class_defs %}
+{% block body %}
+{{ add(class_name, pressure, offset) }}
+{% endblock body %}
+"""
+VACUUM_TYPE = """\
+name: Vacuum
+variables: {pressure: float}
+input_keys: {offset: float}
+outcomes: {done: {}}
+"""
+SUCK = """\
+name: sm
+outcomes: [done]
+userdata: {offset: 0.1}
+states:
+  - SUCK: {template: Vacuum, pressure: 0.5, transitions: {done: done}}
+"""
+
+
+def test_a_key_among_the_arguments_of_a_template() -> None:
+    files = {"templates/Vacuum.tpl.py": VACUUM, "templates/Vacuum.yml": VACUUM_TYPE}
+    library = memory_library({"main.yml": SUCK, **files}, BUILT_IN)
+    (found,) = analyse(Source("main.yml", SUCK), library, [], render=True).report
+    assert (found.code, found.span.text) == ("SM605", "offset")
+    assert str(found.help).startswith("write `{{ add(class_name, pressure) }}`: `offset` is an input key")

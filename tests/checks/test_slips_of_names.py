@@ -384,7 +384,7 @@ states:
     [
         (
             "found_pose",
-            "write `remapping: {pose: found_pose}` at `LOOK`, whose `pose` nothing reads",
+            "write `remapping: {pose: found_pose}` in `LOOK`, whose `pose` nothing reads",
         ),
         ("target", None),
     ],
