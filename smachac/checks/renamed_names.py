@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from pathlib import PurePath
 from typing import Literal, NamedTuple
 
 from smachac.checks.messages import other_place
@@ -42,4 +43,10 @@ def renamed_in_interface(
     places = other_place(old.span, f"`{leaf.type}` declares it here")
     places += tuple(Related(span=each.span, message="also here") for each in uses[1:])
     help = f"write `{new}` in place of `{old.text}`, also where `{leaf.type}` declares it, or"
-    return Renamed(old.text, (uses[0],), f"{help} correct the interface", places)
+    names = {"outcomes": leaf.outcomes, "input_keys": leaf.inputs, "output_keys": leaf.outputs}
+    declared_at = next((each.span for each in names[part] if each.name == new), leaf.span)
+    file = PurePath(declared_at.source.name)
+    other = "correct the interface"
+    if file.name.partition(".")[0] == leaf.type:
+        other = f"write `{old.text}` in place of `{new}` in `{file.name}`"
+    return Renamed(old.text, (uses[0],), f"{help} {other}", places)

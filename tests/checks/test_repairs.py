@@ -230,4 +230,58 @@ def test_a_key_among_the_arguments_of_a_template() -> None:
     library = memory_library({"main.yml": SUCK, **files}, BUILT_IN)
     (found,) = analyse(Source("main.yml", SUCK), library, [], render=True).report
     assert (found.code, found.span.text) == ("SM605", "offset")
-    assert str(found.help).startswith("write `{{ add(class_name, pressure) }}`: `offset` is an input key")
+    assert str(found.help).startswith(
+        "write `{{ add(class_name, pressure) }}`: `offset` is an input key"
+    )
+
+
+LOOP = """\
+name: sm
+outcomes: [done]
+userdata: {parts: [1, 2]}
+states:
+  - SHOW:
+      template: PrintUserdataState
+      input_keys: [part]
+      for_each: {FIELDS}
+      transitions: {succeeded: done}
+"""
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [
+        ("it: parts, it_label: part",
+         [("SM003", "it", "write `for_each: {in: parts, item: part}`")]),
+        ("it: parts, item: part", [("SM003", "it", "did you mean `in`?")]),
+    ],
+)  # fmt: skip
+def test_the_words_of_an_iterator_in_for_each(
+    fields: str, expected: list[tuple[str, str, str]]
+) -> None:
+    assert reported({"main.yml": LOOP.replace("FIELDS", fields)}) == expected
+
+
+MEASURE = """\
+import smach
+
+
+class Measure(smach.State):
+    def __init__(self):
+        super().__init__(outcomes=["measured", "no_image"])
+
+    def execute(self, userdata):
+        return "no_image" if userdata is None else "measured"
+"""
+
+
+def test_the_second_repair_of_a_renamed_outcome_names_its_file() -> None:
+    interface = "name: Measure\noutcomes: [measured, no_picture]\ncode: {python: 'cell:Measure'}\n"
+    main = (
+        "name: sm\noutcomes: [done]\nstates:\n"
+        "  - A: {template: Measure, transitions: {measured: done, no_picture: done}}\n"
+    )
+    files = {"main.yml": main, "templates/Measure.yml": interface, "cell.py": MEASURE}
+    ((code, _, help),) = reported(files)
+    assert code == "SM309"
+    assert str(help).endswith("or write `no_image` in place of `no_picture` in `Measure.yml`")
