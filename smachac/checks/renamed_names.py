@@ -11,7 +11,7 @@ from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Word
 from smachac.ir.class_facts import ClassFacts, renamed_name
-from smachac.ir.nodes import Leaf
+from smachac.ir.nodes import Key, Leaf, Outcome
 
 
 class Renamed(NamedTuple):
@@ -43,7 +43,11 @@ def renamed_in_interface(
     places = other_place(old.span, f"`{leaf.type}` declares it here")
     places += tuple(Related(span=each.span, message="also here") for each in uses[1:])
     help = f"write `{new}` in place of `{old.text}`, also where `{leaf.type}` declares it, or"
-    names = {"outcomes": leaf.outcomes, "input_keys": leaf.inputs, "output_keys": leaf.outputs}
+    names: dict[str, tuple[Outcome | Key, ...]] = {
+        "outcomes": leaf.outcomes,
+        "input_keys": leaf.inputs,
+        "output_keys": leaf.outputs,
+    }
     declared_at = next((each.span for each in names[part] if each.name == new), leaf.span)
     file = PurePath(declared_at.source.name)
     other = "correct the interface"

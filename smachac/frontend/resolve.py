@@ -660,14 +660,13 @@ class _Resolver:
             near = guesser_of(tuple(known)).sure(word.text)
             first = word.text not in self.unknown
             self.unknown.add(word.text)
-            fitting: tuple[tuple[str, ...], ...] = ()
+            fitting: tuple[str, ...] = ()
+            used: tuple[str, ...] = ()
             foreign = ""
             if first and near is None and not other and not role:
                 foreign = type_of_other_framework(word.text, entries, names, self.other_type)
-                fitting = types_with_the_names(entries, word.text, names, self.other_type)
-            self.not_found(
-                template_not_found(word, searched, known, other, *fitting, foreign=foreign)
-            )
+                fitting, used = types_with_the_names(entries, word.text, names, self.other_type)
+            self.not_found(template_not_found(word, searched, known, other, fitting, used, foreign))
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
                 return StateType(name=meant, kind="container"), meant
