@@ -13,6 +13,7 @@ from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, misfit, widened
 from smachac.analysis.unset_reads import Reader, reader_at
+from smachac.checks.messages import added_remapping
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import Guesser, guesser, words_of
 from smachac.ir import nodes
@@ -62,8 +63,8 @@ def unread_output(scope: UserdataScope, missing: str) -> UnreadOutput | None:
                 continue
             help = f"nothing reads `{outer}`, which `{child.name}` sets: did you mean it?"
             if key.name not in names:
-                help = f"write `remapping: {{{key.name}: {missing}}}` at `{child.name}`, whose"
-                help += f" `{key.name}` nothing reads"
+                help = f"{added_remapping(child, key.name, missing)}, whose `{key.name}` nothing"
+                help += " reads"
             place = next((each.to_span for each in child.remaps if each.to == outer), child.span)
             found.append(UnreadOutput(outer, place, help))
     return found[0] if len(found) == 1 else None

@@ -467,7 +467,6 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
         inputs, outputs = names.get(leaf.type, _own_names(leaf))[1:]
         unknown = {word.text for word in facts.reads}.difference(inputs)
         written = {word.text for word in facts.writes}
-        sure = facts.endings and all(each.written is not None for each in facts.endings)
         old = renamed_in_interface(leaf, "output_keys", facts, facts.outputs, outputs)
         for word in first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
@@ -479,7 +478,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
             if near is None and lone is not None and lone[0] == word.text:
                 near = lone[1]
                 guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
-            never = f", and `{near}` is never set" if near in unset and sure else ""
+            never = f", and `{near}` is never set" if near in unset and facts.closed else ""
             places: tuple[Related, ...] = ()
             if old is not None and word.text == old.old and not only:
                 guess, places = old.help, old.places
@@ -506,8 +505,7 @@ def lone_output(
     written = {word.text for word in facts.writes}
     wrong = written - {*inputs, *outputs, *(word.text for word in facts.reads)}
     unset = [key for key in outputs if key not in written and key not in inputs]
-    known = facts.endings and all(each.written is not None for each in facts.endings)
-    if not known or len(wrong) != 1 or len(unset) != 1 or local & {*unset}:
+    if not facts.closed or len(wrong) != 1 or len(unset) != 1 or local & {*unset}:
         return None
     renamed = renamed_name(facts.outputs, outputs)
     if listed_ & wrong and (renamed is None or renamed[0].text not in wrong):
@@ -521,12 +519,11 @@ def _lone_input(facts: ClassFacts, inputs: Collection[str], known: Collection[st
     read = {word.text for word in facts.reads}
     wrong = read - {*known} - DICTIONARY_METHODS
     unread = [key for key in inputs if key not in read]
-    sure = facts.endings and all(each.written is not None for each in facts.endings)
     listed_ = {word.text for word in facts.inputs or ()}
     written = {word.text for word in facts.writes}
     return (
         unread[0]
-        if sure and len(wrong) == len(unread) == 1 and not wrong & (listed_ | written)
+        if facts.closed and len(wrong) == len(unread) == 1 and not wrong & (listed_ | written)
         else None
     )
 

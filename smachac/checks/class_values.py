@@ -4,7 +4,7 @@ the types in its interface."""
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from functools import reduce
 
@@ -28,7 +28,7 @@ from smachac.checks.class_code import leaves_by_type
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.type_words import HELP, example, in_words
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.diagnostics.meanings import of_same_meaning
+from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import Part, Step
@@ -300,8 +300,7 @@ def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:
         case "item", str() if owner.name == "record" and last not in fields(owner):
             names = list(fields(owner))
             meant = did_you_mean(_meant_field(owner, last))
-            help = meant or f"use one of its fields: {listed(names)}"
-            return f"{which} has no field `{last}`", help
+            return f"{which} has no field `{last}`", meant or _one_of(names)
         case "names", int():
             size = length_of(owner)
             if size is None or size == last:
@@ -336,14 +335,19 @@ def _wrong_attribute(type_: Type, name: str, owner: str, which: str) -> tuple[st
     return f"{which} has no attribute `{name}`", help
 
 
+def _one_of(names: Sequence[str]) -> str:
+    return f"use one of its fields: {listed(names)}"
+
+
 def _attribute_of_record(type_: Type, name: str, owner: str, which: str) -> tuple[str, str] | None:
     """What is wrong with an attribute of a record, which is a dictionary in Python."""
     if hasattr(dict, name):
         return None
-    meant = name if name in fields(type_) else _meant_field(type_, name)
+    names = list(fields(type_))
+    meant = name if name in names else _meant_field(type_, name)
     what = f"{which} is a dictionary: it has no attribute `{name}`"
     if meant is None:
-        return what, f"use one of its fields: {listed(list(fields(type_)))}"
+        return what, _one_of(names)
     return what, f'write `{owner}["{meant}"]`'
 
 
@@ -353,7 +357,7 @@ def _meant_field(record: Type, name: str) -> str | None:
     names = list(fields(record))
     of_type = [each for each, type_ in fields(record).items()
                if present(type_).name.casefold() == name.casefold()]  # fmt: skip
-    near = guesser(names)(name) or of_same_meaning(name, names)
+    near = guesser(names)(name) or by_words(name, names)
     return near or (of_type[0] if len(of_type) == 1 else None)
 
 

@@ -100,7 +100,7 @@ def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -
     """The finding on a rule that is empty, or lists states with `any` only."""
     name = written_name(entry.outcome)
     what = " beside `any`, which stands for every outcome" if entry.ignored else ""
-    condition = lost_condition(container) or _example(container)
+    condition = lost_condition(container, entry.outcome) or _example(container)
     help = f"write conditions, as in `{name}: {{{condition}}}`, or remove the rule"
     if entry.ignored and container.default_outcome in ("", entry.outcome):
         help = f"write `default_outcome: {name}` in place of the rule"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
@@ -12,7 +13,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import either, listed
 from smachac.ir.nodes import Data, Leaf
-from smachac.ir.outcome_names import fails
+from smachac.ir.outcome_names import fails, is_failure
 from smachac.ir.properties import After, AtMost, Atom, Atoms, Before, Form, Never, Property, atoms
 from smachac.ir.script_paths import name_in_script, walk_script
 from smachac.ir.traversal import outcome_names, walk
@@ -51,17 +52,19 @@ def name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
     sure = guesser(known).sure(atom.name)
     edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
     names = listed(known)
+    alike = _as_good(given, atom, known) if sure is None else known
     return Finding(
         span=atom.span,
         message=f"there is no {subject} `{atom.name}`",
         arguments=("unknown", atom.subject, atom.name),
         help=_other_subject(atom, context)
-        or (_with_the_words(atom, known) if sure is None else None)
-        or did_you_mean(atom.name, known)
-        or _by_words(atom, known)
+        or (_with_the_words(atom, alike) if sure is None else None)
+        or _as_failure(atom, known, alike, context)
+        or did_you_mean(atom.name, alike)
+        or _by_words(atom, alike)
         or _of_same_work(beside, known, context)
-        or _unnamed(known, context)
-        or _led_to(given, atom, known, context)
+        or _unnamed(alike, context)
+        or _led_to(given, atom, alike, context)
         or (f"use one of {names}" if names else _nothing_known(atom)),
         edits=edits,
     )
@@ -131,6 +134,29 @@ def _led_to(given: Property, atom: Atom, known: Sequence[str], context: Context)
             ((name, before),) = each.items()
             return f"did you mean `{name}`, to which `{before}` leads?"
     return None
+
+
+def _as_good(given: Property, atom: Atom, known: Sequence[str]) -> Sequence[str]:
+    """The names of states that can be meant by an unknown event by their words: those that the
+    property does not have elsewhere, and of which none but the event has a word of failure."""
+    if atom.subject != "path":
+        return known
+    others = {each.name for each in atoms(given.form) if each is not atom}
+    failed = is_failure(atom.name)
+    return [name for name in known if name not in others and is_failure(name) == failed]
+
+
+def _as_failure(
+    atom: Atom, known: Sequence[str], alike: Sequence[str], context: Context
+) -> str | None:
+    """The guess for an unknown event that is the name of a state without its word of failure: the
+    only other state that does the same as `DETACH_ABORT`, for `DETACH`."""
+    words = set(atom.name.split("_"))
+    failed = [name for name in known if name not in alike and words <= set(name.split("_"))]
+    if atom.subject != "path" or len(failed) != 1 or not is_failure(failed[0]):
+        return None
+    beside = (replace(atom, name=failed[0]),)
+    return _of_same_work(beside, alike, context)
 
 
 def _with_the_words(atom: Atom, known: Sequence[str]) -> str | None:

@@ -9,7 +9,9 @@ from smachac.analysis.context import Context
 from smachac.checks.messages import calls, names_apart, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.spelling import words_of
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import Event
 from smachac.ir.leaf import variable_of
@@ -110,25 +112,7 @@ def closed_gripper(context: Context) -> Iterator[Finding]:
             if not _opened_after(context, leaves, path):
                 yield _held_finding(leaves, path, found, held.value.span)
         elif found.closed:
-            leaf = leaves[path]
-            own, *names = names_apart((path, *found.closed, *found.moved))
-            places = [context.routes.nodes[each].span for each in (found.closed[0], found.moved[0])]
-            yield Finding(
-                span=leaf.span,
-                message=f"`{own}` closes a gripper that is already closed:"
-                f" {listed(names[: len(found.closed)])} closed it before the tool moved to the body"
-                f" ({listed(names[len(found.closed) :])})",
-                arguments=(leaf.name, *sorted(set(names))),
-                help="open the gripper before the tool moves to the body: add a state with"
-                " `template: GripperState` and `command: open` before"
-                f" `{names[len(found.closed)]}`",
-                related=(
-                    *other_place(places[0], "the gripper is closed here"),
-                    *other_place(places[1], "the tool moves to the body here"),
-                    *calls(leaf, leaf.span),
-                ),
-                node=path,
-            )
+            yield _closed_finding(context, leaves[path], path, found)
 
 
 class _Closed(NamedTuple):
@@ -139,6 +123,44 @@ class _Closed(NamedTuple):
     moved: tuple[str, ...]
     visits: int
     checked: str = ""
+
+
+def _closed_finding(context: Context, leaf: Leaf, path: str, found: _Closed) -> Finding:
+    """The finding on a state that closes a closed gripper at a body."""
+    own, *names = names_apart((path, *found.closed, *found.moved))
+    places = [context.routes.nodes[each].span for each in (found.closed[0], found.moved[0])]
+    held = variable_of(leaf, "grip")
+    releases = held is not None and _is_to_release(leaf.name)
+    help = (
+        "open the gripper before the tool moves to the body: add a state with"
+        " `template: GripperState` and `command: open` before"
+        f" `{names[len(found.closed)]}`"
+    )
+    if releases and held is not None:
+        help = f"write `{held.name}: open` in `{own}`"
+    return Finding(
+        span=held.value.span if releases and held is not None else leaf.span,
+        message=f"`{own}` closes a gripper that is already closed:"
+        f" {listed(names[: len(found.closed)])} closed it before the tool moved to the body"
+        f" ({listed(names[len(found.closed) :])})",
+        arguments=(leaf.name, *sorted(set(names))),
+        help=help,
+        effect="the gripper never releases the body here" if releases else None,
+        related=(
+            *other_place(places[0], "the gripper is closed here"),
+            *other_place(places[1], "the tool moves to the body here"),
+            *calls(leaf, leaf.span),
+        ),
+        node=path,
+    )
+
+
+def _is_to_release(name: str) -> bool:
+    """Whether the name of a state means that it opens a gripper: OPEN_HAND, RELEASE, LET_GO."""
+    words = words_of(name)
+    return {"let", "go"} <= words or any(
+        of_same_meaning(word, ("open", "close")) == "open" for word in words
+    )
 
 
 def _held_finding(leaves: Mapping[str, Leaf], path: str, found: _Closed, span: Span) -> Finding:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from difflib import SequenceMatcher
 
 from smachac.analysis.code_slots import CodeSlot
 from smachac.analysis.message_code import (
@@ -19,6 +20,7 @@ from smachac.checks.function_results import is_condition
 from smachac.checks.message_values import an_example, constants_for, named_constants
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related
+from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -33,6 +35,9 @@ METHODS = frozenset(
 
 NUMBERS = frozenset([*INTEGERS, *FLOATS, "bool"])
 """The types of fields that are numbers in Python."""
+
+NEAR = 0.75
+"""How similar a name must be to a field that is meant although the words of another fit better."""
 
 SHORTEST_PART = 3
 """A shorter name is the beginning of too many others."""
@@ -103,8 +108,10 @@ def wrong_reads(
 
 
 def near_field(word: str, names: Sequence[str]) -> str | None:
-    """The name nearest to that of a field: `temperature` for `temp`."""
+    """The name nearest to that of a field: `temperature` for `temp`, `percentage` for `level`."""
     guess = guesser(names)(word)
+    if guess is None or SequenceMatcher(None, word, guess).ratio() < NEAR:
+        guess = by_words(word, names) or guess
     if guess is not None or len(word) < SHORTEST_PART:
         return guess
     longer = [each for each in names if each.casefold().startswith(word.casefold())]

@@ -72,3 +72,10 @@ def own_name(node: Node, span: Span) -> str:
     """The name of a state as an argument of a finding at `span`; empty where a call of a sub-script
     in another file gives the name."""
     return node.name if node.span.source is span.source else ""
+
+
+def added_remapping(node: Node, key: str, to: str) -> str:
+    """The help that remaps a key of a state: a new field, or an entry of that which it has."""
+    if node.remaps:
+        return f"add `{key}: {to}` to the `remapping` of `{node.name}`"
+    return f"write `remapping: {{{key}: {to}}}` in `{node.name}`"

@@ -33,7 +33,7 @@ from smachac.ir.properties import (
     either,
     in_words,
 )
-from smachac.ir.script_paths import sugared_child, walk_script
+from smachac.ir.script_paths import name_in_script, sugared_child, walk_script
 from smachac.ir.traversal import outcome_names
 
 if TYPE_CHECKING:
@@ -420,7 +420,8 @@ def property_vacuous(context: Context) -> Iterator[Finding]:
 
     Exactly: no path reaches the event that the property is about: `after` of `never`, the first
     event of `before`, `after` and `whenever`, the event of `at_most`. A state that cannot be
-    reached in its own container is reported by SM201.
+    reached in its own container is reported by SM201, an outcome of a concurrence without a rule
+    by SM203.
 
     Wrong:
         name: sm
@@ -456,6 +457,8 @@ def property_vacuous(context: Context) -> Iterator[Finding]:
     for each in vacuous:
         if any(f"{state}/".startswith(unreachable) or state in dead for state in each.states):
             continue
+        if _has_lost_rules(context, each):
+            continue  # SM203
         yield Finding(
             span=each.property.span,
             message=f"{_named(each.property)} checks nothing: no path leads to"
@@ -463,6 +466,25 @@ def property_vacuous(context: Context) -> Iterator[Finding]:
             arguments=(each.property.name, in_words(each.property.form)),
             help=_missing_event(each.property),
         )
+
+
+def _has_lost_rules(context: Context, given: Judgement) -> bool:
+    """Whether the events that a property is about are outcomes of concurrences that none of their
+    rules has."""
+    events = _premises(given.property)
+    if not all(atom.subject == "path" and atom.outcome for atom in events):
+        return False
+    known = dict(context.containers)
+    named = [known[path] for path in given.states if path in known]
+    return bool(events) and all(
+        any(
+            isinstance(node, Concurrence)
+            and name_in_script(node) == atom.name.rpartition("/")[2]
+            and atom.outcome not in {node.default_outcome, *(each.outcome for each in node.rules)}
+            for node in named
+        )
+        for atom in events
+    )
 
 
 def _missing_event(given: Property) -> str:
@@ -483,12 +505,18 @@ def _unreachable(context: Context) -> tuple[str, ...]:
     )
 
 
-def _premise(given: Property) -> str:
-    """The event that a property is about."""
+def _premises(given: Property) -> Atoms:
+    """The events that a property is about."""
     match given.form:
         case Never(after=atoms) | Before(later=atoms) | After(first=atoms) | AtMost(event=atoms):
-            return either(atoms)
-    return "it"
+            return atoms
+    return ()
+
+
+def _premise(given: Property) -> str:
+    """The event that a property is about, in words."""
+    events = _premises(given)
+    return either(events) if events else "it"
 
 
 @rule(

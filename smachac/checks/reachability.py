@@ -511,7 +511,7 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
         effect = f"a caller of `{name}` that waits for this outcome never gets it"
     if isinstance(container, Concurrence):
         help = f"add a rule for `{outcome.name}`, or {removed}"
-        condition = lost_condition(container)
+        condition = lost_condition(container, outcome.name)
         if condition is not None:
             rule = f"{written_name(outcome.name)}: {{{condition}}}"
             help = f"write the rule `{rule}` in `outcome_map`, or {removed}"

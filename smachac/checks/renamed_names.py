@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from pathlib import PurePath
 from typing import Literal, NamedTuple
 
 from smachac.checks.messages import other_place
@@ -10,7 +11,7 @@ from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Word
 from smachac.ir.class_facts import ClassFacts, renamed_name
-from smachac.ir.nodes import Leaf
+from smachac.ir.nodes import Key, Leaf, Outcome
 
 
 class Renamed(NamedTuple):
@@ -42,4 +43,14 @@ def renamed_in_interface(
     places = other_place(old.span, f"`{leaf.type}` declares it here")
     places += tuple(Related(span=each.span, message="also here") for each in uses[1:])
     help = f"write `{new}` in place of `{old.text}`, also where `{leaf.type}` declares it, or"
-    return Renamed(old.text, (uses[0],), f"{help} correct the interface", places)
+    names: dict[str, tuple[Outcome | Key, ...]] = {
+        "outcomes": leaf.outcomes,
+        "input_keys": leaf.inputs,
+        "output_keys": leaf.outputs,
+    }
+    declared_at = next((each.span for each in names[part] if each.name == new), leaf.span)
+    file = PurePath(declared_at.source.name)
+    other = "correct the interface"
+    if file.name.partition(".")[0] == leaf.type:
+        other = f"write `{old.text}` in place of `{new}` in `{file.name}`"
+    return Renamed(old.text, (uses[0],), f"{help} {other}", places)

@@ -10,7 +10,7 @@ from smachac.checks.messages import calls, other_place
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.spelling import words_of, written_name
 from smachac.ir.nodes import Concurrence, Node, OutcomeRule
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES
 from smachac.ir.traversal import outcome_names
 
 UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
@@ -104,16 +104,27 @@ def copied_rule_help(
     )
 
 
-def lost_condition(container: Concurrence) -> str | None:
-    """The condition that a rule without conditions has probably lost: the only state that no rule
-    names, with the outcome by which the other rules name states of its type, or its only one."""
-    used = {part.child: part.outcome for rule in container.rules for part in rule.when}
+def lost_condition(container: Concurrence, lost: str) -> str | None:
+    """The condition that a rule for an outcome has probably lost: the only state that no rule
+    names, or names only with `preempted`. Its outcome is the one by which the other rules name
+    states of its type, else the only one, or the only one that is as good or bad as `lost`."""
+    parts = [part for rule in container.rules for part in rule.when]
+    used = {part.child: part.outcome for part in parts if part.outcome != PREEMPTED}
     left = [each for each in container.children if each.name not in used]
+    if len(left) > 1:
+        named = {part.child for part in parts}
+        left = [each for each in left if each.name not in named]
     if len(left) != 1 or is_open(left[0]):
         return None
     (child,) = left
     names = [name for name in outcome_names(child) if name not in (PREEMPTED, child.catches)]
     alike = {used[each.name] for each in container.children
              if each.name in used and each.type == child.type}  # fmt: skip
-    likely = [name for name in names if name in alike] or names
+    likely = [name for name in names if name in alike or name == lost] or names
+    if len(likely) > 1:
+        likely = [name for name in likely if _is_good(name) == _is_good(lost)]
     return f"{child.name}: {written_name(likely[0])}" if len(likely) == 1 else None
+
+
+def _is_good(outcome: str) -> bool:
+    return outcome.lower() in GOOD | SUCCESSES

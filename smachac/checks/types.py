@@ -650,8 +650,9 @@ def _long_form(clash: Clash) -> str | None:
     wanted = fields(clash.misfit.wanted)
     if "type" not in wanted or not KEY_FIELDS.issuperset(wanted) or clash.cell.role != "input":
         return None
-    given = clash.misfit.given
-    if given.name in ("mapping", "dict") or (given.name == "record" and "type" in fields(given)):
+    value = clash.flow.value
+    names = {name for name, _ in value.entries} if isinstance(value, Struct) else {"type"}
+    if clash.misfit.given.name in ("mapping", "record", "dict") and "type" in names:
         return None
     return (
         f"write `{clash.cell.key}: {wanted['type']}` in the `input_keys` of {_owner(clash.cell)}:"

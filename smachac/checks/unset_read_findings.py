@@ -19,7 +19,7 @@ from smachac.checks.candidate_keys import (
     written_place,
 )
 from smachac.checks.initial_presets import counts, initial_value
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import added_remapping, calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
@@ -149,19 +149,17 @@ def _meant_key(
     if guess is not None and not may_be(types, scope, guess, wanted):
         guess = None
     of_item = _item_help(scope.container, node, missing.key)
-    help = (
-        name_help(node, reader.key, missing.key, guess) if guess is not None else None
-    ) or of_item
-    unread = unread_output(scope, missing.key) if guess is None else None
+    help = name_help(node, reader.key, missing.key, guess) if guess is not None else None
+    help = help or of_item
+    unread = unread_output(scope, missing.key)
+    if guess is not None and unread is not None:
+        is_slip = guesses.of(scope).sure(missing.key) is not None
+        unread = None if is_slip or unread.key != guess else unread
     fitting = []
     if guess is None and (of_item is None or isinstance(node, nodes.Leaf)):
         fitting = fitting_keys(types, scope, reader, wanted)
     if len(fitting) == 1:
-        pair = f"{reader.key}: {fitting[0]}"
-        help = f"write `remapping: {{{pair}}}` in `{node.name}`"
-        if node.remaps:
-            help = f"add `{pair}` to the `remapping` of `{node.name}`"
-        help += f", if it must read `{fitting[0]}`"
+        help = f"{added_remapping(node, reader.key, fitting[0])}, if it must read `{fitting[0]}`"
         if types.keys.get((scope.path, fitting[0])) == wanted:
             help += f": both are of the type `{wanted}`"
     elif fitting and reader.key == missing.key:
@@ -187,10 +185,7 @@ def name_help(node: Node, own: str, outer: str, meant: str) -> str:
     key = next((each for each in node.inputs if each.name == own), None)
     if own != outer or key is None or key.span.source is node.span.source:
         return did_you_mean(meant) or ""
-    pair = f"{own}: {meant}"
-    if node.remaps:
-        return f"add `{pair}` to the `remapping` of `{node.name}`"
-    return f"write `remapping: {{{pair}}}` in `{node.name}`"
+    return added_remapping(node, own, meant)
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:

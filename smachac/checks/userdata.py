@@ -34,7 +34,7 @@ from smachac.checks.initial_presets import (
 )
 from smachac.checks.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.message_fields import remapped_fields
-from smachac.checks.messages import calls, did_you_mean, other_place
+from smachac.checks.messages import added_remapping, calls, did_you_mean, other_place
 from smachac.checks.misled_failures import Misled, misled_failures
 from smachac.checks.races import raced_keys
 from smachac.checks.reachability import keys_of_hidden_states
@@ -224,18 +224,19 @@ def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Find
             help=f"write `{field}: {other}`, or rename `{other}` to `{key}`",
             related=(*other_place(meant.word.span, f"nothing reads `{other}`"), *finding.related),
         )
-    purpose, text = f"must read `{other}`", f"remapping: {{{key}: {other}}}"
+    purpose = f"must read `{other}`"
+    cure = added_remapping(witness.reader.node, key, other)
     if meant.looped:
         purpose = f"must run for each item of `{other}`"
-        text = f"for_each: {{item: {key}, in: {other}}}"
+        cure = f"write `for_each: {{item: {key}, in: {other}}}` in `{name}`"
     if not meant.looped and guesser([key]).sure(other) is not None:
-        help = f"rename `{other}` to `{key}`, or write `{text}` in `{name}`"
+        help = f"rename `{other}` to `{key}`, or {cure}"
         related = other_place(meant.word.span, f"nothing reads `{other}`")
         return replace(finding, help=help, related=(*related, *finding.related))
     return replace(
         finding,
-        help=f"if `{name}` {purpose}, write `{text}` in `{name}`; otherwise give `{key}` an initial"
-        f" value in {container_name(meant.missing.scope, finding.span)}",
+        help=f"if `{name}` {purpose}, {cure}; otherwise give `{key}` an initial value in"
+        f" {container_name(meant.missing.scope, finding.span)}",
         related=(*other_place(meant.word.span, f"nothing reads `{other}`"), *finding.related),
     )
 

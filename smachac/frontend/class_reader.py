@@ -165,6 +165,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         in_loop=flow.in_loop,
         reads=flow.reads,
         writes=flow.writes,
+        closed=bool(flow.endings) and all(each.written is not None for each in flow.endings),
         stub=execute is not None and all(map(_does_nothing, execute.body)),
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
         values=written_values(own, execute, library) if execute is not None else (),

@@ -20,7 +20,6 @@ from smachac.frontend.errors.references import (
     bad_sub_script,
     recursive_include,
     script_not_found,
-    template_not_found,
 )
 from smachac.frontend.errors.script import (
     duplicate_key,
@@ -87,11 +86,12 @@ from smachac.frontend.sub_scripts import (
 )
 from smachac.frontend.type_annotations import TYPED, Aliases, explain_aliases, read_aliases, typed
 from smachac.frontend.unknown_templates import (
+    Searched,
     meant_template,
     missing_template,
     missing_template_help,
     one_for_each_template,
-    types_with_the_names,
+    unknown_template,
     with_meant_call,
 )
 from smachac.frontend.unused import Mark, Uses
@@ -548,7 +548,7 @@ class _Resolver:
             known = [*around.scope, *(str(each.key.value) for each in _entries_of(params))]
             for script, given in called:
                 findings = params_at_call(
-                    findings, name.text, script, given, known, used, self.settled
+                    findings, name.text, script, given, known, used, self.settled, self.uses.trees
                 )
             self.report[before:] = findings
         return state
@@ -665,14 +665,11 @@ class _Resolver:
             known = [*names, *([] if role else schema.CONTAINERS)]
             other = self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
             near = guesser_of(tuple(known)).sure(word.text)
-            first = word.text not in self.unknown
+            read = {} if role or word.text in self.unknown else entries
             self.unknown.add(word.text)
-            fitting: tuple[tuple[str, ...], ...] = ()
-            called = not role and word.text in self.library.script_names(around.source.name)
-            if first and near is None and not other and not role:
-                fitting = types_with_the_names(entries, word.text, names, self.other_type)
-            item = template_not_found(word, searched, known, other, *fitting, script=called)
-            self.not_found(item)
+            scripts = () if role else self.library.script_names(around.source.name)
+            found_in = Searched(searched, names, known, scripts, other)
+            self.not_found(unknown_template(word, read, found_in, self.other_type))
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
                 return StateType(name=meant, kind="container"), meant

@@ -161,6 +161,8 @@ INTERFACE_FIELDS: Mapping[str, str] = {
     "simulation": "Its Python code uses the simulated world.",
     "checks_grasp": "It succeeds only if the gripper of its limb holds a body.",
     "adds_frames": "The variables that name a frame which it adds to the simulated world.",
+    "other_names": "Its names in other frameworks, each with the words there that have another name"
+    " here: {WaitState: {wait_time: time}}.",
     "code": "Its code, by language: {python: my_robot.states:Grasp}.",
 }
 """The fields of the interface of a state type, with their descriptions."""

@@ -158,6 +158,7 @@ def _read_interface(
         simulation=flag("simulation"),
         checks_grasp=flag("checks_grasp"),
         adds_frames=_frame_variables(fields.get("adds_frames"), sections, report),
+        other_names=_other_names(fields.get("other_names"), report),
         listed_inputs=_listed_roles(sections["input_keys"], report),
         listed_outputs=_listed_roles(sections["output_keys"], report),
         code=code,
@@ -220,6 +221,17 @@ def _frame_variables(
     for word in words:
         _check_declared(sections, "variables", word, report)
     return tuple(word.text for word in words)
+
+
+def _other_names(tree: Tree | None, report: Report) -> dict[str, dict[str, str]]:
+    """The names of the type in other frameworks, each with the words that have another name."""
+    return {
+        str(name.key.value): {
+            str(word.key.value): as_text(word.value, report)
+            for word in as_map(name.value, report, "{wait_time: time}")
+        }
+        for name in _section("other_names", tree, report)
+    }
 
 
 def _secret_keys(sections: Mapping[str, Section], report: Report) -> frozenset[str]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend.errors.references import (
     bad_sub_script,
     look_up_of_all_calls,
@@ -15,6 +16,7 @@ from smachac.frontend.errors.references import (
     unresolved_look_up,
 )
 from smachac.frontend.fields import as_name, kind_of
+from smachac.frontend.params import look_ups
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 
 SUB_SCRIPT_HELP = "write one state: `- NAME: {template: ...}`"
@@ -117,21 +119,27 @@ def params_at_call(
     known: Sequence[str],
     used: Collection[str],
     settled: set[Span],
+    trees: Mapping[Source, Tree],
 ) -> Report:
     """The findings in a sub-script that a state calls, with the look-ups that failed at the call
     that misspells the param or does not give it: one finding for each param.
 
     `script` is the name of the sub-script with the place of the call, `given` are the params of
     this call, `known` all those in scope of it, `used` the names in look-ups. `settled` are the
-    places of calls that give params, but not one that is read; this call is added to them.
+    places of calls that give params, but not one that is read; this call is added to them. `trees`
+    are the texts of the scripts.
     """
-    names = set(used)
-    words = [as_name(each.key, []) for each in given]
-    idle = [word for word in words if word is not None and word.text not in names]
     lost: dict[str, Diagnostic] = {}
     for item in found:
         if item.kind is unresolved_look_up.code and item.span.source is not script.span.source:
             lost.setdefault(item.finding.arguments[0], item)
+    names = set(used)
+    words = [as_name(each.key, []) for each in given]
+    idle = [
+        word
+        for word in words
+        if word is not None and (word.text not in names or _is_masked(word.text, lost, trees))
+    ]
     moved = {
         name: look_up_of_call(
             item, script, state, idle, known, alone=len(lost) == 1, settled=item.span in settled
@@ -152,6 +160,33 @@ def params_at_call(
         ):
             kept.append(item)
     return kept
+
+
+def _is_masked(name: str, lost: Mapping[str, Diagnostic], trees: Mapping[Source, Tree]) -> bool:
+    """Whether a param of a call is one slip away from a lost one, and the script that lacks that
+    one neither reads the param nor calls a sub-script without giving it the param."""
+    meant = guesser_of(tuple(lost)).sure(name)
+    tree = trees.get(lost[meant].span.source) if meant is not None else None
+    return tree is not None and not _reads(tree, name)
+
+
+def _reads(tree: Tree, name: str) -> bool:
+    """Whether a look-up in a script, or in a sub-script that it calls, can read a param from
+    outside."""
+    if any(word.text == name for word in look_ups(tree)):
+        return True
+    waiting = [tree]
+    while waiting:
+        each = waiting.pop()
+        if isinstance(each, Seq):
+            waiting += each.items
+        elif isinstance(each, Map):
+            waiting += (entry.value for entry in each.entries)
+            params = each.get("params")
+            given = params.value.get(name) if params and isinstance(params.value, Map) else None
+            if each.get("script") is not None and given is None:
+                return True
+    return False
 
 
 def one_for_each_param(found: Sequence[Diagnostic], entries: Collection[str]) -> Report:

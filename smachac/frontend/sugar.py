@@ -11,10 +11,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Report, did_you_mean
+from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
-from smachac.diagnostics.wording import either, listed
+from smachac.diagnostics.wording import both, either, listed
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
 from smachac.frontend.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.paired_fields import paired_help
@@ -332,6 +332,7 @@ def _parts(
     entries = whole.entries if isinstance(whole, Map) else ()
     written = {str(each.key.value) for each in entries}
     paired = _paired([each for each in entries if each.key.value not in known], written, required)
+    found: Report = []
     for each in entries:
         word = Word(str(each.key.value), each.key.span)  # `on` is fine here, unlike in names
         if word.text in known:
@@ -348,12 +349,40 @@ def _parts(
             report.append(unknown_variable(word, owner, others))
             continue
         lost = meant if meant in required and meant not in written else None
-        report.append(unknown_variable(word, owner, known, meant=meant, required=lost))
+        found.append(unknown_variable(word, owner, known, meant=meant, required=lost))
         parts.setdefault(meant, each.value)
+    report += _as_one(entry, found, required)
     for name, example in required.items():
         if name not in parts:
             report.append(missing_variable(entry.key.span, name, owner, example=example))
     return parts
+
+
+def _as_one(entry: Entry, found: Report, required: Mapping[str, str]) -> Report:
+    """One finding for several other words for different parts, with the mapping as it is meant."""
+    edits = sorted((edit for each in found for edit in each.finding.edits),
+                   key=lambda edit: edit.span.start)  # fmt: skip
+    parts = {edit.text: None for edit in edits}
+    value = entry.value.span
+    if len(found) < 2 or len(parts) != len(found) or "\n" in value.text:
+        return found
+    text, at = "", value.start
+    for edit in edits:
+        text += value.source.text[at : edit.span.start] + edit.text
+        at = edit.span.end
+    text += value.source.text[at : value.end]
+    first, *others = [each.finding for each in found]
+    lost = [part for part in parts if part in required]
+    missing = f"; {both(lost)}, which are required, are missing" if len(lost) > 1 else ""
+    one = replace(
+        first,
+        message=f"{both(each.span.text for each in found)} are not parts of `{entry.key.value}`",
+        help=f"write `{entry.key.value}: {text}`",
+        effect=f"no code reads fields of these names{missing}",
+        edits=tuple(edits),
+        related=tuple(Related(span=each.span, message="and here") for each in others),
+    )
+    return [replace(found[0], finding=one)]
 
 
 def _paired(unknown: list[Entry], written: set[str], required: Mapping[str, str]) -> str:

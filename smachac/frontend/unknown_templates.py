@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Span, Word
@@ -54,6 +55,57 @@ def types_with_the_names(
     near = [each for each in fitting if words_of(each.name) & common]
     found = tuple(each.name for each in near or fitting)
     return (found, used) if len(found) <= MOST_MEANT else ((), ())
+
+
+def type_of_other_framework(
+    word: str,
+    entries: Mapping[str, Entry],
+    names: Sequence[str],
+    find: Callable[[str, Collection[str]], StateType | None],
+) -> str:
+    """The help for a state whose `template` is the name of a type in another framework: the type
+    here, and the fields and outcomes of the state that have another name; empty without one."""
+    if len(names) > MOST_TYPES:
+        return ""
+    types = (find(name, (word,)) for name in names)
+    type_ = next((each for each in types if each and word in each.other_names), None)
+    if type_ is None:
+        return ""
+    steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    used = [*entries, *(outcome.text for outcome, _ in steps)]
+    renamed = type_.other_names[word]
+    changes = [f"`{renamed[each]}` in place of `{each}`" for each in used if each in renamed]
+    return f"write `template: {type_.name}`" + (f", with {', '.join(changes)}" if changes else "")
+
+
+class Searched(NamedTuple):
+    """Where a template was searched: the folders, the names of all types, those and the kinds of
+    containers, the names of sub-scripts, and a folder that has the file but was not searched."""
+
+    folders: Sequence[str]
+    types: Sequence[str]
+    known: Sequence[str]
+    scripts: Sequence[str]
+    other: str
+
+
+def unknown_template(
+    word: Word,
+    entries: Mapping[str, Entry],
+    searched: Searched,
+    find: Callable[[str, Collection[str]], StateType | None],
+) -> Diagnostic:
+    """SM013 for a template that was not found: with the type that is meant by its name or by the
+    `entries` of the state."""
+    folders, types, known, scripts, other = searched
+    fitting: tuple[str, ...] = ()
+    used: tuple[str, ...] = ()
+    foreign = ""
+    is_script = word.text in scripts
+    if not (other or is_script) and guesser_of(tuple(known)).sure(word.text) is None:
+        foreign = type_of_other_framework(word.text, entries, types, find) if entries else ""
+        fitting, used = types_with_the_names(entries, word.text, types, find)
+    return template_not_found(word, folders, known, other, fitting, used, foreign, script=is_script)
 
 
 def with_meant_call(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
@@ -145,6 +197,8 @@ def one_for_each_template(found: Sequence[Diagnostic]) -> Report:
             continue
         first, *others = places[item.finding.arguments[0]]
         if item is first:
+            # The calls of one sub-script lead to one place.
+            others = list({each.span: each for each in others if each.span != item.span}.values())
             shown = (
                 Related(span=each.span, message="the same here") for each in others[:MOST_PLACES]
             )

@@ -235,7 +235,8 @@ class ClassFacts:
     kind: `if`, `match`, `except`, `loop`, or `text` and `value` for a text or another value alone,
     without its `return`;
     `in_loop` the `return` at the end of that loop.
-    `reads` and `writes` are the userdata keys that it accesses, each at its name.
+    `reads` and `writes` are the userdata keys that it accesses, each at its name; `closed`: no
+    other code accesses its userdata.
     `stub`: it only returns one constant. `checks_stop`: the class checks for preempt requests.
     `values` are the expressions that the class writes, each with its key; of a call of a function,
     also the texts that it returns. `loops` are the attributes that it loops over, each with the
@@ -266,6 +267,7 @@ class ClassFacts:
     in_loop: Word | None = None
     reads: tuple[Word, ...] = ()
     writes: tuple[Word, ...] = ()
+    closed: bool = False
     stub: bool = False
     checks_stop: bool = False
     values: tuple[tuple[str, Word], ...] = ()

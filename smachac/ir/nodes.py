@@ -480,7 +480,8 @@ class StateType:
     the simulated world.
     `checks_grasp`: it succeeds only if its gripper holds a body.
     `adds_frames`: the variables of which the first that has a value names a
-    frame that the state adds to that world; None: not known. `listed_inputs`
+    frame that the state adds to that world; None: not known. `other_names` are its names in other
+    frameworks, each with the words there that have another name here. `listed_inputs`
     and `listed_outputs` are the roles of keys that a script adds, by name; `"*"` is any other name.
     `secret_keys` are the names of the keys with `secret: true`, also of those that a script adds.
     """
@@ -512,6 +513,9 @@ class StateType:
     simulation: bool = False
     checks_grasp: bool = False
     adds_frames: tuple[str, ...] | None = None
+    other_names: Mapping[str, Mapping[str, str]] = field(
+        default_factory=dict, compare=False, repr=False
+    )
     listed_inputs: Mapping[str, KeyRole] = field(default_factory=dict)
     listed_outputs: Mapping[str, KeyRole] = field(default_factory=dict)
     default_keys: Mapping[str, tuple[Key, ...]] = field(default_factory=dict)

@@ -220,6 +220,15 @@ FLAGS = ("blocking", "stand_in", "simulation", "checks_grasp")
 """The fields of an interface that are true or false."""
 
 
+INTERFACE_TITLE = "The interface of a state type of smachac"
+
+OTHER_NAMES: Schema = {
+    "type": "object",
+    "additionalProperties": {"type": "object", "additionalProperties": {"type": "string"}},
+}
+"""The names of a type in other frameworks, each with words there and here."""
+
+
 def interface_schema() -> Schema:
     """The schema of the interfaces of state types."""
 
@@ -286,10 +295,10 @@ def interface_schema() -> Schema:
         "claims": names,
         **dict.fromkeys(FLAGS, flag | {"default": False}),
         "adds_frames": names,
+        "other_names": OTHER_NAMES,
         "code": {"type": "object", "additionalProperties": {"anyOf": [text, class_]}},
     }
-    whole = {"title": "The interface of a state type of smachac"}
-    return {"$schema": DRAFT, **whole, **facts(schema.INTERFACE_FIELDS, shapes)}
+    return {"$schema": DRAFT, "title": INTERFACE_TITLE, **facts(schema.INTERFACE_FIELDS, shapes)}
 
 
 def project_schema(codes: Mapping[str, Code]) -> Schema:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from smachac.diagnostics.meanings import MEANINGS, of_same_meaning
+from smachac.diagnostics.meanings import MEANINGS, by_words, of_same_meaning
 from tests.trust.project_text import MAIN, analysed
 
 SCRIPT = """name: m
@@ -40,3 +40,28 @@ def test_a_word_has_one_meaning() -> None:
 def test_two_choices_of_one_meaning_are_no_guess() -> None:
     assert of_same_meaning("begin", ["start", "on", "stop"]) is None
     assert of_same_meaning("begin", ["start", "stop"]) == "start"
+
+
+@pytest.mark.parametrize(
+    ("word", "names", "meant"),
+    [
+        ("charge_percent", ["charge", "percentage", "current"], "percentage"),
+        ("level", ["voltage", "percentage"], "percentage"),
+        ("velocity", ["speed", "force"], "speed"),
+        ("max_velocity", ["speed_limit", "speed"], "speed_limit"),
+        ("left_width", ["right_width", "force"], None),
+        ("max_speed", ["min_speed"], None),
+        ("speed", ["max_speed", "min_speed"], None),
+        ("pose", ["start_position", "force"], "start_position"),
+        ("colour", ["speed"], None),
+    ],
+)
+def test_a_name_with_words_of_the_same_meaning(
+    word: str, names: list[str], meant: str | None
+) -> None:
+    assert by_words(word, names) == meant
+
+
+def test_opposite_sides_are_no_choice_of_one_meaning() -> None:
+    assert of_same_meaning("back", ["front", "rear", "inside"]) == "rear"
+    assert of_same_meaning("ahead", ["front", "rear", "inside"]) == "front"

@@ -121,3 +121,23 @@ def test_names_of_states_that_are_equal() -> None:
     assert names_apart(("sm/A/C/GRIP", "sm/B/C/GRIP")) == ["A/C/GRIP", "B/C/GRIP"]
     assert names_apart(("sm/GRIP", "sm/GRIP")) == ["GRIP", "GRIP"]
     assert names_apart(("sm/GRIP", "sm/A/GRIP")) == ["sm/GRIP", "A/GRIP"]
+
+
+@pytest.mark.parametrize("name", ["LET_GO", "RELEASE_PART", "DROP", "OPEN_HAND"])
+def test_a_state_named_after_opening_is_to_open(name: str) -> None:
+    steps = {"TO": "to", "GRIP": "close", "LIFT": "lift", "DOWN": "to", name: "close"}
+    following = [*steps][1:]
+    text = HEAD
+    for own, after in zip(steps, [*following, "succeeded"], strict=True):
+        ends = f"{{succeeded: {after}, preempted: aborted, aborted: aborted}}"
+        text += f"  - {own}: {{{STEPS[steps[own]]}, transitions: {ends}}}\n"
+
+    def helps(text: str) -> list[tuple[str, str | None]]:
+        report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
+        return [(each.span.text, each.help) for each in report if each.code == "SM513"]
+
+    assert helps(text) == [("close", f"write `command: open` in `{name}`")]
+    ((place, help),) = helps(text.replace(name, "SQUEEZE"))
+    assert place == "SQUEEZE"
+    assert help is not None
+    assert help.endswith("before `DOWN`")

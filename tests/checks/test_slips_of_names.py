@@ -269,6 +269,30 @@ states:
     assert one == ("SM015", "what", "write `object: 1.5` in place of `what: 1.5`")
 
 
+def test_a_param_of_one_call_with_the_name_of_a_param_of_an_inner_call() -> None:
+    main = """\
+name: sm
+outcomes: [done]
+states:
+  - ONE: {script: part, params: {times: 1.5}, transitions: {succeeded: TWO, preempted: done}}
+  - TWO: {script: part, params: {time: 2.5}, transitions: {succeeded: done, preempted: done}}
+"""
+    part = """\
+- PART:
+    template: StateMachine
+    outcomes: [succeeded, preempted]
+    states:
+      - A: {template: SleepState, time: [params, times], transitions: {succeeded: B}}
+      - B: {script: inner, params: {time: 3.0}}
+"""
+    inner = "- INNER: {template: SleepState, time: [params, time]}\n"
+    files = {"main.yml": main, "part.yml": part, "inner.yml": inner}
+    found = [each for each in reported(files) if each[0] == "SM015"]
+    assert found == [("SM015", "time", "did you mean `times`? Write `times: 2.5`")]
+    read = {**files, "part.yml": part.replace(", params: {time: 3.0}", "")}
+    assert ("SM015", "times", "did you mean `time`?") in reported(read)
+
+
 SIDES = """\
 name: sm
 outcomes: [done]
@@ -360,7 +384,7 @@ states:
     [
         (
             "found_pose",
-            "write `remapping: {pose: found_pose}` at `LOOK`, whose `pose` nothing reads",
+            "write `remapping: {pose: found_pose}` in `LOOK`, whose `pose` nothing reads",
         ),
         ("target", None),
     ],

@@ -78,3 +78,43 @@ def test_built_in_types_that_cannot_be_meant_are_not_read(fields: str) -> None:
     assert {item.code for item in report} & {"SM003", "SM005"}
     assert "GripperState.yml" in read
     assert not {"ParsePose.tpl.py", "WaitForMsg.tpl.py", "ParsePose.tpl"} & {*read}
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "help"),
+    [
+        (
+            "WaitState",
+            "wait_time: 5.0",
+            "write `template: SleepState`, with `time` in place of `wait_time`",
+        ),
+        ("CBState", "callbacks: {n: f}", "write `template: CallbacksState`"),
+        (
+            "CheckConditionState",
+            "predicate: f",
+            "write `template: ConditionState`, with `cond_cb` in place of `predicate`",
+        ),
+        (
+            "ActionState",
+            "action_name: /go, action_type: a/action/Go",
+            "write `template: SimpleActionState`, with `action_server_namespace` in place of"
+            " `action_name`, `action` in place of `action_type`",
+        ),
+    ],
+)
+def test_the_name_of_a_type_in_another_framework_leads_to_the_type_here(
+    name: str, fields: str, help: str
+) -> None:
+    ((_, told, others),) = about(name, fields)
+    assert (told, others) == (help, 1)
+
+
+def test_two_calls_of_one_sub_script_show_the_place_in_it_once() -> None:
+    main = (
+        "name: sm\ntemplate: Base\noutcomes: [succeeded]\nstates:\n"
+        "  - A: {script: wait, transitions: {succeeded: B}}\n"
+        "  - B: {script: wait, transitions: {succeeded: succeeded}}\n"
+    )
+    wait = "- WAIT: {template: CBState, outcomes: [succeeded]}\n"
+    (item,) = analysed({"main.yml": main, "wait.yml": wait}).report
+    assert (item.code, item.finding.related) == ("SM013", ())

@@ -177,6 +177,7 @@ def template_not_found(
     other: str = "",
     fitting: Sequence[str] = (),
     used: Sequence[str] = (),
+    foreign: str = "",
     *,
     script: bool = False,
 ) -> Finding:
@@ -203,13 +204,13 @@ def template_not_found(
     if fitting:
         help = f"did you mean {either(fitting)}, with {both(used)}?"
     if script:
-        help = f"`{word.text}` is a sub-script: write `script: {word.text}`"
+        foreign = f"`{word.text}` is a sub-script: write `script: {word.text}`"
     return Finding(
         span=word.span,
         message=f"the template `{word.text}` was not found",
         arguments=(word.text,),
-        help=help,
-        edits=respelt(word, guesser_of(tuple(names)).sure(word.text)),
+        help=foreign or help,
+        edits=() if foreign else respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 

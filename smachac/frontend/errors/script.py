@@ -20,6 +20,7 @@ from smachac.diagnostics.diagnostic import (
     did_you_mean,
     problem,
 )
+from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.diagnostics.wording import listed, possible
@@ -268,8 +269,10 @@ def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]
         if len(word) <= LONGEST_WORD and near.quick_ratio() > NEAR and near.ratio() > NEAR:
             return did_you_mean(word, names)
     is_one = len(own) == 1
+    meant = by_words(word, own)
     return (
         did_you_mean(word, own)
+        or (f"did you mean `{meant}`?" if meant is not None else None)
         or f"its variable{'' if is_one else 's'} {'is' if is_one else 'are'} {listed(own)}"
     )
 

@@ -8,12 +8,19 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity, identity
+from smachac.diagnostics.diagnostic import (
+    Diagnostic,
+    Finding,
+    Related,
+    Report,
+    Severity,
+    identity,
+)
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Ros
-from smachac.ir.nodes import Node, StateType
+from smachac.ir.nodes import Leaf, Node, StateType
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code
 from smachac.targets.python import structure
@@ -65,6 +72,29 @@ class PrintedFunction:
     text: str = ""
 
 
+_ARGUMENT = r",\s*{0}\b(?=\s*[,)])|(?<=[(,])\s*{0}\b\s*,\s*"
+"""A name as an argument of a call, with the comma before or after it."""
+
+
+def _key_help(found: Finding, type_: StateType) -> str | None:
+    """The help for an undefined name in a template that is a userdata key of its state type."""
+    kind, *names = found.arguments
+    if kind != "undefined":
+        return None
+    lists = {"input": type_.input_keys, "output": type_.output_keys}
+    what = [part for part, keys in lists.items() if names[0] in [each.name for each in keys]]
+    if not what:
+        return None
+    text, at = found.span.source.text, found.span.start
+    begin, end = text.rfind("{{", 0, at), text.find("}}", at)
+    call = text[begin : end + 2] if begin >= 0 <= end else ""
+    changed = re.sub(_ARGUMENT.format(re.escape(names[0])), "", call)
+    sets = "reads it from the userdata" if what[0] == "input" else "sets it in the userdata"
+    why = f"`{names[0]}` is an {what[0]} key, and the class {sets}"
+    is_line = changed != call and "\n" not in call
+    return f"write `{changed}`: {why}" if is_line else f"remove `{names[0]}` here: {why}"
+
+
 @dataclass(slots=True)
 class ModuleParts:
     """The contributions of the states to a module, by block, and the state of its generation.
@@ -101,6 +131,10 @@ class ModuleParts:
     def fault(self, error: BlockError, node: Node) -> None:
         """Add an error, related to the first state that it was found for."""
         found = error.diagnostic
+        type_ = self.state_types.get(node.type) if isinstance(node, Leaf) else None
+        help = _key_help(found.finding, type_) if type_ is not None else None
+        if help is not None:
+            found = replace(found, finding=replace(found.finding, help=help))
         if found.span.source is not node.span.source:
             place = Related(span=node.span, message=f"`{node.name}` uses the template")
             finding = replace(found.finding, related=(*found.finding.related, place))
