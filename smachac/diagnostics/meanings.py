@@ -63,6 +63,9 @@ QUANTITIES = (
 )
 """Groups of words in names of variables, fields and keys, each with one meaning."""
 
+GENERAL = frozenset(["cb", "data", "key", "keys", "list", "name", "state", "type", "value"])
+"""Words that many names have: they say nothing about what is meant."""
+
 SHORTEST_STEM = 4
 """A longer word that begins with a shorter one than this need not be of its meaning."""
 
@@ -77,7 +80,9 @@ def by_words(word: str, names: Sequence[str]) -> str | None:
     found: dict[tuple[bool, int, int], list[str]] = {}
     for name in names:
         own = _words(name)
-        alike = [any(_are_alike(each, other) for other in own) for each in wanted]
+        alike = [
+            each not in GENERAL and any(_are_alike(each, other) for other in own) for each in wanted
+        ]
         if any(alike):
             rank = (alike[-1], sum(alike), -len(own))
             found.setdefault(rank, []).append(name)

@@ -54,6 +54,8 @@ def test_two_choices_of_one_meaning_are_no_guess() -> None:
         ("speed", ["max_speed", "min_speed"], None),
         ("pose", ["start_position", "force"], "start_position"),
         ("colour", ["speed"], None),
+        ("cond_cb", ["msg_cb", "topic"], None),
+        ("topic_name", ["topic", "frame_name"], "topic"),
     ],
 )
 def test_a_name_with_words_of_the_same_meaning(
