@@ -667,8 +667,8 @@ class _Resolver:
             near = guesser_of(tuple(known)).sure(word.text)
             read = {} if role or word.text in self.unknown else entries
             self.unknown.add(word.text)
-            scripts = () if role else self.library.script_names(around.source.name)
-            found_in = Searched(searched, names, known, scripts, other)
+            called = [] if role else self.library.script_names(around.source.name)
+            found_in = Searched(searched, names, known, called, other)
             self.not_found(unknown_template(word, read, found_in, self.other_type))
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
