@@ -56,7 +56,7 @@ def call_slips(own: OwnClass, library: Library) -> Iterator[ClassFault]:
                 *_in_other_order(own, module, method, every, library),
                 *_wrong_numbers(module, every),
                 *_no_modules(module, method, every, library),
-                *swapped_arguments(own, module, method, every, library),
+                *swapped_arguments(own, module, node, method, every, objects),
             ]
             yield from (each for each in found if not module.text.is_filled(each.name.span))
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
+from smachac.frontend.python_functions import caught
 from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.ir.class_facts import ClassFault, FaultKind
 
@@ -331,8 +332,7 @@ def _evaluated(node: ast.AST) -> Iterator[ast.AST]:
 
 def undefined_methods(own: OwnClass) -> list[ClassFault]:
     """The methods that a class calls on `self` and that neither it nor its bases define, each
-    once; also other attributes, if a near name is defined, or if `__init__` has an argument of that
-    name and does not keep it."""
+    once; also the attributes that nothing sets."""
     every = [each for module, _ in own.classes for each in ast.walk(module.text.tree)]
     names = {each.id for each in every if isinstance(each, ast.Name)}
     defined = {name for names_ in own.names for name in names_}
@@ -347,7 +347,7 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     quoted = {each.value for each in every if isinstance(each, ast.Constant)}
     called = [each.func for each in every if isinstance(each, ast.Call)]
     usual = sorted({*STATE_METHODS, *(name for name in defined if not name.startswith("__"))})
-    guess, found = guesser(usual), []
+    guess, found, unread = guesser(usual), list[ClassFault](), _only_unread(own, attributes)
     defined |= INHERITED
     constructor = own.method("__init__")
     arguments = ast.walk(constructor[1].args) if constructor is not None else ()
@@ -366,10 +366,37 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
                 found.append(ClassFault(kind="unset attribute", name=word))
                 continue
             near = guess(each.attr)
-            if near is not None or any(each is function for function in called):
-                defined.add(each.attr)
+            calls = any(each is function for function in called)
+            if near is None and not calls:
+                near = unread
+            defined.add(each.attr)
+            if near is not None or calls:
                 found.append(ClassFault(kind="undefined method", name=word, near=near))
+            elif isinstance(each.ctx, ast.Load) and each not in caught(node):
+                near = _unused_class(module, each.attr, names)
+                found.append(ClassFault(kind="never set", name=word, near=near))
     return found
+
+
+def _unused_class(module: Module, attribute: str, used: Set[str]) -> str:
+    """The call of the class with the name of an attribute that a module imports and does not use;
+    `...` without one."""
+    plain = attribute.replace("_", "").casefold()
+    names = [name for name, bound in module.names.items()
+             if name not in used and name.casefold() == plain
+             and isinstance(bound[-1], ast.ImportFrom)]  # fmt: skip
+    return f"{names[0]}(...)" if len(names) == 1 else "..."
+
+
+def _only_unread(own: OwnClass, attributes: Iterable[ast.Attribute]) -> str | None:
+    """The only attribute that the constructor of a class sets and that no code reads."""
+    found = own.method("__init__")
+    if found is None:
+        return None
+    read = {each.attr for each in attributes if isinstance(each.ctx, ast.Load)}
+    kept = {each.attr for each in ast.walk(found[1]) if isinstance(each, ast.Attribute)
+            and _of_self(each) and isinstance(each.ctx, ast.Store)} - read  # fmt: skip
+    return min(kept) if len(kept) == 1 else None
 
 
 def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:

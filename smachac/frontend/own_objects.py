@@ -12,6 +12,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.class_slips import operands
 from smachac.frontend.loader import Library
+from smachac.frontend.python_functions import caught
 from smachac.frontend.python_modules import (
     Module,
     OwnClass,
@@ -23,9 +24,6 @@ from smachac.ir.class_facts import ClassFault, FaultKind
 
 LATE = frozenset(["__getattr__", "__getattribute__", "__slots__", "__new__", "__class__"])
 """Names by which a class can have attributes that its text does not show."""
-
-WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
-"""Exceptions that a missing attribute raises."""
 
 
 def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
@@ -218,19 +216,3 @@ def members_of(node: ast.ClassDef) -> tuple[set[str], list[str]]:
     methods = [each.name for each in node.body
                if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]  # fmt: skip
     return names, methods
-
-
-def caught(node: ast.ClassDef) -> set[ast.AST]:
-    """The nodes in a `try` that catches the error of a missing attribute."""
-    found: set[ast.AST] = set()
-    for each in ast.walk(node):
-        if isinstance(each, ast.Try) and any(map(_is_wide, each.handlers)):
-            found.update(inner for line in each.body for inner in ast.walk(line))
-    return found
-
-
-def _is_wide(handler: ast.ExceptHandler) -> bool:
-    if handler.type is None:
-        return True
-    names = {each.id for each in ast.walk(handler.type) if isinstance(each, ast.Name)}
-    return bool(names & WIDE)

@@ -76,6 +76,7 @@ FaultKind = Literal[
     "undefined method",
     "no attribute",
     "unset attribute",
+    "never set",
     "no list",
     "no comma",
     "no tuple",

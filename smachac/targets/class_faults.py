@@ -116,6 +116,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`self.{word}` of `{name}` is never set",
         "write `self.{word} = {word}` in `__init__`",
     ),
+    "never set": (
+        "`self.{word}` of `{name}` is never set",
+        "write `self.{word} = {near}` in `__init__`",
+    ),
     "no list": (
         "`{word}` of `{name}` must be a list: SMACH cannot use another collection",
         "write `{word}=[...]`",
@@ -419,6 +423,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no return": "the result is None: code that uses it as a value fails, or goes on without it",
     "no tuple": "each letter of the text counts as a name",
     "unset attribute": "the code raises AttributeError when it runs: the machine stops",
+    "never set": "the code raises AttributeError when it runs: the machine stops",
     "no rospy import": "the code raises NameError when it runs: the machine stops",
     "no import": "the code raises NameError when it runs: the machine stops",
     "other scope": "the code raises NameError when it runs: the machine stops",
@@ -546,6 +551,7 @@ WRITTEN = frozenset[FaultKind](
         "other order",
         "swapped arguments",
         "no module here",
+        "never set",
     ]
 )
 """Faults whose words contain what was probably meant."""
