@@ -51,6 +51,11 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
             given = type_of_code(written.text) if key is not None else None
             if given is None and key is not None and written.span in facts.numbers:
                 given = FLOAT if misfit(Type("int"), key.type) is not None else None
+            made = dict(facts.collections).get(written.span) if key is not None else None
+            words = ""
+            if given is None and made is not None and key is not None:
+                single = present(key.type).name in SINGLE[made]
+                given, words = (Type(made, (ANY,)), COLLECTIONS[made]) if single else (None, "")
             if key is None or given is None or misfit(given, key.type) is None:
                 continue
             if misfit(given, Type("optional", (key.type,))) is None and given.name == "none":
@@ -59,10 +64,11 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
             such = f", such as `{found}`" if found else ""
             yield Finding(
                 span=written.span,
-                message=f"`{leaf.type}` writes {in_words(given)} to `{name}`, but its interface"
-                f" declares `{name}` as `{key.type}`",
+                message=f"`{leaf.type}` writes {words or in_words(given)} to `{name}`, but its"
+                f" interface declares `{name}` as `{key.type}`",
                 arguments=(name, str(widened(given)), str(key.type), "class"),
-                help=_plain_help(written.text, key.type)
+                help=(_list_help(name, key.type) if made == "list" else None)
+                or _plain_help(written.text, key.type)
                 or HELP.get(present(key.type).name)
                 or f"write a value of the type `{key.type}`{such}, or correct the interface",
                 related=(
@@ -71,6 +77,20 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 ),
                 node=path,
             )
+
+
+COLLECTIONS = {"list": "a list", "dict": "a dictionary"}
+
+SINGLE = {
+    "list": frozenset(["int", "float", "bool", "str", "one_of", "record"]),
+    "dict": frozenset(["int", "float", "bool", "str", "one_of", "list", "array"]),
+}
+"""The types whose values are certainly no lists, or no dictionaries."""
+
+
+def _list_help(name: str, type_: Type) -> str:
+    """The help for a list in place of one value."""
+    return f'write `{name}: "list[{type_}]"` in the interface, or write one item of the list'
 
 
 def _plain_help(text: str, type_: Type) -> str | None:
@@ -225,6 +245,44 @@ def wrong_operations(context: Context) -> Iterator[Finding]:
                     node=path,
                 )
                 break
+
+
+def wrong_comparisons(context: Context) -> Iterator[Finding]:
+    """The comparisons of a class with words that a variable or an input key cannot have by its
+    interface (SM312)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or type_.open or not facts.compared:
+            continue
+        keys = {key.name: key for key in type_.input_keys}
+        done = set[str]()
+        for each in facts.compared:
+            key = keys.get(each.name) if each.kind == "key" else None
+            variable = type_.variables.get(each.name) if each.kind == "variable" else None
+            declared = key or variable
+            kind = present(declared.type) if declared is not None else ANY
+            choices = [choice for choice in kind.args if isinstance(choice, str)]
+            known = kind.name == "one_of" and len(choices) == len(kind.args)
+            if not known or each.word.text in done.union(choices):
+                continue
+            done.add(each.word.text)
+            used = {one.word.text for one in facts.compared if one.name == each.name}
+            left = [choice for choice in choices if choice not in used]
+            near = guesser(choices)(each.word.text) or (left[0] if len(left) == 1 else None)
+            quote = each.word.span.text[:1]
+            written = [f"`{quote}{choice}{quote}`" for choice in ([near] if near else choices)]
+            yield Finding(
+                span=each.word.span,
+                message=f"`{leaf.type}` compares `{each.owner}` with `{each.word.text}`, but its"
+                f" interface declares `{each.name}` as `{kind}`",
+                arguments=(leaf.type, each.name, each.word.text),
+                help=f"write {' or '.join(written)}, or correct the interface",
+                related=(
+                    *(other_place(key.span, f"the interface declares `{key.name}`") if key else ()),
+                    *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                ),
+                node=path,
+            )
 
 
 def _length_help(text: str, userdata: str, lists: AbstractSet[str]) -> str | None:

@@ -11,7 +11,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
 from smachac.analysis.units import conversion
-from smachac.checks.class_values import wrong_operations, wrong_parts
+from smachac.checks.class_values import wrong_comparisons, wrong_operations, wrong_parts
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.swapped_params import swapped_params_help
@@ -338,7 +338,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     effect="the comparison always has the same result, so it decides nothing",
 )
 def constant_comparison(context: Context) -> Iterator[Finding]:
-    """Code in the script compares values that, by their types, can never be equal.
+    """Code compares values that, by their types, can never be equal.
 
     Python reports no error: the condition is always false, or always true, and the machine takes a
     wrong transition.
@@ -373,6 +373,7 @@ def constant_comparison(context: Context) -> Iterator[Finding]:
     """
     for site, fault in _faults(context, "comparison"):
         yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
+    yield from wrong_comparisons(context)
 
 
 def mixed_units(context: Context) -> Iterator[Finding]:

@@ -1,15 +1,18 @@
-"""Operations on userdata keys in `execute`, and numbers that it writes to keys."""
+"""Operations on userdata keys in `execute`, numbers that it writes to keys, and comparisons of
+variables and keys with texts."""
 
 from __future__ import annotations
 
 import ast
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from typing import Literal
 
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.python_functions import access_of
-from smachac.frontend.python_modules import Module
+from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.frontend.userdata_parts import TESTS, tried_code, written_keys
+from smachac.ir.class_facts import Compared
 
 PURE = frozenset(["len", "abs", "min", "max", "round", "sum", "int", "float", "bool"])
 """Functions of Python that the types of expressions know (analysis/expression_types.py)."""
@@ -75,6 +78,31 @@ def number_writes(module: Module, function: ast.FunctionDef) -> tuple[Span, ...]
     return tuple(module.text.span(each) for each in found)
 
 
+def collection_writes(
+    module: Module, function: ast.FunctionDef
+) -> Iterator[tuple[Span, Literal["list", "dict"]]]:
+    """The places of the values that `execute` writes to userdata keys and that are a list or a
+    dictionary, also in a local variable."""
+    userdata = function.args.args[1].arg
+    every = [*ast.walk(function)]
+    values = [each.value for each in every
+              if isinstance(each, ast.Assign) and len(each.targets) == 1
+              and access_of(each.targets[0], userdata) is not None]  # fmt: skip
+    if not values:
+        return
+    local = dict(_local_values(every))
+    bound = {each.arg for each in every if isinstance(each, ast.arg)} | local.keys()
+    for each in values:
+        match local.get(each.id) if isinstance(each, ast.Name) else each:
+            case ast.List() | ast.ListComp():
+                yield module.text.span(each), "list"
+            case ast.Dict() | ast.DictComp():
+                yield module.text.span(each), "dict"
+            case ast.Call(func=ast.Name(id="list" | "sorted" | "dict" as name)):
+                if name not in module.names and name not in bound:
+                    yield module.text.span(each), "dict" if name == "dict" else "list"
+
+
 def _local_values(every: list[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
     """The local names that are bound once, by an assignment, each with its value."""
     stored = [each for each in every if isinstance(each, ast.Name)]
@@ -125,3 +153,75 @@ def _is_math(module: Module) -> bool:
         case (ast.Import(names=names),):
             return any(each.name == "math" and each.asname is None for each in names)
     return False
+
+
+# --- comparisons with texts
+
+
+def compared_texts(
+    own: OwnClass, kept: Mapping[str, str], execute: ast.FunctionDef | None
+) -> Iterator[Compared]:
+    """The texts with which a class compares its attributes that are a parameter of the constructor
+    for ever (`kept`), and the keys that `execute` does not write; not the default values of
+    parameters."""
+    userdata = execute.args.args[1].arg if execute is not None else ""
+    written = written_keys([*ast.walk(execute)], userdata) if execute is not None else frozenset()
+    defaults = _defaults(own)
+    for module, node in own.classes:
+        others = of_other_objects(node)
+        inside = {*ast.walk(execute)} if execute in node.body and execute is not None else set()
+        for each in ast.walk(node):
+            for side, texts in _equalities(each) if each not in others else ():
+                key = access_of(side, userdata) if each in inside else None
+                match side:
+                    case ast.Attribute(value=ast.Name(id="self"), attr=name) if name in kept:
+                        found = kept[name]
+                    case _ if key is not None and key.key not in written:
+                        found = key.key
+                    case _:
+                        continue
+                owner = module.text.span(side).text
+                for text in texts:
+                    span = module.text.span(text)
+                    known = key is None and text.value in defaults.get(found, ())
+                    if not known and not module.text.is_filled(span):
+                        word = Word(str(text.value), span)
+                        yield Compared("key" if key else "variable", found, owner, word)
+
+
+def _equalities(node: ast.AST) -> Iterator[tuple[ast.expr, list[ast.Constant]]]:
+    """The values that a comparison or `match` compares with texts, each with the texts."""
+    match node:
+        case ast.Compare(left=left, ops=[ast.Eq() | ast.NotEq()], comparators=[right]):
+            yield left, _texts([right])
+            yield right, _texts([left])
+        case ast.Compare(left=left, ops=[ast.In() | ast.NotIn()], comparators=[right]):
+            if isinstance(right, ast.List | ast.Tuple | ast.Set):
+                yield left, _texts(right.elts)
+        case ast.Match(subject=subject, cases=cases):
+            patterns = [part for case in cases for part in _alternatives(case.pattern)]
+            yield subject, _texts([each.value for each in patterns
+                                   if isinstance(each, ast.MatchValue)])  # fmt: skip
+
+
+def _alternatives(pattern: ast.pattern) -> list[ast.pattern]:
+    return pattern.patterns if isinstance(pattern, ast.MatchOr) else [pattern]
+
+
+def _texts(nodes: list[ast.expr]) -> list[ast.Constant]:
+    return [each for each in nodes
+            if isinstance(each, ast.Constant) and isinstance(each.value, str)]  # fmt: skip
+
+
+def _defaults(own: OwnClass) -> dict[str, list[object]]:
+    """The default values of the parameters of the constructor that are constants."""
+    found = own.method("__init__")
+    if found is None:
+        return {}
+    taken = found[1].args
+    positional = [*taken.posonlyargs, *taken.args]
+    pairs = [*zip(reversed(positional), reversed(taken.defaults), strict=False)]
+    pairs += [(each, default) for each, default in
+              zip(taken.kwonlyargs, taken.kw_defaults, strict=True) if default]  # fmt: skip
+    return {each.arg: [default.value] for each, default in pairs
+            if isinstance(default, ast.Constant)}  # fmt: skip

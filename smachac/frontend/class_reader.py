@@ -10,7 +10,7 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TypedDict
+from typing import Literal, TypedDict
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -24,7 +24,12 @@ from smachac.frontend.class_names import (
     undefined_methods,
     undefined_names,
 )
-from smachac.frontend.class_operations import number_writes, operations
+from smachac.frontend.class_operations import (
+    collection_writes,
+    compared_texts,
+    number_writes,
+    operations,
+)
 from smachac.frontend.class_slips import (
     is_uncalled_super,
     joined_texts,
@@ -34,6 +39,7 @@ from smachac.frontend.class_slips import (
     wrong_base,
 )
 from smachac.frontend.class_values import (
+    kept_parameters,
     loops,
     lost_results,
     texts_as_lists,
@@ -170,6 +176,7 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         values=written_values(own, execute, library) if execute is not None else (),
         unused=_unused(own, execute) if execute is not None else (),
         loops=loops(own) if whole else (),
+        compared=tuple(compared_texts(own, kept_parameters(own), execute)) if whole else (),
         hooks=_hooks(own),
         messages=class_messages(own),
         parts=(*parts_read(_text_of(own, execute), execute), *parts_of_arguments(own, execute))
@@ -183,6 +190,7 @@ class _Operations(TypedDict, total=False):
     operations: tuple[Word, ...]
     userdata: str
     numbers: tuple[Span, ...]
+    collections: tuple[tuple[Span, Literal["list", "dict"]], ...]
 
 
 def _operations(own: OwnClass, execute: ast.FunctionDef | None) -> _Operations:
@@ -194,6 +202,7 @@ def _operations(own: OwnClass, execute: ast.FunctionDef | None) -> _Operations:
         "operations": operations(module, execute),
         "userdata": execute.args.args[1].arg,
         "numbers": number_writes(module, execute),
+        "collections": tuple(collection_writes(module, execute)),
     }
 
 

@@ -184,6 +184,16 @@ class Part(NamedTuple):
     span: Span
 
 
+class Compared(NamedTuple):
+    """A text with which code compares a variable or an input key, at its place; `owner` is the text
+    of the other side: `self.action`."""
+
+    kind: Literal["variable", "key"]
+    name: str
+    owner: str
+    word: Word
+
+
 class MessageRef(NamedTuple):
     """A type of ROS that code names: `SetBool` of `std_srvs.srv`. `part` is the message of it that
     is meant: `request`; empty for the type itself."""
@@ -246,8 +256,10 @@ class ClassFacts:
     class without an interface to keys that the constants in its constructor do not list. `hooks`
     are the methods of FlexBE's states, such as `on_enter`, that nothing in the class calls.
     `operations` are the comparisons and calculations of `execute` over userdata keys, whose name
-    is `userdata`; `numbers` are the places of written values that are one number. `messages` are
-    those of ROS; None if it has none.
+    is `userdata`; `numbers` are the places of written values that are one number, `collections`
+    those that are a list or a dictionary, with that type. `compared` are
+    the texts with which it compares variables and keys. `messages` are those of ROS; None if it
+    has none.
     """
 
     name: Word | None = None
@@ -280,6 +292,8 @@ class ClassFacts:
     operations: tuple[Word, ...] = ()
     userdata: str = ""
     numbers: tuple[Span, ...] = ()
+    collections: tuple[tuple[Span, Literal["list", "dict"]], ...] = ()
+    compared: tuple[Compared, ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

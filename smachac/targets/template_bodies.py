@@ -247,9 +247,7 @@ def _argument_fault(
     return ClassFault(kind="no argument here", name=Word(missing[0], span)) if missing else None
 
 
-def _only_call(
-    text: PythonText, body: re.Match[str], callee: re.Pattern[str]
-) -> ast.Call | None:
+def _only_call(text: PythonText, body: re.Match[str], callee: re.Pattern[str]) -> ast.Call | None:
     """The only call of a class in the block `body`, also behind an expression of Jinja that prints
     nothing: `{{ '' }}Measure(...)`."""
     starts = {each.end() - 1 for each in callee.finditer(text.source.text, *body.span(1))}

@@ -103,8 +103,11 @@ def test_names_that_nothing_defines(body: str, name: str, help: str) -> None:
         ("self.grip()", "HEIGHT = 0.1", "def equip(one):\n    one.grip = print\nHEIGHT = 0.1"),
         ("self.search()", "def execute(self, userdata)", "def execute(self, userdata: 'Later')"),
         ("print(self.known)", "def execute", "def __getattr__(self, n): ...\n\n    def execute"),
-        ("try:\n            x = self.known\n        except AttributeError:\n            pass",
-         "", ""),
+        (
+            "try:\n            x = self.known\n        except AttributeError:\n            pass",
+            "",
+            "",
+        ),
         ("x: unknown = 1", "", ""),
         ("while not self._preempt_requested: break", "", ""),
         ("if (n := 3) > 2: print(n)", "", ""),

@@ -185,6 +185,69 @@ def test_one_number_for_a_number(type_: str) -> None:
     assert reported("", "2 * math.hypot(*userdata.offset)", type_) == []
 
 
+@pytest.mark.parametrize(
+    ("code", "out", "type_", "help"),
+    [
+        ("masses = []\nmasses.append(self.scale)\nuserdata.out = masses", "1.0", "float",
+         'write `out: "list[float]"` in the interface, or write one item of the list'),
+        ("", "[tools.good(each) for each in userdata.order]", "str",
+         'write `out: "list[str]"` in the interface, or write one item of the list'),
+        ("masses = {}\nuserdata.out = masses", "[1.0]", '"list[float]"',
+         "write a value of the type `list[float]`, such as `[1.5, 1.5]`, or correct the interface"),
+        ("masses = []\nuserdata.out = masses", "[1.0]", '"list[float]"', ""),
+        ("masses = []\nuserdata.out = masses[0]", "1.0", "float", ""),
+        ("masses = []\nmasses = tools.good(masses)\nuserdata.out = masses", "1.0", "float", ""),
+        ("masses = {}\nuserdata.out = masses", "{}", "{a: float}", ""),
+    ],
+)  # fmt: skip
+def test_a_collection_for_one_value(code: str, out: str, type_: str, help: str) -> None:
+    found = [each for each in reported(code, out, type_) if each[0] == "SM304"]
+    assert [each[2] for each in found] == ([help] if help else [])
+
+
+# --- comparisons with words
+
+
+@pytest.mark.parametrize(
+    ("code", "word", "help"),
+    [
+        ('if self.side == "lift":\n    pass', '"lift"', 'write `"left"`, or correct the interface'),
+        ('if "up" != self.side:\n    pass', '"up"',
+         'write `"left"` or `"right"`, or correct the interface'),
+        ('if self.side == "left" or self.side == "up":\n    pass', '"up"',
+         'write `"right"`, or correct the interface'),
+        ("if self.side in ('up', 'left', 'right'):\n    pass", "'up'",
+         "write `'left'` or `'right'`, or correct the interface"),
+        ('match self.side:\n    case "left" | "up":\n        pass', '"up"',
+         'write `"right"`, or correct the interface'),
+        ('if userdata.order == "bolts":\n    pass', '"bolts"',
+         'write `"bolt"`, or correct the interface'),
+        ('if userdata.order == "bolt" or self.side == "right":\n    pass', "", ""),
+        ('if self.side == "none":\n    pass', "", ""),  # the default value
+        ('self.side = self.side.upper()\nif self.side == "LEFT":\n    pass', "", ""),
+        ('userdata.order = "x"\nif userdata.order == "x":\n    pass', "", ""),
+        ('if other(self.side) == "up":\n    pass', "", ""),
+    ],
+)  # fmt: skip
+def test_a_comparison_with_a_word(code: str, word: str, help: str) -> None:
+    body = "\n".join(f"        {line}" for line in code.split("\n"))
+    head = '    def __init__(self, side="none"):\n        self.side = side'
+    interface = INTERFACE.replace("OUT", "any").replace('order: "list[str]"',
+                                                        'order: "one_of[bolt, nut]"')  # fmt: skip
+    files = {
+        "main.yml": MAIN.replace('"list[str]", value: [bolt]', '"one_of[bolt, nut]", value: bolt'),
+        "templates/Work.yml": f"variables: {{side: {{one_of: [left, right]}}}}\n{interface}",
+        "cell/__init__.py": "",
+        "cell/states.py": CLASS.replace("    def __init__(self):", head)
+        .replace("CODE", body).replace("OUT", "None"),
+    }  # fmt: skip
+    files["main.yml"] = files["main.yml"].replace(
+        "template: Work", "template: Work\n      side: left"
+    )
+    report = [each for each in analysed(files).report if each.code == "SM312"]
+    assert [(each.span.text, each.help) for each in report] == ([(word, help)] if help else [])
+
+
 # --- results of functions that return nothing
 
 RETURN = "write `return MASSES.get(name)`"
