@@ -9,8 +9,9 @@ from collections.abc import Set as AbstractSet
 from functools import reduce
 
 from smachac.analysis.context import Context
-from smachac.analysis.expression_errors import expression_faults
+from smachac.analysis.expression_errors import FaultKind, expression_faults
 from smachac.analysis.expression_types import parsed, type_of_data
+from smachac.analysis.fixed_lists import lacks_entry
 from smachac.analysis.type_lattice import (
     BOOL,
     FLOAT,
@@ -32,7 +33,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import Part, Step
 from smachac.ir.expressions import Binary, Call, Compare
-from smachac.ir.nodes import Data, Struct
+from smachac.ir.nodes import Data, Key, Leaf, Struct
 from smachac.ir.types import ANY, Type
 
 MADE = {"str": STR, "repr": STR, "float": FLOAT, "bool": BOOL, "len": Type("int")}
@@ -206,9 +207,9 @@ def wrong_loops(context: Context) -> Iterator[Finding]:
                 )
 
 
-def wrong_operations(context: Context) -> Iterator[Finding]:
+def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
     """The comparisons and calculations of a class that the types of its input keys do not support
-    (SM311)."""
+    (SM311), or that seem to be in another unit (SM522)."""
     for path, leaf, facts in leaves_by_type(context, declared=True):
         type_ = context.machine.state_types.get(leaf.type)
         if type_ is None or type_.built_in or type_.open or not facts.operations:
@@ -221,7 +222,7 @@ def wrong_operations(context: Context) -> Iterator[Finding]:
                 expression_faults(tree, mapping(types.items()), (facts.userdata,)) if tree else ()
             )
             for fault in found:
-                known = {*fault.keys} <= types.keys() and fault.kind == "operation"
+                known = {*fault.keys} <= types.keys() and fault.kind == kind
                 array = isinstance(fault.expr, Binary) and not lists.isdisjoint(fault.keys)
                 if not known or array or not isinstance(fault.expr, Binary | Compare | Call):
                     continue
@@ -233,6 +234,7 @@ def wrong_operations(context: Context) -> Iterator[Finding]:
                     help=_length_help(word.text, facts.userdata, lists & {*fault.keys})
                     or fault.help
                     or "correct the operation, or the types in the interface",
+                    effect=fault.effect,
                     related=(
                         *(
                             place
@@ -319,6 +321,9 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
         keys = {key.name: key for key in type_.input_keys}
         for part in facts.parts:
             key = keys.get(part.key)
+            if key is not None and is_open(key.type):
+                yield from _missing_entry(context, path, leaf, key, part)
+                continue
             fault = _wrong_part(key.type, part) if key is not None else None
             if key is None or fault is None:
                 continue
@@ -344,6 +349,36 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
                 severity=Severity.WARNING,
                 node=path,
             )
+
+
+def _missing_entry(
+    context: Context, path: str, leaf: Leaf, key: Key, part: Part
+) -> Iterator[Finding]:
+    """The finding on an entry that the mapping of the script in a key without a type lacks."""
+    cell = context.types.cells.get((path, key.name))
+    match part.steps:
+        case (("item", str(entry)),) if cell is not None and entry:
+            pass
+        case _:
+            return
+    if not lacks_entry(cell, entry, context.machine.state_types):
+        return
+    origins = [flow.origin for alike in cell.flows.values() for flow in alike]
+    value = origins[0].value
+    names = [name for name, _ in value.entries] if isinstance(value, Struct) else []
+    yield Finding(
+        span=part.span,
+        message=f"`{leaf.type}` reads `{part.text}`, but the mapping of `{key.name}` in the script"
+        f" has no entry `{entry}`",
+        arguments=(key.name, entry, "class"),
+        help=did_you_mean(guesser(names)(entry)) or f"use one of its entries: {listed(names)}",
+        related=(
+            *other_place(origins[0].span, f"the value of `{key.name}`"),
+            *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+        ),
+        severity=Severity.WARNING,
+        node=path,
+    )
 
 
 def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:

@@ -328,7 +328,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         help = swapped or _number_in_quotes(site, fault)
         yield replace(finding, help=help) if help else finding
     yield from wrong_parts(context)
-    yield from wrong_operations(context)
+    yield from wrong_operations(context, "operation")
 
 
 @rule(
@@ -382,6 +382,12 @@ def mixed_units(context: Context) -> Iterator[Finding]:
         finding = _finding(site, fault, f"in {_owner(site)}, {fault.what}")
         value = _in_other_unit(site, fault)
         yield replace(finding, help=f"{finding.help}, {value}") if value else finding
+
+
+def doubtful_comparisons(context: Context) -> Iterator[Finding]:
+    """The comparisons of values in radians with numbers that seem to be in degrees (SM522)."""
+    for site, fault in _faults(context, "doubt"):
+        yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
 
 
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")

@@ -68,7 +68,7 @@ from smachac.frontend.python_modules import (
 )
 from smachac.frontend.python_source import PythonText, name_span
 from smachac.frontend.silent_results import silent_results
-from smachac.frontend.userdata_parts import parts_of_arguments, parts_read
+from smachac.frontend.userdata_parts import added_entries, parts_of_arguments, parts_read
 from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
 
 PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
@@ -191,6 +191,7 @@ class _Operations(TypedDict, total=False):
     userdata: str
     numbers: tuple[Span, ...]
     collections: tuple[tuple[Span, Literal["list", "dict"]], ...]
+    entries: frozenset[str] | None
 
 
 def _operations(own: OwnClass, execute: ast.FunctionDef | None) -> _Operations:
@@ -203,6 +204,7 @@ def _operations(own: OwnClass, execute: ast.FunctionDef | None) -> _Operations:
         "userdata": execute.args.args[1].arg,
         "numbers": number_writes(module, execute),
         "collections": tuple(collection_writes(module, execute)),
+        "entries": added_entries(own, execute),
     }
 
 

@@ -258,8 +258,8 @@ class ClassFacts:
     `operations` are the comparisons and calculations of `execute` over userdata keys, whose name
     is `userdata`; `numbers` are the places of written values that are one number, `collections`
     those that are a list or a dictionary, with that type. `compared` are
-    the texts with which it compares variables and keys. `messages` are those of ROS; None if it
-    has none.
+    the texts with which it compares variables and keys. `entries` are those that it can add to
+    mappings; None: not known. `messages` are those of ROS; None if it has none.
     """
 
     name: Word | None = None
@@ -294,6 +294,7 @@ class ClassFacts:
     numbers: tuple[Span, ...] = ()
     collections: tuple[tuple[Span, Literal["list", "dict"]], ...] = ()
     compared: tuple[Compared, ...] = ()
+    entries: frozenset[str] | None = None
 
     @property
     def returns(self) -> tuple[Word, ...]:

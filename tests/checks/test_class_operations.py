@@ -248,6 +248,97 @@ def test_a_comparison_with_a_word(code: str, word: str, help: str) -> None:
     assert [(each.span.text, each.help) for each in report] == ([(word, help)] if help else [])
 
 
+# --- angles in degrees
+
+
+@pytest.mark.parametrize(
+    ("code", "help"),
+    [
+        ("if userdata.turn > 90:\n    pass", "write `1.571`, which is 90 degrees in radians"),
+        ("if -90.0 < userdata.turn:\n    pass", "write `-1.571`, which is -90 degrees in radians"),
+        ("if userdata.turn > 3:\n    pass", ""),
+        ("if userdata.turn > 6.5:\n    pass", ""),
+        ("if math.degrees(userdata.turn) > 90:\n    pass", ""),
+        ("if userdata.count > 90:\n    pass", ""),
+    ],
+)
+@pytest.mark.parametrize("in_class", [True, False])
+def test_an_angle_in_degrees(code: str, help: str, in_class: bool) -> None:
+    body = "\n".join(f"        {line}" for line in code.split("\n")) if in_class else ""
+    condition = code.split("\n")[0].removeprefix("if ").removesuffix(":")
+    condition = condition.replace("userdata", "ud") if not in_class else "ud.count > 1"
+    main = MAIN.replace("count: 0", 'count: 0\n  turn: {type: "float<rad>", value: 0.5}')
+    main = main.replace("[count, order", "[turn, count, order").replace("worked: done", "worked: B")
+    main += f"""\
+  - B:
+      template: ConditionalOutcomeState
+      input_keys: [turn, count]
+      outcomes: [yes]
+      callbacks: {{yes: 'lambda ud: {condition}'}}
+      default_outcome: no
+      transitions: {{yes: done, no: done}}
+"""
+    files = {
+        "main.yml": main.replace("[yes]", "[high]").replace("{yes:", "{high:").replace("no", "low"),
+        "templates/Work.yml": INTERFACE.replace("OUT", "any").replace("keys: {count",
+                                                                      "keys: {turn: float<rad>, count"),
+        "cell/__init__.py": "",
+        "cell/states.py": CLASS.replace("CODE", body).replace("OUT", "None")
+        .replace('input_keys=["count"', 'input_keys=["turn", "count"'),
+    }  # fmt: skip
+    found = [each.help for each in analysed(files).report if each.code == "SM522"]
+    assert found == ([help] if help else [])
+
+
+# --- entries of mappings of the script
+
+
+@pytest.mark.parametrize(
+    ("code", "main", "found"),
+    [
+        ('print(userdata.door["widt"])', "", [("SM311", '"widt"', "did you mean `width`?")]),
+        ('door = userdata.door\nprint(door["x"])', "",
+         [("SM311", '"x"', "use one of its entries: `name`, `width`")]),
+        ("", "ud.door['widt'] > 1", [("SM311", "ud.door['widt']", "did you mean `width`?")]),
+        ("", "ud.door.get('widt') == 1", []),
+        ("", "'widt' in ud.door and ud.door['widt'] > 1", []),
+        ('print(userdata.door["width"])', "ud.door['width'] > 1", []),
+        ('if "x" in userdata.door:\n    print(userdata.door["x"])', "", []),
+        ('userdata.door["x"] = 1', "ud.door['x'] > 1", []),
+        ("userdata.door[self.scale] = 1", "ud.door['x'] > 1", []),
+        ("door = userdata.door\ndoor.update(x=1)", "ud.door['x'] > 1", []),
+        ("tools.good(userdata.door)", "ud.door['x'] > 1", []),
+        ('print(userdata.door["name"])', "ud.door['widt'] > 1",
+         [("SM311", "ud.door['widt']", "did you mean `width`?")]),
+    ],
+)  # fmt: skip
+def test_an_entry_of_a_mapping(code: str, main: str, found: list[tuple[str, str, str]]) -> None:
+    body = "\n".join(f"        {line}" for line in code.split("\n"))
+    text = MAIN.replace("count: 0", "count: 0\n  door: {name: front, width: 0.9}")
+    text = text.replace("[count, order", "[door, count, order").replace("worked: done", "worked: B")
+    text += f"""\
+  - B:
+      template: ConditionalOutcomeState
+      input_keys: [door]
+      outcomes: [wide]
+      callbacks:
+        wide: "lambda ud: {main or "ud.door['width'] > 1"}"
+      default_outcome: small
+      transitions: {{wide: done, small: done}}
+"""
+    interface = INTERFACE.replace("OUT", "any").replace("keys: {count", "keys: {door: any, count")
+    files = {
+        "main.yml": text,
+        "templates/Work.yml": interface,
+        "cell/__init__.py": "",
+        "cell/states.py": CLASS.replace("CODE", body).replace("OUT", "None")
+        .replace('input_keys=["count"', 'input_keys=["door", "count"'),
+        "cell/tools.py": TOOLS,
+    }  # fmt: skip
+    report = [each for each in analysed(files).report if each.code == "SM311"]
+    assert [(each.code, each.span.text, each.help) for each in report] == found
+
+
 # --- results of functions that return nothing
 
 RETURN = "write `return MASSES.get(name)`"
