@@ -36,6 +36,9 @@ from smachac.ir.expressions import Binary, Call, Compare
 from smachac.ir.nodes import Data, Key, Leaf, Struct
 from smachac.ir.types import ANY, Type
 
+MOST_ITEMS = 20
+"""The most items of a list or dictionary whose parts are typed one by one."""
+
 MADE = {"str": STR, "repr": STR, "float": FLOAT, "bool": BOOL, "len": Type("int")}
 """The types that functions of Python return."""
 
@@ -68,7 +71,8 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 message=f"`{leaf.type}` writes {words or in_words(given)} to `{name}`, but its"
                 f" interface declares `{name}` as `{key.type}`",
                 arguments=(name, str(widened(given)), str(key.type), "class"),
-                help=(_list_help(name, key.type) if made == "list" else None)
+                help=(_list_help(name, key.type) if words == COLLECTIONS["list"] else None)
+                or _field_help(given, key.type)
                 or _plain_help(written.text, key.type)
                 or HELP.get(present(key.type).name)
                 or f"write a value of the type `{key.type}`{such}, or correct the interface",
@@ -92,6 +96,20 @@ SINGLE = {
 def _list_help(name: str, type_: Type) -> str:
     """The help for a list in place of one value."""
     return f'write `{name}: "list[{type_}]"` in the interface, or write one item of the list'
+
+
+def _field_help(given: Type, type_: Type) -> str | None:
+    """The help for a dictionary whose keys are not the fields of a record."""
+    wanted = present(type_)
+    if given.name != "mapping" or wanted.name != "record":
+        return None
+    missing = [name for name in fields(wanted) if name not in fields(given)]
+    more = [name for name in fields(given) if name not in fields(wanted)]
+    if len(missing) == len(more) == 1:
+        return f'write `"{missing[0]}"` in place of `"{more[0]}"`'
+    if len(missing) == 1:
+        return f'add `"{missing[0]}": ...` to the dictionary'
+    return None
 
 
 def _plain_help(text: str, type_: Type) -> str | None:
@@ -478,11 +496,30 @@ def type_of_code(text: str) -> Type | None:
         case ast.Call(func=ast.Name(id=name)) if name in MADE:
             return MADE[name]
     try:
-        data = _data(ast.literal_eval(node))
+        type_ = _type_of_node(node)
     except (ValueError, TypeError, RecursionError, MemoryError):
         return None
-    type_ = type_of_data(data)
     return None if is_open(type_) else type_
+
+
+def _type_of_node(node: ast.expr) -> Type:
+    """The type of an expression with the parts that are literals, `any` for the others."""
+    try:
+        return type_of_data(_data(ast.literal_eval(node)))
+    except (ValueError, TypeError):
+        pass
+    match node:
+        case ast.List(elts=items) | ast.Tuple(elts=items):
+            if len(items) <= MOST_ITEMS and not any(
+                isinstance(each, ast.Starred) for each in items
+            ):
+                return Type("tuple", tuple(map(_type_of_node, items)))
+        case ast.Dict(keys=keys, values=values) if len(keys) <= MOST_ITEMS:
+            names = [each.value for each in keys
+                     if isinstance(each, ast.Constant) and isinstance(each.value, str)]  # fmt: skip
+            if len(names) == len(keys):
+                return mapping(zip(names, map(_type_of_node, values), strict=True))
+    return ANY
 
 
 def _data(value: object) -> Data:

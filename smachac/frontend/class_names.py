@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.python_functions import caught
-from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
+from smachac.frontend.python_modules import Module, OwnClass, is_smach_state, of_other_objects
 from smachac.ir.class_facts import ClassFault, FaultKind
 
 BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "__class__", "_"])
@@ -341,7 +341,9 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     attributes = [each for each in every if isinstance(each, ast.Attribute)]
     if not LATE.isdisjoint(each.attr for each in attributes):
         return []
-    defined |= {each.attr for each in attributes if isinstance(each.ctx, ast.Store)}
+    stored = [each for each in attributes if isinstance(each.ctx, ast.Store)]
+    others = _of_other_classes(own) if own.root == "state" else set()
+    defined |= {each.attr for each in stored if each not in others}
     defined |= {each.left.attr for each in map(compared, every)
                 if each is not None and isinstance(each.left, ast.Attribute)}  # fmt: skip
     quoted = {each.value for each in every if isinstance(each, ast.Constant)}
@@ -373,18 +375,40 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
             if near is not None or calls:
                 found.append(ClassFault(kind="undefined method", name=word, near=near))
             elif isinstance(each.ctx, ast.Load) and each not in caught(node):
-                near = _unused_class(module, each.attr, names)
+                near = _meant_value(module, each.attr)
                 found.append(ClassFault(kind="never set", name=word, near=near))
     return found
 
 
-def _unused_class(module: Module, attribute: str, used: Set[str]) -> str:
-    """The call of the class with the name of an attribute that a module imports and does not use;
-    `...` without one."""
+def _of_other_classes(own: OwnClass) -> set[ast.AST]:
+    """The attributes of `self` in the other states of the modules of a class, which do not set
+    attributes of its objects."""
+    mine = {node for _, node in own.classes}
+    return {
+        each
+        for module in {id(module): module for module, _ in own.classes}.values()
+        for node in module.text.tree.body
+        if isinstance(node, ast.ClassDef) and node not in mine
+        and len(node.bases) == 1 and is_smach_state(module, node.bases[0])
+        for each in ast.walk(node)
+        if isinstance(each, ast.Attribute) and _of_self(each)
+    }  # fmt: skip
+
+
+def _meant_value(module: Module, attribute: str) -> str:
+    """The value that another class of a module gives to an attribute of the same name, or the call
+    of a class with that name; `...` without one."""
+    given = {
+        " ".join(module.text.span(each.value).text.split())
+        for each in ast.walk(module.text.tree)
+        if isinstance(each, ast.Assign) and isinstance(each.targets[0], ast.Attribute)
+        and each.targets[0].attr == attribute and isinstance(each.value, ast.Call)
+    }  # fmt: skip
+    if len(given) == 1:
+        return min(given)
     plain = attribute.replace("_", "").casefold()
     names = [name for name, bound in module.names.items()
-             if name not in used and name.casefold() == plain
-             and isinstance(bound[-1], ast.ImportFrom)]  # fmt: skip
+             if name.casefold() == plain and isinstance(bound[-1], ast.ImportFrom)]  # fmt: skip
     return f"{names[0]}(...)" if len(names) == 1 else "..."
 
 

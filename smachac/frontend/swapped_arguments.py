@@ -144,16 +144,36 @@ def swapped_arguments(
             continue
         if not any(_name(each) for each in call.args):
             continue
-        library = objects.library
-        function = called_function(own, module, method, call.func, library)
-        called = function[1] if function is not None else objects.method(module, node, call.func)
-        called = called or _constructor(module, call.func, library)
-        if called is None or called is method or called.decorator_list:
+        called = called_code(own, module, node, method, call, objects)
+        if called is None or called is method:
             continue
         places = _places(call, called)
         pair = _pair(places, called) if places is not None else None
         if pair is not None:
             yield _fault(module, call, places or [], pair)
+
+
+def called_code(
+    own: OwnClass,
+    module: Module,
+    node: ast.ClassDef,
+    method: ast.FunctionDef,
+    call: ast.Call,
+    objects: Objects,
+) -> ast.FunctionDef | None:
+    """The function or method of the project that a call in a method of a class runs, also that of
+    an object, or the constructor; None for one with a decorator."""
+    function = called_function(own, module, method, call.func, objects.library)
+    called = function[1] if function is not None else objects.method(module, node, call.func)
+    called = called or _constructor(module, call.func, objects.library)
+    return called if called is not None and not called.decorator_list else None
+
+
+def takes_self(call: ast.Call, function: ast.FunctionDef) -> bool:
+    """Whether the first parameter of a function is the object of the call."""
+    taken = [*function.args.posonlyargs, *function.args.args]
+    bound = isinstance(call.func, ast.Attribute) or function.name == "__init__"
+    return bound and [each.arg for each in taken[:1]] == ["self"]
 
 
 def _constructor(module: Module, called: ast.expr, library: Library) -> ast.FunctionDef | None:
@@ -173,9 +193,7 @@ def _places(call: ast.Call, function: ast.FunctionDef) -> list[_Place] | None:
     if any(isinstance(each, ast.Starred) for each in call.args):
         return None
     names = [each.arg for each in (*function.args.posonlyargs, *function.args.args)]
-    bound = isinstance(call.func, ast.Attribute) or function.name == "__init__"
-    bound = bound and names[:1] == ["self"]
-    names = names[1:] if bound else names
+    names = names[1:] if takes_self(call, function) else names
     if len(names) < len(call.args):
         return None
     return [_Place(name, value) for name, value in zip(names, call.args, strict=False)]

@@ -77,6 +77,8 @@ FaultKind = Literal[
     "no attribute",
     "unset attribute",
     "never set",
+    "extra argument",
+    "lacking argument",
     "no list",
     "no comma",
     "no tuple",

@@ -226,6 +226,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "the arguments of `{word}` have changed places",
         "write `{near}`",
     ),
+    "extra argument": (
+        "`{owner}` has no parameter for `{word}`",
+        "its parameters are those of `{near}`",
+    ),
+    "lacking argument": (
+        "this call of `{word}` does not pass `{more}`",
+        "write `{near}`",
+    ),
     "number of values": (
         "the text has {more}, but gets {file}",
         "write one value for each place",
@@ -449,6 +457,8 @@ EFFECTS: Mapping[FaultKind, str] = {
     "called early": "the function runs at once, and not later",
     "other order": "the comparison has the same result in every run",
     "swapped arguments": "{more}",
+    "extra argument": "the call raises TypeError when it runs: the machine stops",
+    "lacking argument": "the call raises TypeError when it runs: the machine stops",
     "number of values": "the code raises {word} when it runs: the machine stops",
     "no module here": "the code raises AttributeError when it runs: the machine stops",
     "no member": "the code raises AttributeError when it runs: the machine stops",
@@ -552,6 +562,8 @@ WRITTEN = frozenset[FaultKind](
         "swapped arguments",
         "no module here",
         "never set",
+        "extra argument",
+        "lacking argument",
     ]
 )
 """Faults whose words contain what was probably meant."""

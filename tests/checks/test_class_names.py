@@ -171,7 +171,7 @@ def test_literals_that_do_not_fit_the_interface(value: str) -> None:
         "None",
         "arm.pose()",
         "HEIGHT",
-        "[arm.x, 0.0]",
+        "[arm.x, arm.y]",
         "{1: 2}",
         "HEIGHT == 1",
         "HEIGHT % 2",
@@ -231,6 +231,12 @@ def test_an_argument_that_is_set_elsewhere_or_not_read(body: str) -> None:
 def test_an_attribute_that_nothing_sets(body: str, old: str, new: str, help: str) -> None:
     (item,) = report(body, old, new)
     assert (item.code, item.help) == ("SM609", help)
+
+
+def test_an_attribute_that_another_state_of_the_module_sets() -> None:
+    text = "self.looks = 0\n        self.lens = len('ab')\n\n    def search(self):\n"
+    (item,) = report("print(self.lens)", "self.looks = 0\n\n    def search(self):\n", text)
+    assert item.help == "write `self.lens = len('ab')` in `__init__`"
 
 
 SLIPS = [

@@ -205,6 +205,25 @@ def test_a_collection_for_one_value(code: str, out: str, type_: str, help: str) 
     assert [each[2] for each in found] == ([help] if help else [])
 
 
+@pytest.mark.parametrize(
+    ("out", "type_", "help"),
+    [
+        ('{"mass": self.scale, "sise": 1.0}', "{type: {mass: float, size: float}}",
+         'write `"size"` in place of `"sise"`'),
+        ('{"mass": self.scale}', "{type: {mass: float, size: float}}",
+         'add `"size": ...` to the dictionary'),
+        ('{"mass": self.scale, "size": self.scale}', "{type: {mass: float, size: float}}", ""),
+        ('{**self.scale, "size": 1.0}', "{type: {mass: float, size: float}}", ""),
+        ("[self.scale, 1.0, 2.0]", '"float[2]"', "write a value of the type `float[2]`"),
+        ("[self.scale, 1.0]", '"float[2]"', ""),
+        ("[*self.scale, 1.0, 2.0]", '"float[2]"', ""),
+    ],
+)  # fmt: skip
+def test_a_collection_with_wrong_parts(out: str, type_: str, help: str) -> None:
+    found = [each for each in reported("", out, type_) if each[0] == "SM304"]
+    assert [each[2][: len(help)] for each in found] == ([help] if help else [])
+
+
 # --- comparisons with words
 
 
@@ -280,8 +299,8 @@ def test_an_angle_in_degrees(code: str, help: str, in_class: bool) -> None:
 """
     files = {
         "main.yml": main.replace("[yes]", "[high]").replace("{yes:", "{high:").replace("no", "low"),
-        "templates/Work.yml": INTERFACE.replace("OUT", "any").replace("keys: {count",
-                                                                      "keys: {turn: float<rad>, count"),
+        "templates/Work.yml": INTERFACE.replace("OUT", "any")
+        .replace("keys: {count", "keys: {turn: float<rad>, count"),
         "cell/__init__.py": "",
         "cell/states.py": CLASS.replace("CODE", body).replace("OUT", "None")
         .replace('input_keys=["count"', 'input_keys=["turn", "count"'),
