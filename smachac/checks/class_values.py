@@ -31,7 +31,7 @@ from smachac.checks.type_words import HELP, example, in_words
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.class_facts import Part, Step
+from smachac.ir.class_facts import Part, Step, TableLookUp
 from smachac.ir.expressions import Binary, Call, Compare
 from smachac.ir.nodes import Data, Key, Leaf, Struct
 from smachac.ir.types import ANY, Type
@@ -301,6 +301,60 @@ def wrong_comparisons(context: Context) -> Iterator[Finding]:
                     *(other_place(key.span, f"the interface declares `{key.name}`") if key else ()),
                     *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
                 ),
+                node=path,
+            )
+
+
+def _used_values(context: Context, type_: str, look_up: TableLookUp) -> set[object]:
+    """The values that the states of a type give to the variable of a look-up."""
+    if look_up.kind == "key":
+        return set()
+    return {
+        each.value.data
+        for _, leaf, _, _ in context.leaves_with_class
+        if leaf.type == type_
+        for each in leaf.variables
+        if each.name == look_up.name and isinstance(each.value.data, str)
+    }
+
+
+def missing_choices(context: Context) -> Iterator[Finding]:
+    """The dictionaries of a class that lack a word of the variable or input key that it looks up in
+    them (SM311)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or type_.open or not facts.tables:
+            continue
+        keys = {key.name: key.type for key in type_.input_keys}
+        variables = {name: each.type for name, each in type_.variables.items()}
+        done = set[tuple[str, str]]()
+        for each in facts.tables:
+            declared = (keys if each.kind == "key" else variables).get(each.name, ANY)
+            choices = [str(choice) for choice in declared.args] if declared.name == "one_of" else []
+            known = {word.text for word in each.keys}
+            known |= {one.word.text for one in facts.compared if one.name == each.name}
+            missing = [choice for choice in choices if choice not in known]
+            if not missing or (each.table, each.name) in done:
+                continue
+            done.add((each.table, each.name))
+            more = [word for word in each.keys if word.text not in choices]
+            if len(more) != 1:
+                used = _used_values(context, leaf.type, each)
+                missing = [choice for choice in missing if choice in used]
+            if not missing:
+                continue
+            help = f'add `"{missing[0]}": ...` to `{each.table}`'
+            if len(missing) == len(more) == 1:
+                help = f'write `"{missing[0]}"` in place of `{more[0].span.text}` in `{each.table}`'
+            yield Finding(
+                span=more[0].span if len(more) == 1 else each.word.span,
+                message=f"`{leaf.type}` reads `{each.word.text}`, but `{each.table}` has no entry"
+                f" {listed(missing)}, which the interface allows for `{each.name}`",
+                arguments=(leaf.type, each.table, each.name),
+                help=help,
+                effect="the code raises KeyError for this value: the machine stops",
+                related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                severity=Severity.WARNING,
                 node=path,
             )
 

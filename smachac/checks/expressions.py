@@ -11,7 +11,12 @@ from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
 from smachac.analysis.units import conversion
-from smachac.checks.class_values import wrong_comparisons, wrong_operations, wrong_parts
+from smachac.checks.class_values import (
+    missing_choices,
+    wrong_comparisons,
+    wrong_operations,
+    wrong_parts,
+)
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.swapped_params import swapped_params_help
@@ -329,6 +334,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         yield replace(finding, help=help) if help else finding
     yield from wrong_parts(context)
     yield from wrong_operations(context, "operation")
+    yield from missing_choices(context)
 
 
 @rule(

@@ -6,13 +6,13 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from typing import Literal
+from typing import Literal, TypedDict
 
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.python_functions import access_of
 from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
-from smachac.frontend.userdata_parts import TESTS, tried_code, written_keys
-from smachac.ir.class_facts import Compared
+from smachac.frontend.userdata_parts import TESTS, added_entries, tried_code, written_keys
+from smachac.ir.class_facts import Compared, TableLookUp
 
 PURE = frozenset(["len", "abs", "min", "max", "round", "sum", "int", "float", "bool"])
 """Functions of Python that the types of expressions know (analysis/expression_types.py)."""
@@ -22,6 +22,28 @@ NUMBERS = frozenset(
      "floor", "fmod", "hypot", "log", "log10", "pow", "radians", "sin", "sqrt", "tan"]
 )  # fmt: skip
 """Functions of the module `math` that return one number."""
+
+
+class OperationFacts(TypedDict, total=False):
+    operations: tuple[Word, ...]
+    userdata: str
+    numbers: tuple[Span, ...]
+    collections: tuple[tuple[Span, Literal["list", "dict"]], ...]
+    entries: frozenset[str] | None
+
+
+def operation_facts(own: OwnClass, execute: ast.FunctionDef | None) -> OperationFacts:
+    """The facts about the operations of `execute`."""
+    if execute is None:
+        return {}
+    module = next(module for module, node in own.classes if execute in node.body)
+    return {
+        "operations": operations(module, execute),
+        "userdata": execute.args.args[1].arg,
+        "numbers": number_writes(module, execute),
+        "collections": tuple(collection_writes(module, execute)),
+        "entries": added_entries(own, execute),
+    }
 
 
 def operations(module: Module, function: ast.FunctionDef) -> tuple[Word, ...]:
@@ -225,3 +247,57 @@ def _defaults(own: OwnClass) -> dict[str, list[object]]:
               zip(taken.kwonlyargs, taken.kw_defaults, strict=True) if default]  # fmt: skip
     return {each.arg: [default.value] for each, default in pairs
             if isinstance(default, ast.Constant)}  # fmt: skip
+
+
+# --- tables of the module
+
+
+def table_look_ups(
+    own: OwnClass, kept: Mapping[str, str], execute: ast.FunctionDef | None
+) -> Iterator[TableLookUp]:
+    """The look-ups of variables and keys in a dictionary with constant keys that nothing changes:
+    `BINS[self.side]`; not those in `try`, and not where the class tests the keys."""
+    userdata = execute.args.args[1].arg if execute is not None else ""
+    for module, node in own.classes:
+        every = [*ast.walk(node)]
+        left_out = of_other_objects(node) | tried_code(every)
+        for each in every:
+            match each:
+                case ast.Subscript(value=ast.Name(id=name), slice=index, ctx=ast.Load()):
+                    pass
+                case _:
+                    continue
+            key = access_of(index, userdata) if execute in node.body else None
+            match index:
+                case ast.Attribute(value=ast.Name(id="self"), attr=attribute) if attribute in kept:
+                    found = kept[attribute]
+                case _ if key is not None:
+                    found = key.key
+                case _:
+                    continue
+            table = _table(module, name) if each not in left_out else None
+            if table is not None and not module.text.is_filled(module.text.span(each)):
+                span = module.text.span(each)
+                kind: Literal["key", "variable"] = "key" if key is not None else "variable"
+                yield TableLookUp(kind, found, name, table, Word(span.text, span))
+
+
+def _table(module: Module, name: str) -> tuple[Word, ...] | None:
+    """The texts that are the keys of a dictionary of a module, which its code uses only for
+    look-ups; None for another value."""
+    match module.names.get(name, ()):
+        case (ast.Assign(targets=[ast.Name()], value=ast.Dict(keys=keys)),):
+            pass
+        case _:
+            return None
+    every = [*ast.walk(module.text.tree)]
+    uses = [each for each in every if isinstance(each, ast.Name) and each.id == name]
+    looked_up = {each.value for each in every
+                 if isinstance(each, ast.Subscript) and isinstance(each.ctx, ast.Load)}  # fmt: skip
+    texts = _texts([each for each in keys if each is not None])
+    stores = [each for each in uses if isinstance(each.ctx, ast.Store)]
+    if len(texts) != len(keys) or not texts or len(stores) != 1:
+        return None
+    if any(each not in looked_up for each in uses if each not in stores):
+        return None
+    return tuple(Word(str(each.value), module.text.span(each)) for each in texts)

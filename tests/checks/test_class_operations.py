@@ -267,6 +267,46 @@ def test_a_comparison_with_a_word(code: str, word: str, help: str) -> None:
     assert [(each.span.text, each.help) for each in report] == ([(word, help)] if help else [])
 
 
+# --- words that a dictionary lacks
+
+
+@pytest.mark.parametrize(
+    ("table", "code", "found"),
+    [
+        ('{"left": 1, "rihgt": 2}', "print(SIDES[self.side])",
+         [('"rihgt"', 'write `"right"` in place of `"rihgt"` in `SIDES`')]),
+        ('{"right": 1}', "print(SIDES[self.side])",
+         [("SIDES[self.side]", 'add `"left": ...` to `SIDES`')]),
+        ('{"left": 1}', "print(SIDES[self.side])", []),  # no state is at the right
+        ('{"left": 1, "right": 2}', "print(SIDES[self.side])", []),
+        ('{"right": 1}', "if self.side != 'left':\n    print(SIDES[self.side])", []),
+        ('{"right": 1}', "try:\n    print(SIDES[self.side])\nexcept KeyError:\n    pass", []),
+        ('{"right": 1}', "print(SIDES.get(self.side))", []),
+        ('{"right": 1}', "if self.side in SIDES:\n    print(SIDES[self.side])", []),
+        ('{"right": 1}', "print(SIDES[self.side])\nSIDES['left'] = 1", []),
+        ("{}", "print(SIDES[self.side])", []),
+    ],
+)  # fmt: skip
+def test_a_word_that_a_dictionary_lacks(
+    table: str, code: str, found: list[tuple[str, str]]
+) -> None:
+    body = "\n".join(f"        {line}" for line in code.split("\n"))
+    head = f"SIDES = {table}\n\n\nclass Work"
+    init = "    def __init__(self, side):\n        self.side = side"
+    interface = INTERFACE.replace("OUT", "any")
+    files = {
+        "main.yml": MAIN.replace("template: Work", "template: Work\n      side: left"),
+        "templates/Work.yml": f"variables: {{side: {{one_of: [left, right]}}}}\n{interface}",
+        "cell/__init__.py": "",
+        "cell/states.py": CLASS.replace("class Work", head)
+        .replace("    def __init__(self):", init)
+        .replace("CODE", body)
+        .replace("OUT", "None"),
+    }
+    report = [each for each in analysed(files).report if each.code == "SM311"]
+    assert [(each.span.text, each.help) for each in report] == found
+
+
 # --- angles in degrees
 
 
