@@ -294,10 +294,12 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     Exactly: a warning if only some runs evaluate that part of the code. Values of the type `any` or
     of a type `T?` are not checked. An index is too large if a declaration fixes the length of the
     list, or if the list is an initial value and only built-in states whose code reads items of it
-    can reach it: others can make it longer. In the Python class of a state type, the types are
-    those of its interface; an index, the fields of records (`pad["at"]`) and those of messages
-    (`.x`, `.position`) are checked. In code that runs for each item of a list, such as
-    `[p["at"] for p in ud.pads]` or `key=lambda p: p["at"]`, every finding is a warning.
+    can reach it: others can make it longer. The same holds for an entry that a mapping of the
+    script lacks, which a class that was read can reach too. In the Python class of a state type,
+    the types are those of its interface; an index, the fields of records (`pad["at"]`) and those of
+    messages (`.x`, `.position`) are checked, and the keys of a dictionary in which it looks up a
+    word that a variable can have. In code that runs for each item of a list, such as `[p["at"] for
+    p in ud.pads]` or `key=lambda p: p["at"]`, every finding is a warning.
 
     Wrong:
         name: sm
@@ -344,7 +346,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     effect="the comparison always has the same result, so it decides nothing",
 )
 def constant_comparison(context: Context) -> Iterator[Finding]:
-    """Code compares values that, by their types, can never be equal.
+    """Code in the script, or in a class, compares values that, by their types, can never be equal.
 
     Python reports no error: the condition is always false, or always true, and the machine takes a
     wrong transition.

@@ -166,7 +166,12 @@ def called_code(
     function = called_function(own, module, method, call.func, objects.library)
     called = function[1] if function is not None else objects.method(module, node, call.func)
     called = called or _constructor(module, call.func, objects.library)
-    return called if called is not None and not called.decorator_list else None
+    if called is None or called.decorator_list:
+        return None
+    head = call.func.value if isinstance(call.func, ast.Attribute) else None
+    of_object = function is None or (isinstance(head, ast.Name) and head.id == "self")
+    first = [each.arg for each in (*called.args.posonlyargs, *called.args.args)][:1]
+    return called if of_object == (first == ["self"]) else None
 
 
 def takes_self(call: ast.Call, function: ast.FunctionDef) -> bool:
