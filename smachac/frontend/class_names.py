@@ -374,7 +374,7 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
             defined.add(each.attr)
             if near is not None or calls:
                 found.append(ClassFault(kind="undefined method", name=word, near=near))
-            elif isinstance(each.ctx, ast.Load) and each not in caught(node):
+            elif isinstance(each.ctx, ast.Load) and constructor and each not in caught(node):
                 near = _meant_value(module, each.attr)
                 found.append(ClassFault(kind="never set", name=word, near=near))
     return found

@@ -163,6 +163,19 @@ def called_code(
 ) -> ast.FunctionDef | None:
     """The function or method of the project that a call in a method of a class runs, also that of
     an object, or the constructor; None for one with a decorator."""
+    if call not in objects.called:
+        objects.called[call] = _called_code(own, module, node, method, call, objects)
+    return objects.called[call]
+
+
+def _called_code(
+    own: OwnClass,
+    module: Module,
+    node: ast.ClassDef,
+    method: ast.FunctionDef,
+    call: ast.Call,
+    objects: Objects,
+) -> ast.FunctionDef | None:
     function = called_function(own, module, method, call.func, objects.library)
     called = function[1] if function is not None else objects.method(module, node, call.func)
     called = called or _constructor(module, call.func, objects.library)
