@@ -32,7 +32,7 @@ from smachac.analysis.type_lattice import (
     unit_of,
     widened,
 )
-from smachac.analysis.units import conversion
+from smachac.analysis.units import FULL_TURN, conversion
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.expressions import (
     Attribute,
@@ -54,8 +54,9 @@ from smachac.ir.expressions import (
 from smachac.ir.nodes import Expression
 from smachac.ir.types import Type
 
-FaultKind: TypeAlias = Literal["operation", "comparison", "unit"]
-"""The operation fails; the result of the comparison is always the same; the units differ."""
+FaultKind: TypeAlias = Literal["operation", "comparison", "unit", "doubt"]
+"""The operation fails; the result of the comparison is always the same; the units differ; a number
+seems to be in another unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +65,8 @@ class Fault:
 
     `what` is its description in a message, `keys` are the userdata keys in it. `always`: every
     evaluation of the whole expression evaluates this part. `word` is the name in the script instead
-    of one of `choices`; `length`: the number of items is wrong. `effect`: what happens if the
+    of one of `choices`; `length`: the number of items is wrong, or an entry of a mapping of the
+    script is missing, which hold while no state changes the value. `effect`: what happens if the
     fault is left, where that of the rule does not hold. `units`: the text of a number,
     its unit, and the unit of the other number. `entry`: the code that reads an entry of a mapping,
     which is meant.
@@ -270,14 +272,19 @@ class _Judge:
             return
         size = _size(owner)
         known = place.args[0] if place.name == "literal" and len(place.args) == 1 else None
-        if isinstance(known, str) and owner.name == "record" and known not in fields(owner):
+        closed = owner.name in ("record", "mapping")
+        if isinstance(known, str) and closed and known not in fields(owner):
+            lacks = f"`{owner}` lacks"
+            if owner.name == "mapping":
+                lacks = "the mapping in the script lacks"
             yield Fault(
                 kind="operation",
                 expr=expr,
-                what=f"`{print_expression(expr)}` reads the field `{known}`, which `{owner}` lacks",
+                what=f"`{print_expression(expr)}` reads the field `{known}`, which {lacks}",
                 keys=self.keys(value, index),
                 word=known,
                 choices=tuple(fields(owner)),
+                length=owner.name == "mapping",
             )
         if isinstance(known, int) and size is not None and not -size <= known < size:
             count = f"{size} item{'s' if size != 1 else ''}"
@@ -314,6 +321,25 @@ class _Judge:
             yield replace(found, help=bare) if bare is not None else found
         elif word not in ("in", "not in"):
             yield from self.units(expr, one, other, left, right)
+            yield from self.angles(expr, (one, right), (other, left), keys=self.keys(left, right))
+
+    def angles(
+        self, expr: Expr, *sides: tuple[Type, Expr], keys: tuple[str, ...]
+    ) -> Iterator[Fault]:
+        """A whole number of more than a full turn that is compared with an angle in radians."""
+        for type_, side in sides:
+            number = _whole_number(side) if unit_of(type_) == "rad" else None
+            if number is None or abs(number) <= FULL_TURN:
+                continue
+            text = f"`{print_expression(expr)}` compares a value in `rad` with {number}"
+            yield Fault(
+                kind="doubt",
+                expr=expr,
+                what=f"{text}: is it in degrees?",
+                keys=keys,
+                help=f"write `{math.radians(number):.4g}`, which is {number} degrees in radians",
+                effect="the comparison decides wrongly, or always in the same way",
+            )
 
     def comparison(
         self, expr: Expr, word: str, one: Type, other: Type, keys: tuple[str, ...]
@@ -643,3 +669,16 @@ SIGNATURES: Mapping[str, Signature] = {
     "tuple": Signature(0, 1, (), _ITEMS, _ITEMS),
 }
 """The functions that every expression may call (evaluate.py), but for `dict`, which takes much."""
+
+
+def _whole_number(expr: Expr) -> int | None:
+    """The whole number that an expression is; None for another one."""
+    match expr:
+        case Unary("-", inner):
+            number = _whole_number(inner)
+            return -number if number is not None else None
+        case Constant(bool()):
+            return None
+        case Constant(int() | float() as value) if math.isfinite(value) and value == int(value):
+            return int(value)
+    return None

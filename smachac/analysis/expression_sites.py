@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from smachac.analysis.code_slots import code_of
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
 from smachac.analysis.expression_types import body_of, keys_read, parsed
-from smachac.analysis.fixed_lists import has_fixed_length, key_of
+from smachac.analysis.fixed_lists import has_fixed_length, key_of, lacks_entry
 from smachac.analysis.item_errors import has_item_code, item_faults, item_keys
 from smachac.analysis.type_inference import Cell, Types
 from smachac.analysis.type_lattice import join, mapping
@@ -31,6 +31,7 @@ class ExpressionSite:
     node: Node
     expression: Expression
     types: dict[str, Type] | None = None
+    state_types: Mapping[str, StateType] = field(default_factory=dict, repr=False)
     cells: dict[str, Cell] = field(default_factory=dict)
 
     def faults(self) -> tuple[Fault, ...]:
@@ -50,14 +51,17 @@ class ExpressionSite:
         can lengthen the list of the script."""
         if all(map(_is_declared, (self.cells[key] for key in fault.keys if key in self.cells))):
             return True
-        return fault.always and self.is_initial(fault.expr)
+        return fault.always and self.is_initial(fault.expr, fault.word)
 
-    def is_initial(self, expr: Expr) -> bool:
-        """Whether an expression reads an item of an initial value with a fixed length."""
+    def is_initial(self, expr: Expr, entry: str) -> bool:
+        """Whether an expression reads an item of an initial value with a fixed length, or the entry
+        of an initial mapping, which no state adds."""
         tree = parsed(self.expression.text)
         if tree is None or not isinstance(expr, Index):
             return False
         key = key_of(expr.value, body_of(tree)[1])
+        if key in self.cells and entry:
+            return lacks_entry(self.cells[key], entry, self.state_types)
         return key in self.cells and has_fixed_length(self.cells[key])
 
 
@@ -73,7 +77,8 @@ def expression_sites(
     for path, node in states:
         for expression, written in _expressions(path, node, types, state_types):
             if written is not None:
-                yield _over(path, node, expression, written, types)
+                site = _over(path, node, expression, written, types)
+                yield replace(site, state_types=state_types)
             else:
                 yield ExpressionSite(path=path, node=node, expression=expression)
 

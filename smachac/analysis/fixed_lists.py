@@ -1,4 +1,4 @@
-"""Fixed lists: initial values of userdata whose length no state can change.
+"""Fixed lists and mappings: initial values of userdata whose length no state can change.
 
 A list is passed on by reference (docs/semantics.md, Userdata), so each state that can reach it can
 make it longer.
@@ -6,14 +6,14 @@ make it longer.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from smachac.analysis.accesses import userdata_fields
 from smachac.analysis.expression_types import body_of, parsed
 from smachac.analysis.type_inference import Cell
 from smachac.ir import nodes
 from smachac.ir.expressions import Attribute, Call, Compare, Constant, Expr, Index, Name, parts
-from smachac.ir.nodes import Leaf
+from smachac.ir.nodes import Leaf, StateType, Struct
 from smachac.ir.traversal import expressions
 
 READERS = frozenset(["bool", "len", "list", "max", "min", "sorted", "str", "sum", "tuple"])
@@ -25,13 +25,33 @@ MOST_CELLS = 100
 
 def has_fixed_length(cell: Cell) -> bool:
     """Whether the lists in a key are initial values that every state leaves as long as they are."""
+    return _is_initial(cell, _leaves)
+
+
+def lacks_entry(cell: Cell, entry: str, state_types: Mapping[str, StateType]) -> bool:
+    """Whether the values in a key are initial mappings without an entry, which no state adds."""
+    values = [flow.origin.value for alike in cell.flows.values() for flow in alike]
+    for value in values:
+        if not isinstance(value, Struct) or any(name == entry for name, _ in value.entries):
+            return False
+
+    def leaves(leaf: Leaf, key: str) -> bool:
+        facts = state_types[leaf.type].class_facts if leaf.type in state_types else None
+        added = facts.entries if facts is not None and not leaf.open else None
+        return _leaves(leaf, key) if added is None else entry not in added
+
+    return _is_initial(cell, leaves)
+
+
+def _is_initial(cell: Cell, leaves: Callable[[Leaf, str], bool]) -> bool:
+    """Whether the values in a key are initial values, and every leaf leaves them as they are."""
     flows = [flow.origin for alike in cell.flows.values() for flow in alike]
     if not flows or any(flow.how != "value" or flow.cell.role != "scope" for flow in flows):
         return False
     todo = list(dict.fromkeys(flow.cell for flow in flows))
     seen = set(todo)
     for here in todo:
-        if len(todo) > MOST_CELLS or not all(_leaves(leaf, key) for leaf, key in _readers(here)):
+        if len(todo) > MOST_CELLS or not all(leaves(leaf, key) for leaf, key in _readers(here)):
             return False
         todo += [link for link in dict.fromkeys(here.links) if link not in seen]
         seen.update(here.links)
@@ -84,6 +104,8 @@ def _reads(expr: Expr, part: Expr) -> bool:
     match expr:
         case Index(value, _):
             return value is part
+        case Attribute(value, name):  # of a mapping
+            return value is part and name in ("get", "items", "keys", "values")
         case Call(Name(name), arguments, ()):
             return name in READERS and len(arguments) == 1
         case Compare():

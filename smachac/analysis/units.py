@@ -46,6 +46,10 @@ _IN_BASE_UNIT = {
 """The base unit of each unit, and the value of one unit in it (SI Brochure, 9th edition)."""
 
 
+FULL_TURN = 2 * math.pi
+"""The largest angle in radians that a whole number can be."""
+
+
 def conversion(given: str, wanted: str) -> float | None:
     """The factor from one unit to another; None if they do not measure the same, or are not
     known."""

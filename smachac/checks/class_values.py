@@ -9,8 +9,9 @@ from collections.abc import Set as AbstractSet
 from functools import reduce
 
 from smachac.analysis.context import Context
-from smachac.analysis.expression_errors import expression_faults
+from smachac.analysis.expression_errors import FaultKind, expression_faults
 from smachac.analysis.expression_types import parsed, type_of_data
+from smachac.analysis.fixed_lists import lacks_entry
 from smachac.analysis.type_lattice import (
     BOOL,
     FLOAT,
@@ -31,10 +32,13 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.class_facts import Part, Step
+from smachac.ir.class_facts import Part, Step, TableLookUp
 from smachac.ir.expressions import Binary, Call, Compare
-from smachac.ir.nodes import Data, Struct
+from smachac.ir.nodes import Data, Key, Leaf, Struct
 from smachac.ir.types import ANY, Type
+
+MOST_ITEMS = 20
+"""The most items of a list or dictionary whose parts are typed one by one."""
 
 MADE = {"str": STR, "repr": STR, "float": FLOAT, "bool": BOOL, "len": Type("int")}
 """The types that functions of Python return."""
@@ -52,6 +56,11 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
             given = type_of_code(written.text) if key is not None else None
             if given is None and key is not None and written.span in facts.numbers:
                 given = FLOAT if misfit(Type("int"), key.type) is not None else None
+            made = dict(facts.collections).get(written.span) if key is not None else None
+            words = ""
+            if given is None and made is not None and key is not None:
+                single = present(key.type).name in SINGLE[made]
+                given, words = (Type(made, (ANY,)), COLLECTIONS[made]) if single else (None, "")
             if key is None or given is None or misfit(given, key.type) is None:
                 continue
             if misfit(given, Type("optional", (key.type,))) is None and given.name == "none":
@@ -60,10 +69,12 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
             such = f", such as `{found}`" if found else ""
             yield Finding(
                 span=written.span,
-                message=f"`{leaf.type}` writes {in_words(given)} to `{name}`, but its interface"
-                f" declares `{name}` as `{key.type}`",
+                message=f"`{leaf.type}` writes {words or in_words(given)} to `{name}`, but its"
+                f" interface declares `{name}` as `{key.type}`",
                 arguments=(name, str(widened(given)), str(key.type), "class"),
-                help=_plain_help(written.text, key.type)
+                help=(_list_help(name, key.type) if words == COLLECTIONS["list"] else None)
+                or _field_help(given, key.type)
+                or _plain_help(written.text, key.type)
                 or HELP.get(present(key.type).name)
                 or f"write a value of the type `{key.type}`{such}, or correct the interface",
                 related=(
@@ -72,6 +83,34 @@ def wrong_writes(context: Context) -> Iterator[Finding]:
                 ),
                 node=path,
             )
+
+
+COLLECTIONS = {"list": "a list", "dict": "a dictionary"}
+
+SINGLE = {
+    "list": frozenset(["int", "float", "bool", "str", "one_of", "record"]),
+    "dict": frozenset(["int", "float", "bool", "str", "one_of", "list", "array"]),
+}
+"""The types whose values are certainly no lists, or no dictionaries."""
+
+
+def _list_help(name: str, type_: Type) -> str:
+    """The help for a list in place of one value."""
+    return f'write `{name}: "list[{type_}]"` in the interface, or write one item of the list'
+
+
+def _field_help(given: Type, type_: Type) -> str | None:
+    """The help for a dictionary whose keys are not the fields of a record."""
+    wanted = present(type_)
+    if given.name != "mapping" or wanted.name != "record":
+        return None
+    missing = [name for name in fields(wanted) if name not in fields(given)]
+    more = [name for name in fields(given) if name not in fields(wanted)]
+    if len(missing) == len(more) == 1:
+        return f'write `"{missing[0]}"` in place of `"{more[0]}"`'
+    if len(missing) == 1:
+        return f'add `"{missing[0]}": ...` to the dictionary'
+    return None
 
 
 def _plain_help(text: str, type_: Type) -> str | None:
@@ -187,9 +226,9 @@ def wrong_loops(context: Context) -> Iterator[Finding]:
                 )
 
 
-def wrong_operations(context: Context) -> Iterator[Finding]:
+def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
     """The comparisons and calculations of a class that the types of its input keys do not support
-    (SM311)."""
+    (SM311), or that seem to be in another unit (SM522)."""
     for path, leaf, facts in leaves_by_type(context, declared=True):
         type_ = context.machine.state_types.get(leaf.type)
         if type_ is None or type_.built_in or type_.open or not facts.operations:
@@ -202,7 +241,7 @@ def wrong_operations(context: Context) -> Iterator[Finding]:
                 expression_faults(tree, mapping(types.items()), (facts.userdata,)) if tree else ()
             )
             for fault in found:
-                known = {*fault.keys} <= types.keys() and fault.kind == "operation"
+                known = {*fault.keys} <= types.keys() and fault.kind == kind
                 array = isinstance(fault.expr, Binary) and not lists.isdisjoint(fault.keys)
                 if not known or array or not isinstance(fault.expr, Binary | Compare | Call):
                     continue
@@ -214,6 +253,7 @@ def wrong_operations(context: Context) -> Iterator[Finding]:
                     help=_length_help(word.text, facts.userdata, lists & {*fault.keys})
                     or fault.help
                     or "correct the operation, or the types in the interface",
+                    effect=fault.effect,
                     related=(
                         *(
                             place
@@ -226,6 +266,98 @@ def wrong_operations(context: Context) -> Iterator[Finding]:
                     node=path,
                 )
                 break
+
+
+def wrong_comparisons(context: Context) -> Iterator[Finding]:
+    """The comparisons of a class with words that a variable or an input key cannot have by its
+    interface (SM312)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or type_.open or not facts.compared:
+            continue
+        keys = {key.name: key for key in type_.input_keys}
+        done = set[str]()
+        for each in facts.compared:
+            key = keys.get(each.name) if each.kind == "key" else None
+            variable = type_.variables.get(each.name) if each.kind == "variable" else None
+            declared = key or variable
+            kind = present(declared.type) if declared is not None else ANY
+            choices = [choice for choice in kind.args if isinstance(choice, str)]
+            known = kind.name == "one_of" and len(choices) == len(kind.args)
+            if not known or each.word.text in done.union(choices):
+                continue
+            done.add(each.word.text)
+            used = {one.word.text for one in facts.compared if one.name == each.name}
+            left = [choice for choice in choices if choice not in used]
+            near = guesser(choices)(each.word.text) or (left[0] if len(left) == 1 else None)
+            quote = each.word.span.text[:1]
+            written = [f"`{quote}{choice}{quote}`" for choice in ([near] if near else choices)]
+            yield Finding(
+                span=each.word.span,
+                message=f"`{leaf.type}` compares `{each.owner}` with `{each.word.text}`, but its"
+                f" interface declares `{each.name}` as `{kind}`",
+                arguments=(leaf.type, each.name, each.word.text),
+                help=f"write {' or '.join(written)}, or correct the interface",
+                related=(
+                    *(other_place(key.span, f"the interface declares `{key.name}`") if key else ()),
+                    *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                ),
+                node=path,
+            )
+
+
+def _used_values(context: Context, type_: str, look_up: TableLookUp) -> set[object]:
+    """The values that the states of a type give to the variable of a look-up."""
+    if look_up.kind == "key":
+        return set()
+    return {
+        each.value.data
+        for _, leaf, _, _ in context.leaves_with_class
+        if leaf.type == type_
+        for each in leaf.variables
+        if each.name == look_up.name and isinstance(each.value.data, str)
+    }
+
+
+def missing_choices(context: Context) -> Iterator[Finding]:
+    """The dictionaries of a class that lack a word of the variable or input key that it looks up in
+    them (SM311)."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        type_ = context.machine.state_types.get(leaf.type)
+        if type_ is None or type_.built_in or type_.open or not facts.tables:
+            continue
+        keys = {key.name: key.type for key in type_.input_keys}
+        variables = {name: each.type for name, each in type_.variables.items()}
+        done = set[tuple[str, str]]()
+        for each in facts.tables:
+            declared = (keys if each.kind == "key" else variables).get(each.name, ANY)
+            choices = [str(choice) for choice in declared.args] if declared.name == "one_of" else []
+            known = {word.text for word in each.keys}
+            known |= {one.word.text for one in facts.compared if one.name == each.name}
+            missing = [choice for choice in choices if choice not in known]
+            if not missing or (each.table, each.name) in done:
+                continue
+            done.add((each.table, each.name))
+            more = [word for word in each.keys if word.text not in choices]
+            if len(more) != 1:
+                used = _used_values(context, leaf.type, each)
+                missing = [choice for choice in missing if choice in used]
+            if not missing:
+                continue
+            help = f'add `"{missing[0]}": ...` to `{each.table}`'
+            if len(missing) == len(more) == 1:
+                help = f'write `"{missing[0]}"` in place of `{more[0].span.text}` in `{each.table}`'
+            yield Finding(
+                span=more[0].span if len(more) == 1 else each.word.span,
+                message=f"`{leaf.type}` reads `{each.word.text}`, but `{each.table}` has no entry"
+                f" {listed(missing)}, which the interface allows for `{each.name}`",
+                arguments=(leaf.type, each.table, each.name),
+                help=help,
+                effect="the code raises KeyError for this value: the machine stops",
+                related=other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+                severity=Severity.WARNING,
+                node=path,
+            )
 
 
 def _length_help(text: str, userdata: str, lists: AbstractSet[str]) -> str | None:
@@ -262,6 +394,9 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
         keys = {key.name: key for key in type_.input_keys}
         for part in facts.parts:
             key = keys.get(part.key)
+            if key is not None and is_open(key.type):
+                yield from _missing_entry(context, path, leaf, key, part)
+                continue
             fault = _wrong_part(key.type, part) if key is not None else None
             if key is None or fault is None:
                 continue
@@ -287,6 +422,36 @@ def wrong_parts(context: Context) -> Iterator[Finding]:
                 severity=Severity.WARNING,
                 node=path,
             )
+
+
+def _missing_entry(
+    context: Context, path: str, leaf: Leaf, key: Key, part: Part
+) -> Iterator[Finding]:
+    """The finding on an entry that the mapping of the script in a key without a type lacks."""
+    cell = context.types.cells.get((path, key.name))
+    match part.steps:
+        case (("item", str(entry)),) if cell is not None and entry:
+            pass
+        case _:
+            return
+    if not lacks_entry(cell, entry, context.machine.state_types):
+        return
+    origins = [flow.origin for alike in cell.flows.values() for flow in alike]
+    value = origins[0].value
+    names = [name for name, _ in value.entries] if isinstance(value, Struct) else []
+    yield Finding(
+        span=part.span,
+        message=f"`{leaf.type}` reads `{part.text}`, but the mapping of `{key.name}` in the script"
+        f" has no entry `{entry}`",
+        arguments=(key.name, entry, "class"),
+        help=did_you_mean(guesser(names)(entry)) or f"use one of its entries: {listed(names)}",
+        related=(
+            *other_place(origins[0].span, f"the value of `{key.name}`"),
+            *other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`"),
+        ),
+        severity=Severity.WARNING,
+        node=path,
+    )
 
 
 def _wrong_part(type_: Type, part: Part) -> tuple[str, str] | None:
@@ -401,11 +566,30 @@ def type_of_code(text: str) -> Type | None:
         case ast.Call(func=ast.Name(id=name)) if name in MADE:
             return MADE[name]
     try:
-        data = _data(ast.literal_eval(node))
+        type_ = _type_of_node(node)
     except (ValueError, TypeError, RecursionError, MemoryError):
         return None
-    type_ = type_of_data(data)
     return None if is_open(type_) else type_
+
+
+def _type_of_node(node: ast.expr) -> Type:
+    """The type of an expression with the parts that are literals, `any` for the others."""
+    try:
+        return type_of_data(_data(ast.literal_eval(node)))
+    except (ValueError, TypeError):
+        pass
+    match node:
+        case ast.List(elts=items) | ast.Tuple(elts=items):
+            if len(items) <= MOST_ITEMS and not any(
+                isinstance(each, ast.Starred) for each in items
+            ):
+                return Type("tuple", tuple(map(_type_of_node, items)))
+        case ast.Dict(keys=keys, values=values) if len(keys) <= MOST_ITEMS:
+            names = [each.value for each in keys
+                     if isinstance(each, ast.Constant) and isinstance(each.value, str)]  # fmt: skip
+            if len(names) == len(keys):
+                return mapping(zip(names, map(_type_of_node, values), strict=True))
+    return ANY
 
 
 def _data(value: object) -> Data:

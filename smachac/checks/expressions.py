@@ -11,7 +11,12 @@ from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
 from smachac.analysis.units import conversion
-from smachac.checks.class_values import wrong_operations, wrong_parts
+from smachac.checks.class_values import (
+    missing_choices,
+    wrong_comparisons,
+    wrong_operations,
+    wrong_parts,
+)
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.swapped_params import swapped_params_help
@@ -287,10 +292,12 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     Exactly: a warning if only some runs evaluate that part of the code. Values of the type `any` or
     of a type `T?` are not checked. An index is too large if a declaration fixes the length of the
     list, or if the list is an initial value and only built-in states whose code reads items of it
-    can reach it: others can make it longer. In the Python class of a state type, the types are
-    those of its interface; an index, the fields of records (`pad["at"]`) and those of messages
-    (`.x`, `.position`) are checked. In code that runs for each item of a list, such as
-    `[p["at"] for p in ud.pads]` or `key=lambda p: p["at"]`, every finding is a warning.
+    can reach it: others can make it longer. The same holds for an entry that a mapping of the
+    script lacks, which a class that was read can reach too. In the Python class of a state type,
+    the types are those of its interface; an index, the fields of records (`pad["at"]`) and those of
+    messages (`.x`, `.position`) are checked, and the keys of a dictionary in which it looks up a
+    word that a variable can have. In code that runs for each item of a list, such as `[p["at"] for
+    p in ud.pads]` or `key=lambda p: p["at"]`, every finding is a warning.
 
     Wrong:
         name: sm
@@ -326,7 +333,8 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         help = swapped or _number_in_quotes(site, fault)
         yield replace(finding, help=help) if help else finding
     yield from wrong_parts(context)
-    yield from wrong_operations(context)
+    yield from wrong_operations(context, "operation")
+    yield from missing_choices(context)
 
 
 @rule(
@@ -336,7 +344,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     effect="the comparison always has the same result, so it decides nothing",
 )
 def constant_comparison(context: Context) -> Iterator[Finding]:
-    """Code in the script compares values that, by their types, can never be equal.
+    """Code in the script, or in a class, compares values that, by their types, can never be equal.
 
     Python reports no error: the condition is always false, or always true, and the machine takes a
     wrong transition.
@@ -371,6 +379,7 @@ def constant_comparison(context: Context) -> Iterator[Finding]:
     """
     for site, fault in _faults(context, "comparison"):
         yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
+    yield from wrong_comparisons(context)
 
 
 def mixed_units(context: Context) -> Iterator[Finding]:
@@ -379,6 +388,12 @@ def mixed_units(context: Context) -> Iterator[Finding]:
         finding = _finding(site, fault, f"in {_owner(site)}, {fault.what}")
         value = _in_other_unit(site, fault)
         yield replace(finding, help=f"{finding.help}, {value}") if value else finding
+
+
+def doubtful_comparisons(context: Context) -> Iterator[Finding]:
+    """The comparisons of values in radians with numbers that seem to be in degrees (SM522)."""
+    for site, fault in _faults(context, "doubt"):
+        yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
 
 
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")

@@ -14,6 +14,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.message_code import (
     leaf_definitions,
     message_code,
+    nested_messages,
 )
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.class_messages import faults_in_classes
@@ -65,6 +66,7 @@ from smachac.ir.message_types import (
 from smachac.ir.nodes import (
     DEFINITION_KINDS,
     Container,
+    Data,
     Expression,
     Leaf,
     Node,
@@ -113,18 +115,18 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     the name.
 
     Exactly: fields in lists of keys, in mappings and lists of values, in calls of the class of the
-    message, in functions that receive the message, and in mappings that are published, at any
-    depth; also numbers that a function compares with text. The definitions of messages, services
-    and actions (`.msg`, `.srv`, `.action`) are searched in packages in the folders of `code` in the
-    project file, in the folder of the script and in those above it up to the root of the
-    repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside the Python that runs smachac.
-    The types of common packages, such as std_msgs, std_srvs, geometry_msgs, sensor_msgs, nav_msgs
-    and trajectory_msgs, are known without their files. Without a definition, nothing is checked;
-    but a type is reported if its package has other types of its kind, or its name is that of
-    another kind. Where several are found, such as those of ROS 1 and ROS 2, a finding holds for all
-    of them. In the classes of state types, imports of messages are checked, and the fields of new
-    messages and of the arguments of callbacks. A function that calculates with a whole message, or
-    compares it with a number or a text, is also found.
+    message, in functions that receive the message, and in mappings that are published or copied to
+    a field of a goal or a request, at any depth; also numbers that a function compares with text.
+    The definitions of messages, services and actions (`.msg`, `.srv`, `.action`) are searched in
+    packages in the folders of `code` in the project file, in the folder of the script and in those
+    above it up to the root of the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside
+    the Python that runs smachac. The types of common packages, such as std_msgs, std_srvs,
+    geometry_msgs, sensor_msgs, nav_msgs and trajectory_msgs, are known without their files. Without
+    a definition, nothing is checked; but a type is reported if its package has other types of its
+    kind, or its name is that of another kind. Where several are found, such as those of ROS 1 and
+    ROS 2, a finding holds for all of them. In the classes of state types, imports of messages are
+    checked, and the fields of new messages and of the arguments of callbacks. A function that
+    calculates with a whole message, or compares it with a number or a text, is also found.
 
     Wrong:
         name: sm
@@ -176,6 +178,7 @@ def unknown_field(context: Context) -> Iterator[Finding]:
                     other = _other_type(context, node, kind, held.role)
                     yield from _faults(context, path, node, held, messages, other)
                     yield from _wrong_values(path, node, held, messages, found, other)
+                    yield from _wrong_slots(context, path, held, messages, found)
         for slot in code_slots(node, context.machine.state_types):
             code = message_code(slot, node, found, context.machine.functions)
             if code is not None:
@@ -320,32 +323,72 @@ def _wrong_messages(
         meant = meant_type(name, "msg", absent)
         yield at(given[0], no_type(package, name, "msg"), meant, (package, name))
     messages = [each.part("message") for each in found.get(("msg", type_), ())]
+    effect = f"`{leaf.name}` ends with `aborted`: the message is never used"
     for name in sorted(names) if messages else ():
-        cell = context.types.cells.get((path, name))
-        flows = [each for alike in cell.flows.values() for each in alike] if cell else []
-        for flow in flows:
-            if flow.how != "value" or not isinstance(flow.value, Struct):
-                continue
-            faults = [list(value_faults(flow.value, each, found)) for each in messages]
-            levels = with_levels(flow.value, faults[0] if all(faults) else (), found)
-            for (steps, message, wanted, value), level in levels:
-                fields = sorted(each.name for each in message.fields)
-                text = f"{described(message)} has no field `{steps[-1]}`"
-                help = level or did_you_mean(near_field(steps[-1], fields))
-                help = help or f"use one of its fields: {listed(fields)}"
-                if wanted is not None:
-                    text = f"the value of `{steps[-1]}` does not fit: the field of"
-                    text += f" {described(message)} is `{wanted}`"
-                    help = value_help(value, wanted)
-                yield at(
-                    flow,
-                    text,
-                    help,
-                    (message.name, *steps),
-                    part=steps,
-                    key=wanted is None,
-                    effect=f"`{leaf.name}` ends with `aborted`: the message is never used",
-                )
+        yield from _mapping_faults(context, path, name, messages, found, effect)
+
+
+def _wrong_slots(
+    context: Context, path: str, held: Variable, messages: Sequence[Message], found: Definitions
+) -> Iterator[Finding]:
+    """Mappings in the userdata that a state copies to a field of a goal or a request, and whose
+    fields the message of this field does not have, or whose values do not fit."""
+    data = held.value.data
+    for name in data if isinstance(data, tuple) else ():
+        fields = [each.field(name) for each in messages] if isinstance(name, str) else []
+        types = [each.type for each in fields if each is not None and not each.type.array]
+        inner = nested_messages(types, found) if len(types) == len(messages) else []
+        if isinstance(name, str) and inner:
+            effect = f"the {held.role} cannot be made of the value: it is never sent"
+            yield from _mapping_faults(context, path, name, inner, found, effect)
+
+
+def _mapping_faults(
+    context: Context,
+    path: str,
+    name: str,
+    messages: Sequence[Message],
+    found: Definitions,
+    effect: str,
+) -> Iterator[Finding]:
+    """The faults of the mappings in a key of a state for a message."""
+    cell = context.types.cells.get((path, name))
+    flows = [each for alike in cell.flows.values() for each in alike] if cell else []
+    for flow in flows:
+        if flow.how != "value" or not isinstance(flow.value, Struct):
+            continue
+        faults = [list(value_faults(flow.value, each, found)) for each in messages]
+        levels = with_levels(flow.value, faults[0] if all(faults) else (), found)
+        for (steps, message, wanted, value), level in levels:
+            fields = sorted(each.name for each in message.fields)
+            text = f"{described(message)} has no field `{steps[-1]}`"
+            help = level or did_you_mean(near_field(steps[-1], fields))
+            help = help or _only_missing(flow.value, steps, message)
+            help = help or f"use one of its fields: {listed(fields)}"
+            if wanted is not None:
+                text = f"the value of `{steps[-1]}` does not fit: the field of"
+                text += f" {described(message)} is `{wanted}`"
+                help = value_help(value, wanted)
+            yield at(
+                flow,
+                text,
+                help,
+                (message.name, *steps),
+                part=steps,
+                key=wanted is None,
+                effect=effect,
+            )
+
+
+def _only_missing(data: Data, steps: Sequence[str], message: Message) -> str | None:
+    """The help that names the only field that a mapping lacks, if one of its own is unknown."""
+    for step in steps[:-1]:
+        data = dict(data.entries).get(step) if isinstance(data, Struct) else None
+    given = [name for name, _ in data.entries] if isinstance(data, Struct) else []
+    fields = [each.name for each in message.fields]
+    missing = [name for name in fields if name not in given]
+    more = [name for name in given if name not in fields]
+    return f"write `{missing[0]}`" if len(missing) == len(more) == 1 else None
 
 
 def _wrong_values(

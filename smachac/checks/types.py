@@ -71,11 +71,11 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
     The state that reads it fails in the middle of the task, or uses the value with a wrong meaning.
 
     Exactly: types come from interfaces, from the script, from literals and from the results of
-    functions, and are followed through remappings and containers. Literals that the Python class of
-    a state type writes to an output key are checked against its interface, and the steps of a
-    ScriptedState against the fields of a step. The default of a variable in an interface must fit
-    its type. An `int` fits a `float`, a `T` fits a `T?`, an enumeration fits one with more choices,
-    and `any` fits every type.
+    functions, and are followed through remappings and containers. Literals, lists and dictionaries
+    that the Python class of a state type writes to an output key are checked against its interface,
+    and the steps of a ScriptedState against the fields of a step. The default of a variable in an
+    interface must fit its type. An `int` fits a `float`, a `T` fits a `T?`, an enumeration fits one
+    with more choices, and `any` fits every type.
 
     Wrong:
         name: sm

@@ -10,7 +10,9 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
-from smachac.analysis.units import conversion, other_units
+from smachac.analysis.units import FULL_TURN, conversion, other_units
+from smachac.checks.class_values import wrong_operations
+from smachac.checks.expressions import doubtful_comparisons
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.misnamed_bodies import misnamed_body
 from smachac.checks.robot import (
@@ -399,8 +401,6 @@ def _names_a_file(cell: Cell) -> bool:
     return held is not None and held.value.data is not None
 
 
-FULL_TURN = 2 * math.pi
-
 FARTHEST = 10.0
 """In metres: no arm reaches so far, and no body of the simulation is so far from it."""
 
@@ -421,11 +421,11 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
 
     Exactly: reported are joint positions of more than a full turn that a state reads as
     `list[float<rad>]`, `float<rad>[N]` or, by joint names, `dict[str, float<rad>]`; whole numbers
-    of more than 2 pi under any other type in `rad`, also in a field of a record and as the default
-    of a variable in an interface; and coordinates of more than 10 metres that a
-    state that uses the simulated world, or claims an arm or a gripper, reads as `Point`, `Pose` or
-    `Transform`. Where the robot is known, SM502 reports what is outside the limits of a joint, and
-    this rule multiples of 5 rad for a joint without limits.
+    of more than 2 pi under any other type in `rad`, also in a field of a record, as the default of
+    a variable in an interface, and where code compares them with a value in `rad`; and coordinates
+    of more than 10 metres that a state that uses the simulated world, or claims an arm or a
+    gripper, reads as `Point`, `Pose` or `Transform`. Where the robot is known, SM502 reports what
+    is outside the limits of a joint, and this rule multiples of 5 rad for a joint without limits.
 
     Wrong:
         name: sm
@@ -470,6 +470,8 @@ def doubtful_unit(context: Context) -> Iterator[Finding]:
         yield from _doubtful(alike, simulated, context.machine.robot)
     for type_ in types.values():
         yield from _doubtful_defaults(type_)
+    yield from doubtful_comparisons(context)
+    yield from wrong_operations(context, "doubt")
 
 
 def _doubtful_defaults(type_: StateType) -> Iterator[Finding]:

@@ -277,9 +277,23 @@ def _roles(call: _Call) -> dict[str, str]:
     given = [*zip(LISTS, made.args[0 if through_super else 1 :], strict=False)]
     given += [(each.arg or "", each.value) for each in made.keywords]
     for role, value in given:
-        if isinstance(value, ast.Name) and role in LISTS:
-            found[value.id] = role
+        passed = _copied(value)
+        if isinstance(passed, ast.Name) and role in LISTS:
+            found[passed.id] = role
     return found
+
+
+def _copied(node: ast.expr) -> ast.expr:
+    """The list of which an expression makes a copy, or the expression itself: `list(keys)`,
+    `[*keys]`, `keys or []`."""
+    match node:
+        case ast.Call(func=ast.Name(id="list" | "tuple"), args=[value], keywords=[]):
+            return _copied(value)
+        case ast.List(elts=[ast.Starred(value=value)]):
+            return _copied(value)
+        case ast.BoolOp(op=ast.Or(), values=[value, ast.List(elts=[]) | ast.Tuple(elts=[])]):
+            return _copied(value)
+    return node
 
 
 def _uses(own: OwnClass) -> dict[str, set[object]] | None:

@@ -17,7 +17,7 @@ from smachac.frontend.own_objects import Objects
 from smachac.frontend.python_functions import is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.frontend.silent_results import called_function, is_silent
-from smachac.frontend.swapped_arguments import swapped_arguments
+from smachac.frontend.swapped_arguments import called_code, swapped_arguments, takes_self
 from smachac.frontend.userdata_parts import tried_code
 from smachac.ir.class_facts import ClassFault
 
@@ -56,7 +56,8 @@ def call_slips(own: OwnClass, library: Library) -> Iterator[ClassFault]:
                 *_in_other_order(own, module, method, every, library),
                 *_wrong_numbers(module, every),
                 *_no_modules(module, method, every, library),
-                *swapped_arguments(own, module, method, every, library),
+                *swapped_arguments(own, module, node, method, every, objects),
+                *_wrong_counts(own, module, node, method, every, objects),
             ]
             yield from (each for each in found if not module.text.is_filled(each.name.span))
 
@@ -200,6 +201,70 @@ def _kind(module: Module, node: ast.expr, library: Library) -> str:
             found = enumeration_of(module, name, library)
             return f"enum {found.name}" if found is not None else ""
     return ""
+
+
+# --- too few or too many arguments
+
+
+def _wrong_counts(
+    own: OwnClass,
+    module: Module,
+    node: ast.ClassDef,
+    method: ast.FunctionDef,
+    every: Sequence[ast.AST],
+    objects: Objects,
+) -> Iterator[ClassFault]:
+    """The calls of functions and methods of the project that lack an argument, or pass one that the
+    function does not have."""
+    for call in every:
+        if not isinstance(call, ast.Call) or any(each.arg is None for each in call.keywords):
+            continue
+        if any(isinstance(each, ast.Starred) for each in call.args):
+            continue
+        called = called_code(own, module, node, method, call, objects)
+        if called is None:
+            continue
+        taken = called.args
+        names = [each.arg for each in (*taken.posonlyargs, *taken.args)]
+        due = names[: len(names) - len(taken.defaults)]
+        if takes_self(call, called):
+            names, due = names[1:], due[1:]
+        pairs = zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+        due += [each.arg for each, default in pairs if default is None]
+        passed = {*names[: len(call.args)], *(each.arg for each in call.keywords)}
+        missing = [name for name in due if name not in passed]
+        span = module.text.span(call)
+        head = " ".join(module.text.span(call.func).text.split())
+        if len(call.args) > len(names) and taken.vararg is None:
+            more = module.text.span(call.args[len(names)])
+            near = ", ".join([*names, *(each.arg for each in taken.kwonlyargs)])
+            word = Word(" ".join(more.text.split()), more)
+            yield ClassFault(kind="extra argument", name=word, near=f"{head}({near})", owner=head)
+        elif missing and not (called.name == "__init__" and isinstance(call.func, ast.Attribute)):
+            near, lacking = _completed(module, method, call, names, missing[0])
+            yield ClassFault(
+                kind="lacking argument", name=Word(head, span), more=lacking, near=near
+            )
+
+
+def _completed(
+    module: Module, method: ast.FunctionDef, call: ast.Call, names: Sequence[str], missing: str
+) -> tuple[str, str]:
+    """The text of a call with one more argument, and its parameter: the one before an argument that
+    has the name of the next parameter, if there is one."""
+    head = " ".join(module.text.span(call.func).text.split())
+    given = [" ".join(module.text.span(each).text.split()) for each in call.args]
+    more = [f"{each.arg}={' '.join(module.text.span(each.value).text.split())}"
+            for each in call.keywords]  # fmt: skip
+    local = {each.id for each in ast.walk(method) if isinstance(each, ast.Name)}
+    local |= {each.arg for each in ast.walk(method.args) if isinstance(each, ast.arg)}
+    for at, (name, value) in enumerate(zip(names, call.args, strict=False)):
+        own = getattr(value, "attr", None) or getattr(value, "id", None)
+        if own in names[at + 1 : at + 2]:
+            given.insert(at, name if name in local else "...")
+            return f"{head}({', '.join([*given, *more])})", name
+    added = f"{missing}={missing if missing in local else '...'}"
+    return f"{head}({', '.join([*given, *more, added])})", missing
 
 
 # --- values in a text

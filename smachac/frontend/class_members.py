@@ -11,7 +11,8 @@ from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.loader import Library
-from smachac.frontend.own_objects import caught, has_no_base, members_of, shows_all
+from smachac.frontend.own_objects import has_no_base, members_of, shows_all
+from smachac.frontend.python_functions import caught
 from smachac.frontend.python_modules import Module, OwnClass, file_of, find_class, names_of
 from smachac.ir.class_facts import ClassFault
 

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
+from smachac.frontend.python_functions import caught
+from smachac.frontend.python_modules import Module, OwnClass, is_smach_state, of_other_objects
 from smachac.ir.class_facts import ClassFault, FaultKind
 
 BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "__class__", "_"])
@@ -331,8 +332,7 @@ def _evaluated(node: ast.AST) -> Iterator[ast.AST]:
 
 def undefined_methods(own: OwnClass) -> list[ClassFault]:
     """The methods that a class calls on `self` and that neither it nor its bases define, each
-    once; also other attributes, if a near name is defined, or if `__init__` has an argument of that
-    name and does not keep it."""
+    once; also the attributes that nothing sets."""
     every = [each for module, _ in own.classes for each in ast.walk(module.text.tree)]
     names = {each.id for each in every if isinstance(each, ast.Name)}
     defined = {name for names_ in own.names for name in names_}
@@ -341,13 +341,15 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     attributes = [each for each in every if isinstance(each, ast.Attribute)]
     if not LATE.isdisjoint(each.attr for each in attributes):
         return []
-    defined |= {each.attr for each in attributes if isinstance(each.ctx, ast.Store)}
+    stored = [each for each in attributes if isinstance(each.ctx, ast.Store)]
+    others = _of_other_classes(own) if own.root == "state" else set()
+    defined |= {each.attr for each in stored if each not in others}
     defined |= {each.left.attr for each in map(compared, every)
                 if each is not None and isinstance(each.left, ast.Attribute)}  # fmt: skip
     quoted = {each.value for each in every if isinstance(each, ast.Constant)}
     called = [each.func for each in every if isinstance(each, ast.Call)]
     usual = sorted({*STATE_METHODS, *(name for name in defined if not name.startswith("__"))})
-    guess, found = guesser(usual), []
+    guess, found, unread = guesser(usual), list[ClassFault](), _only_unread(own, attributes)
     defined |= INHERITED
     constructor = own.method("__init__")
     arguments = ast.walk(constructor[1].args) if constructor is not None else ()
@@ -366,10 +368,59 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
                 found.append(ClassFault(kind="unset attribute", name=word))
                 continue
             near = guess(each.attr)
-            if near is not None or any(each is function for function in called):
-                defined.add(each.attr)
+            calls = any(each is function for function in called)
+            if near is None and not calls:
+                near = unread
+            defined.add(each.attr)
+            if near is not None or calls:
                 found.append(ClassFault(kind="undefined method", name=word, near=near))
+            elif isinstance(each.ctx, ast.Load) and constructor and each not in caught(node):
+                near = _meant_value(module, each.attr)
+                found.append(ClassFault(kind="never set", name=word, near=near))
     return found
+
+
+def _of_other_classes(own: OwnClass) -> set[ast.AST]:
+    """The attributes of `self` in the other states of the modules of a class, which do not set
+    attributes of its objects."""
+    mine = {node for _, node in own.classes}
+    return {
+        each
+        for module in {id(module): module for module, _ in own.classes}.values()
+        for node in module.text.tree.body
+        if isinstance(node, ast.ClassDef) and node not in mine
+        and len(node.bases) == 1 and is_smach_state(module, node.bases[0])
+        for each in ast.walk(node)
+        if isinstance(each, ast.Attribute) and _of_self(each)
+    }  # fmt: skip
+
+
+def _meant_value(module: Module, attribute: str) -> str:
+    """The value that another class of a module gives to an attribute of the same name, or the call
+    of a class with that name; `...` without one."""
+    given = {
+        " ".join(module.text.span(each.value).text.split())
+        for each in ast.walk(module.text.tree)
+        if isinstance(each, ast.Assign) and isinstance(each.targets[0], ast.Attribute)
+        and each.targets[0].attr == attribute and isinstance(each.value, ast.Call)
+    }  # fmt: skip
+    if len(given) == 1:
+        return min(given)
+    plain = attribute.replace("_", "").casefold()
+    names = [name for name, bound in module.names.items()
+             if name.casefold() == plain and isinstance(bound[-1], ast.ImportFrom)]  # fmt: skip
+    return f"{names[0]}(...)" if len(names) == 1 else "..."
+
+
+def _only_unread(own: OwnClass, attributes: Iterable[ast.Attribute]) -> str | None:
+    """The only attribute that the constructor of a class sets and that no code reads."""
+    found = own.method("__init__")
+    if found is None:
+        return None
+    read = {each.attr for each in attributes if isinstance(each.ctx, ast.Load)}
+    kept = {each.attr for each in ast.walk(found[1]) if isinstance(each, ast.Attribute)
+            and _of_self(each) and isinstance(each.ctx, ast.Store)} - read  # fmt: skip
+    return min(kept) if len(kept) == 1 else None
 
 
 def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:

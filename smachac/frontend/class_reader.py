@@ -10,7 +10,6 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TypedDict
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -24,7 +23,7 @@ from smachac.frontend.class_names import (
     undefined_methods,
     undefined_names,
 )
-from smachac.frontend.class_operations import number_writes, operations
+from smachac.frontend.class_operations import compared_texts, operation_facts, table_look_ups
 from smachac.frontend.class_slips import (
     is_uncalled_super,
     joined_texts,
@@ -34,6 +33,7 @@ from smachac.frontend.class_slips import (
     wrong_base,
 )
 from smachac.frontend.class_values import (
+    kept_parameters,
     loops,
     lost_results,
     texts_as_lists,
@@ -171,31 +171,15 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         values=written_values(own, execute, library) if execute is not None else (),
         unused=_unused(own, execute) if execute is not None else (),
         loops=loops(own) if whole else (),
+        compared=tuple(compared_texts(own, kept_parameters(own), execute)) if whole else (),
+        tables=tuple(table_look_ups(own, kept_parameters(own), execute)) if whole else (),
         hooks=_hooks(own),
         messages=class_messages(own),
         parts=(*parts_read(_text_of(own, execute), execute), *parts_of_arguments(own, execute))
         if execute is not None and flow.reads
         else (),
-        **_operations(own, execute if flow.reads or flow.writes else None),
+        **operation_facts(own, execute if flow.reads or flow.writes else None),
     )
-
-
-class _Operations(TypedDict, total=False):
-    operations: tuple[Word, ...]
-    userdata: str
-    numbers: tuple[Span, ...]
-
-
-def _operations(own: OwnClass, execute: ast.FunctionDef | None) -> _Operations:
-    """The facts about the operations of `execute`."""
-    if execute is None:
-        return {}
-    module = next(module for module, node in own.classes if execute in node.body)
-    return {
-        "operations": operations(module, execute),
-        "userdata": execute.args.args[1].arg,
-        "numbers": number_writes(module, execute),
-    }
 
 
 HOOKS = ("on_enter", "on_exit", "on_start", "on_stop", "on_pause", "on_resume")

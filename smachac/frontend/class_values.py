@@ -94,9 +94,15 @@ def _results(own: OwnClass, module: Module, value: ast.expr, library: Library) -
 def loops(own: OwnClass) -> Written:
     """The attributes that a class loops over and that are a parameter of its constructor for ever,
     each with that parameter."""
+    kept = kept_parameters(own)
+    return tuple(_loops(own, kept)) if kept else ()
+
+
+def kept_parameters(own: OwnClass) -> dict[str, str]:
+    """The attributes that are a parameter of the constructor for ever, each with the parameter."""
     found = own.method("__init__")
     if found is None:
-        return ()
+        return {}
     maker = found[1]
     changed = {each.id for each in ast.walk(maker)
                if isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load)}  # fmt: skip
@@ -106,7 +112,7 @@ def loops(own: OwnClass) -> Written:
         match entries:
             case [(_, ast.Name(id=parameter), _)] if parameter in given:
                 kept[name] = parameter
-    return tuple(_loops(own, kept)) if kept else ()
+    return kept
 
 
 def _loops(own: OwnClass, kept: dict[str, str]) -> Iterator[tuple[str, Word]]:

@@ -1,5 +1,5 @@
-"""Objects of plain classes of the project that a state keeps: attributes that they do not have, and
-methods that are not called."""
+"""Objects of plain classes of the project that a state keeps, or its module: attributes that they
+do not have, methods that are not called, and calls with too few or too many arguments."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.class_slips import operands
 from smachac.frontend.loader import Library
+from smachac.frontend.python_functions import caught
 from smachac.frontend.python_modules import (
     Module,
     OwnClass,
     file_of,
     find_class,
+    load_module,
     of_other_objects,
+    source_module,
 )
 from smachac.ir.class_facts import ClassFault, FaultKind
 
 LATE = frozenset(["__getattr__", "__getattribute__", "__slots__", "__new__", "__class__"])
 """Names by which a class can have attributes that its text does not show."""
-
-WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
-"""Exceptions that a missing attribute raises."""
 
 
 def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
@@ -68,9 +68,13 @@ def uncalled_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
                 yield ClassFault(kind=kinds[use.node], name=word, near=f"{use.span.text}()")
 
 
+_Entry = tuple[Module, ast.expr | None, Span]
+"""The value of an attribute, with its module and the place of the attribute."""
+
+
 class _Use(NamedTuple):
-    """A read of a member of an object in an attribute of `self`: the name of the attribute, the
-    member, the place of both, and the class of the object with its module."""
+    """A read of a member of an object in an attribute of `self` or in a name of the module: the
+    name, the member, the place of both, and the class of the object with its module."""
 
     node: ast.expr
     name: str
@@ -81,7 +85,8 @@ class _Use(NamedTuple):
 
 
 class Objects:
-    """The objects of plain classes of the project that a class keeps in its attributes."""
+    """The objects of plain classes of the project that a class keeps in its attributes, or a module
+    under a name."""
 
     def __init__(self, own: OwnClass, library: Library) -> None:
         self.library = library
@@ -89,24 +94,35 @@ class Objects:
             name: entries[0] for name, entries in own.assigned().items() if len(entries) == 1
         }
         self.classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
+        self.called: dict[ast.Call, ast.FunctionDef | None] = {}
+        self.left_out: dict[ast.ClassDef, tuple[set[ast.AST], set[str]]] = {}
 
     def uses(
         self, module: Module, node: ast.ClassDef, expressions: Iterable[ast.AST]
     ) -> Iterator[_Use]:
         """The reads of members among some expressions of a class."""
-        others = of_other_objects(node) | caught(node)
+        if node not in self.left_out:
+            self.left_out[node] = of_other_objects(node) | caught(node), {*_bound(node)}
+        others, bound = self.left_out[node]
         for expression in expressions:
             match expression:
                 case ast.Attribute(
                     value=ast.Attribute(value=ast.Name(id="self"), attr=name), attr=member,
                     ctx=ast.Load(),
                 ) as each if name in self.kept and each not in others:  # fmt: skip
-                    pass
+                    entry: _Entry | None = self.kept[name]
+                    where = f"self.{name}"
+                case (
+                    ast.Attribute(value=ast.Name(id=name), attr=member, ctx=ast.Load()) as each
+                ) if name in module.names and name not in bound and each not in others:
+                    entry = None
+                    where = f"{module.name}:{name}"
                 case _:
                     continue
-            if name not in self.classes:
-                self.classes[name] = _plain_class(self.kept[name], self.library)
-            found, span = self.classes[name], module.text.span(each)
+            if where not in self.classes:
+                entry = entry or _of_module(module, name, self.library)
+                self.classes[where] = _plain_class(entry, self.library) if entry else None
+            found, span = self.classes[where], module.text.span(each)
             if found is not None and not module.text.is_filled(span):
                 yield _Use(each, name, member, span, *found)
 
@@ -159,9 +175,36 @@ def _help(methods: list[str]) -> str:
     return f"its methods are {listed(methods)}" if methods else "define it in the class"
 
 
-def _plain_class(
-    entry: tuple[Module, ast.expr | None, Span], library: Library
-) -> tuple[Module, ast.ClassDef] | None:
+def _bound(node: ast.ClassDef) -> Iterator[str]:
+    """The names that the code of a class binds itself."""
+    for each in ast.walk(node):
+        match each:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                yield name
+            case ast.ExceptHandler(name=str(name)) | ast.alias(name=name):
+                yield name
+
+
+def _of_module(module: Module, name: str, library: Library) -> _Entry | None:
+    """The only value of a name of a module, also where the module imports it."""
+    match module.names.get(name, ()):
+        case (ast.ImportFrom() as imported,) if imported in module.text.tree.body:
+            own = next(each.name for each in imported.names
+                       if (each.asname or each.name) == name)  # fmt: skip
+            other = load_module(source_module(module, imported), library)
+            if not isinstance(other, Module) or other.dynamic:
+                return None
+            module, name = other, own
+    match module.names.get(name, ()):
+        case (ast.Assign(targets=[ast.Name() as target], value=ast.Call() as value) as line,):
+            shared = any(isinstance(each, ast.Global) and name in each.names
+                         for each in ast.walk(module.text.tree))  # fmt: skip
+            if line in module.text.tree.body and not shared:
+                return module, value, module.text.span(target)
+    return None
+
+
+def _plain_class(entry: _Entry, library: Library) -> tuple[Module, ast.ClassDef] | None:
     """The class of the object that an attribute keeps, if it has no base class and its text shows
     all its attributes."""
     match entry:
@@ -218,19 +261,3 @@ def members_of(node: ast.ClassDef) -> tuple[set[str], list[str]]:
     methods = [each.name for each in node.body
                if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]  # fmt: skip
     return names, methods
-
-
-def caught(node: ast.ClassDef) -> set[ast.AST]:
-    """The nodes in a `try` that catches the error of a missing attribute."""
-    found: set[ast.AST] = set()
-    for each in ast.walk(node):
-        if isinstance(each, ast.Try) and any(map(_is_wide, each.handlers)):
-            found.update(inner for line in each.body for inner in ast.walk(line))
-    return found
-
-
-def _is_wide(handler: ast.ExceptHandler) -> bool:
-    if handler.type is None:
-        return True
-    names = {each.id for each in ast.walk(handler.type) if isinstance(each, ast.Name)}
-    return bool(names & WIDE)

@@ -6,6 +6,10 @@ import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
+"""Exceptions that a missing attribute raises."""
+
+
 METHODS = frozenset(["extract", "keys", "merge", "update"])
 """The attributes of userdata that are no keys (smach.user_data)."""
 
@@ -73,3 +77,19 @@ def returns_of(body: list[ast.stmt]) -> Iterator[ast.Return]:
             yield node
         elif not isinstance(node, _Functions):
             todo.extend(reversed(list(ast.iter_child_nodes(node))))
+
+
+def caught(node: ast.ClassDef) -> set[ast.AST]:
+    """The nodes in a `try` that catches the error of a missing attribute."""
+    found: set[ast.AST] = set()
+    for each in ast.walk(node):
+        if isinstance(each, ast.Try) and any(map(_is_wide, each.handlers)):
+            found.update(inner for line in each.body for inner in ast.walk(line))
+    return found
+
+
+def _is_wide(handler: ast.ExceptHandler) -> bool:
+    if handler.type is None:
+        return True
+    names = {each.id for each in ast.walk(handler.type) if isinstance(each, ast.Name)}
+    return bool(names & WIDE)

@@ -99,7 +99,8 @@ def _with_statements(text: str, template: str, filled: tuple[tuple[int, int], ..
             continue
         first, last = text.rfind("\n", 0, start) + 1, text.find("\n", end)
         rest = text[end : last if last >= 0 else None]
-        if rest.strip() and not text[first:start].strip():
+        inside = rest.lstrip().startswith((",", ")", "]", "}"))  # code between brackets
+        if rest.strip() and not inside and not text[first:start].strip():
             parts += [text[done:start], "_;"]
             done = start + 2
     return "".join([*parts, text[done:]])

@@ -10,7 +10,8 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import SHORTEST_PART, words_of
 from smachac.frontend.loader import Library
-from smachac.frontend.python_modules import Module, OwnClass
+from smachac.frontend.own_objects import Objects
+from smachac.frontend.python_modules import Module, OwnClass, find_class, names_of
 from smachac.frontend.silent_results import called_function
 from smachac.ir.class_facts import ClassFault
 
@@ -132,23 +133,77 @@ class _Place(NamedTuple):
 def swapped_arguments(
     own: OwnClass,
     module: Module,
+    node: ast.ClassDef,
     method: ast.FunctionDef,
     every: Sequence[ast.AST],
-    library: Library,
+    objects: Objects,
 ) -> Iterator[ClassFault]:
-    """The calls in a method two of whose arguments have changed places."""
+    """The calls in a method of a class two of whose arguments have changed places."""
     for call in every:
         if not isinstance(call, ast.Call) or len(call.args) < 2:
             continue
         if not any(_name(each) for each in call.args):
             continue
-        found = called_function(own, module, method, call.func, library)
-        if found is None or found[1] is method or found[1].decorator_list:
+        called = called_code(own, module, node, method, call, objects)
+        if called is None or called is method:
             continue
-        places = _places(call, found[1])
-        pair = _pair(places, found[1]) if places is not None else None
+        places = _places(call, called)
+        pair = _pair(places, called) if places is not None else None
         if pair is not None:
             yield _fault(module, call, places or [], pair)
+
+
+def called_code(
+    own: OwnClass,
+    module: Module,
+    node: ast.ClassDef,
+    method: ast.FunctionDef,
+    call: ast.Call,
+    objects: Objects,
+) -> ast.FunctionDef | None:
+    """The function or method of the project that a call in a method of a class runs, also that of
+    an object, or the constructor; None for one with a decorator."""
+    if call not in objects.called:
+        objects.called[call] = _called_code(own, module, node, method, call, objects)
+    return objects.called[call]
+
+
+def _called_code(
+    own: OwnClass,
+    module: Module,
+    node: ast.ClassDef,
+    method: ast.FunctionDef,
+    call: ast.Call,
+    objects: Objects,
+) -> ast.FunctionDef | None:
+    function = called_function(own, module, method, call.func, objects.library)
+    called = function[1] if function is not None else objects.method(module, node, call.func)
+    called = called or _constructor(module, call.func, objects.library)
+    if called is None or called.decorator_list:
+        return None
+    head = call.func.value if isinstance(call.func, ast.Attribute) else None
+    of_object = function is None or (isinstance(head, ast.Name) and head.id == "self")
+    first = [each.arg for each in (*called.args.posonlyargs, *called.args.args)][:1]
+    return called if of_object == (first == ["self"]) else None
+
+
+def takes_self(call: ast.Call, function: ast.FunctionDef) -> bool:
+    """Whether the first parameter of a function is the object of the call."""
+    taken = [*function.args.posonlyargs, *function.args.args]
+    bound = isinstance(call.func, ast.Attribute) or function.name == "__init__"
+    return bound and [each.arg for each in taken[:1]] == ["self"]
+
+
+def _constructor(module: Module, called: ast.expr, library: Library) -> ast.FunctionDef | None:
+    """The constructor of the class of the project that an expression names."""
+    if not isinstance(called, ast.Name) or called.id not in module.names:
+        return None
+    found = find_class(module, called.id, library)
+    bound = names_of(found[1].body)[0].get("__init__", ()) if isinstance(found, tuple) else ()
+    match bound:
+        case (ast.FunctionDef() as maker,):
+            return maker
+    return None
 
 
 def _places(call: ast.Call, function: ast.FunctionDef) -> list[_Place] | None:
@@ -156,8 +211,7 @@ def _places(call: ast.Call, function: ast.FunctionDef) -> list[_Place] | None:
     if any(isinstance(each, ast.Starred) for each in call.args):
         return None
     names = [each.arg for each in (*function.args.posonlyargs, *function.args.args)]
-    bound = isinstance(call.func, ast.Attribute) and names[:1] == ["self"]
-    names = names[1:] if bound else names
+    names = names[1:] if takes_self(call, function) else names
     if len(names) < len(call.args):
         return None
     return [_Place(name, value) for name, value in zip(names, call.args, strict=False)]

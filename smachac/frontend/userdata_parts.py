@@ -131,6 +131,43 @@ def written_keys(every: Sequence[ast.AST], userdata: str) -> frozenset[str]:
     return frozenset(found)
 
 
+ADDING = frozenset(["update", "setdefault", "__setitem__", "setattr"])
+"""Names of functions and methods that add entries of any name to a mapping."""
+
+LOOKING = frozenset(
+    ["abs", "bool", "dict", "float", "int", "len", "list", "max", "min", "print", "round", "sorted",
+     "str", "sum", "tuple"]
+)  # fmt: skip
+"""Functions of Python that change none of their arguments."""
+
+
+def added_entries(own: OwnClass, execute: ast.FunctionDef) -> frozenset[str] | None:
+    """The entries that the code of a class can add to the values of keys; None if their names are
+    not known, or if it passes a whole value to other code."""
+    userdata = execute.args.args[1].arg
+    every = [each for _, node in own.classes for each in ast.walk(node)]
+    names = _names([*ast.walk(execute)], userdata, {})
+    found: set[str] = set()
+    for each in every:
+        match each:
+            case ast.Subscript(slice=index, ctx=ast.Store()):
+                if not isinstance(index, ast.Constant):
+                    return None
+                found.add(str(index.value))
+            case ast.AugAssign(op=ast.BitOr()):
+                return None
+            case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)) if name in ADDING:
+                return None
+            case ast.Call(func=called, args=args, keywords=keywords):
+                plain = isinstance(called, ast.Name) and called.id in LOOKING
+                passed = [*args, *(one.value for one in keywords)]
+                ways = [] if plain else [_way(one, names, userdata) for one in passed]
+                whole = any(isinstance(one, ast.Name) and one.id == userdata for one in passed)
+                if whole or any(way is not None and not way[1] for way in ways):
+                    return None
+    return frozenset(found)
+
+
 Way = tuple[str, tuple[Step, ...]]
 """A key of userdata, and the steps to a part of its value."""
 

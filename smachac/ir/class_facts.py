@@ -77,6 +77,9 @@ FaultKind = Literal[
     "undefined method",
     "no attribute",
     "unset attribute",
+    "never set",
+    "extra argument",
+    "lacking argument",
     "no list",
     "no comma",
     "no tuple",
@@ -184,6 +187,27 @@ class Part(NamedTuple):
     span: Span
 
 
+class Compared(NamedTuple):
+    """A text with which code compares a variable or an input key, at its place; `owner` is the text
+    of the other side: `self.action`."""
+
+    kind: Literal["variable", "key"]
+    name: str
+    owner: str
+    word: Word
+
+
+class TableLookUp(NamedTuple):
+    """A look-up of a variable or an input key in the dictionary `table` of a module, with the keys
+    of the dictionary, and the text and place of the look-up."""
+
+    kind: Literal["variable", "key"]
+    name: str
+    table: str
+    keys: tuple[Word, ...]
+    word: Word
+
+
 class MessageRef(NamedTuple):
     """A type of ROS that code names: `SetBool` of `std_srvs.srv`. `part` is the message of it that
     is meant: `request`; empty for the type itself."""
@@ -247,8 +271,10 @@ class ClassFacts:
     class without an interface to keys that the constants in its constructor do not list. `hooks`
     are the methods of FlexBE's states, such as `on_enter`, that nothing in the class calls.
     `operations` are the comparisons and calculations of `execute` over userdata keys, whose name
-    is `userdata`; `numbers` are the places of written values that are one number. `messages` are
-    those of ROS; None if it has none.
+    is `userdata`; `numbers` are the places of written values that are one number, `collections`
+    those that are a list or a dictionary, with that type. `compared` are the texts with which it
+    compares variables and keys. `entries` are those that it can add to mappings; None: not known.
+    `tables` are its look-ups in dictionaries. `messages` are those of ROS; None if it has none.
     """
 
     name: Word | None = None
@@ -282,6 +308,10 @@ class ClassFacts:
     operations: tuple[Word, ...] = ()
     userdata: str = ""
     numbers: tuple[Span, ...] = ()
+    collections: tuple[tuple[Span, Literal["list", "dict"]], ...] = ()
+    compared: tuple[Compared, ...] = ()
+    entries: frozenset[str] | None = None
+    tables: tuple[TableLookUp, ...] = ()
 
     @property
     def returns(self) -> tuple[Word, ...]:

@@ -116,6 +116,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`self.{word}` of `{name}` is never set",
         "write `self.{word} = {word}` in `__init__`",
     ),
+    "never set": (
+        "`self.{word}` of `{name}` is never set",
+        "write `self.{word} = {near}` in `__init__`",
+    ),
     "no list": (
         "`{word}` of `{name}` must be a list: SMACH cannot use another collection",
         "write `{word}=[...]`",
@@ -220,6 +224,14 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "swapped arguments": (
         "the arguments of `{word}` have changed places",
+        "write `{near}`",
+    ),
+    "extra argument": (
+        "`{owner}` has no parameter for `{word}`",
+        "its parameters are those of `{near}`",
+    ),
+    "lacking argument": (
+        "this call of `{word}` does not pass `{more}`",
         "write `{near}`",
     ),
     "number of values": (
@@ -423,6 +435,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "no return": "the result is None: code that uses it as a value fails, or goes on without it",
     "no tuple": "each letter of the text counts as a name",
     "unset attribute": "the code raises AttributeError when it runs: the machine stops",
+    "never set": "the code raises AttributeError when it runs: the machine stops",
     "no rospy import": "the code raises NameError when it runs: the machine stops",
     "no import": "the code raises NameError when it runs: the machine stops",
     "other scope": "the code raises NameError when it runs: the machine stops",
@@ -448,6 +461,8 @@ EFFECTS: Mapping[FaultKind, str] = {
     "called early": "the function runs at once, and not later",
     "other order": "the comparison has the same result in every run",
     "swapped arguments": "{more}",
+    "extra argument": "the call raises TypeError when it runs: the machine stops",
+    "lacking argument": "the call raises TypeError when it runs: the machine stops",
     "number of values": "the code raises {word} when it runs: the machine stops",
     "no module here": "the code raises AttributeError when it runs: the machine stops",
     "no member": "the code raises AttributeError when it runs: the machine stops",
@@ -550,6 +565,9 @@ WRITTEN = frozenset[FaultKind](
         "other order",
         "swapped arguments",
         "no module here",
+        "never set",
+        "extra argument",
+        "lacking argument",
     ]
 )
 """Faults whose words contain what was probably meant."""

@@ -26,11 +26,13 @@ from smachac.targets.errors import bad_class
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)
 _ARGUMENT = re.compile(
-    r"(?P<quote>['\"]?)\{\{\s*(?P<name>\w+)\s*\}\}(?P=quote)\s*(?P<end>[,)]|(?=\{%))\s*"
+    r"(?P<quote>['\"]?)\{\{\s*(?P<name>\w+)\s*(?P<filter>\|[\s\w|]+)?\}\}(?P=quote)"
+    r"\s*(?P<end>[,)]|(?=\{%))\s*"
 )
 _TEST = re.compile(
     r"\{%[-+]?\s*if\s+(\w+)\s+is\s+defined\s*[-+]?%\}(.*?)\{%[-+]?\s*endif\b", re.DOTALL
 )
+_CLASS_NAME = r"\{\{-?\s*class_name\s*-?\}\}"
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
@@ -63,7 +65,8 @@ def _not_printed(template: Source, body: re.Match[str], leaf: Leaf) -> Iterator[
     # Code that another template prints can use the names of this one.
     hidden = any(re.search(r"\bsuper\b|\bself\b|\*\*", each) for each in in_body)
     hidden = hidden or any(re.search(r"\binclude\b|with context", each) for each in printed)
-    if f"{leaf.type}(" not in inside or hidden:
+    call = _callee(leaf.type, leaf).search(inside)
+    if call is None or hidden:
         return
     words = {word for each in (*printed, inside) for word in _WORD.findall(each)}
     if "name" not in words:
@@ -76,10 +79,10 @@ def _not_printed(template: Source, body: re.Match[str], leaf: Leaf) -> Iterator[
     ):
         if not used or name in words:
             continue
-        start = body.start(1) + inside.index(f"{leaf.type}(")
-        place = Span(template, start, start + len(leaf.type))
+        start = body.start(1) + call.start()
+        place = Span(template, start, body.start(1) + call.end() - 1)
         code = f"{{% if {name} is defined %}}, {{{{ render_{name}({name}) }}}}{{% endif %}}"
-        help = f"add `{code}` behind `{leaf.type}(...)`"
+        help = f"add `{code}` behind `{call[0]}...)`"
         if f"render_{name}" not in words:
             help += f', and import it: `{{% from "Utils.tpl.py" import render_{name} %}}`'
         message = f"the template does not print the `{name}` that `{leaf.name}` has in the script"
@@ -142,10 +145,11 @@ def _call_fault(
         return None
     name, maker, text = made
     parameters = [each.arg for each in maker.args.args[1:]]
+    callee = _callee(name, leaf)
     unfit = _argument_fault(text, body, name, maker, leaf)
     if unfit is not None:
         return unfit, name
-    calls = [*re.compile(rf"\b{re.escape(name)}\(").finditer(template.text, *body.span(1))]
+    calls = [*callee.finditer(template.text, *body.span(1))]
     if len(calls) != 1:
         return None
     (call,) = calls
@@ -161,7 +165,7 @@ def _call_fault(
     if order != due and sorted(order) == sorted(due) and len({*order}) == len(order):
         by_name = {each["name"]: each[0].rstrip(" ,)\n\t") for each in given}
         near = ", ".join(by_name[each] for each in due)
-        near = f"{name}({near})" if given[-1]["end"] == ")" else near
+        near = f"{call[0]}{near})" if given[-1]["end"] == ")" else near
         place = Span(template, given[0].start(), given[-1].start("end"))
         gets = [f"`{wanted}` gets the value of `{name_}`"
                 for wanted, name_ in zip(due, order, strict=True) if wanted != name_]  # fmt: skip
@@ -169,13 +173,20 @@ def _call_fault(
         more = ", and ".join(gets[:2])
         return ClassFault(kind="argument order", name=word, near=near, more=more), name
     for each in given:
-        value = variable(leaf, each["name"]) if not each["quote"] else None
+        value = variable(leaf, each["name"]) if not (each["quote"] or each["filter"]) else None
         if isinstance(value, str) and value.isidentifier() and value not in names:
             place = Span(template, each.start(), each.start("end"))
             word = Word(place.text.rstrip(), place)
             near = f"'{word.text}'"
             return ClassFault(kind="no quotes", name=word, near=near, more=value), name
     return None
+
+
+def _callee(name: str, leaf: Leaf) -> re.Pattern[str]:
+    """The start of a call of a class, also under the name `class_name` that each template has."""
+    written = rf"\b{re.escape(name)}"
+    own = name == re.sub(r"\W+", "_", leaf.type)
+    return re.compile(rf"(?:{written}|{_CLASS_NAME})\(" if own else rf"{written}\(")
 
 
 def _maker(template: Source) -> tuple[str, ast.FunctionDef, PythonText] | None:
@@ -199,7 +210,7 @@ def _argument_fault(
     text: PythonText, body: re.Match[str], name: str, maker: ast.FunctionDef, leaf: Leaf
 ) -> ClassFault | None:
     """An argument of the call of the constructor that this does not have, or lacks."""
-    call = _only_call(text, body, name)
+    call = _only_call(text, body, _callee(name, leaf))
     taken = maker.args
     known = [each.arg for each in (*taken.args[1:], *taken.kwonlyargs)]
     if call is None or maker.decorator_list or text.is_filled(text.span(maker)):
@@ -230,18 +241,19 @@ def _argument_fault(
             if default is None]  # fmt: skip
     unused = {each.name for each in (*leaf.written, *leaf.variables)}  # SM003
     missing = [each for each in due if each not in passed and each not in unused]
-    end = text.span(call.func).end
-    span = Span(text.source, end - len(name), end)
+    span = text.span(call.func)
+    if not text.is_filled(Span(span.source, span.end - 1, span.end)):
+        span = Span(span.source, span.end - len(name), span.end)
     return ClassFault(kind="no argument here", name=Word(missing[0], span)) if missing else None
 
 
-def _only_call(text: PythonText, body: re.Match[str], name: str) -> ast.Call | None:
-    """The only call of a name in the block `body`, also behind an expression of Jinja that prints
+def _only_call(text: PythonText, body: re.Match[str], callee: re.Pattern[str]) -> ast.Call | None:
+    """The only call of a class in the block `body`, also behind an expression of Jinja that prints
     nothing: `{{ '' }}Measure(...)`."""
+    starts = {each.end() - 1 for each in callee.finditer(text.source.text, *body.span(1))}
     found = [each for each in ast.walk(text.tree)
              if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
-             and each.func.id.lstrip("_") == name
-             and body.start(1) <= text.span(each).start < body.end(1)]  # fmt: skip
+             and text.span(each.func).end in starts]  # fmt: skip
     return found[0] if len(found) == 1 else None
 
 

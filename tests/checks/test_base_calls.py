@@ -113,6 +113,16 @@ def test_a_base_class_that_accepts_more(base: str) -> None:
     assert [each for each in found if each[0] == "SM609"] == []
 
 
+@pytest.mark.parametrize("copy", ["list(inputs)", "[*inputs]", "inputs or []", "inputs"])
+def test_lists_in_another_order_than_those_of_a_base_class(copy: str) -> None:
+    base = BASE.replace("node, outcomes, input_keys=()", "node, outcomes, inputs")
+    base = base.replace("outcomes=outcomes, input_keys=list(input_keys)",
+                        f"outcomes=list(outcomes), input_keys={copy}")  # fmt: skip
+    assert [each for each in reported(GOOD, base) if each[0] == "SM609"] == []
+    call = 'super().__init__(node, ["offset"], ["moved", "lost"])'
+    assert reported(call, base)[0] == ("SM609", '["offset"]', f"write `{GOOD}`")
+
+
 def test_a_list_that_is_no_list_of_outcomes() -> None:
     base = BASE.replace("self, node,", "self, joints,").replace("= node", "= joints")
     assert (

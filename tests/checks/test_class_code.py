@@ -240,6 +240,10 @@ def test_what_cannot_be_judged_and_what_is_correct(pair: tuple[str, str]) -> Non
         text = text.replace('return "preempted"', "pass")
     if "sm.State" in text:
         text = text.replace("import smach", "import smach as sm")
+    if "self.r" in pair[1]:
+        text = text.replace(
+            "self.speed = speed", "self.speed = speed; self.result = self.robot = 1"
+        )
     assert lines(findings(text)) == []
 
 

@@ -102,7 +102,12 @@ def test_names_that_nothing_defines(body: str, name: str, help: str) -> None:
         ("self.grip()", "class FindPart(smach.State)", "class FindPart(smach.State, arm.Mixin)"),
         ("self.grip()", "HEIGHT = 0.1", "def equip(one):\n    one.grip = print\nHEIGHT = 0.1"),
         ("self.search()", "def execute(self, userdata)", "def execute(self, userdata: 'Later')"),
-        ("self.known", "def search(self)", "def __getattr__(self, name)"),
+        ("print(self.known)", "def execute", "def __getattr__(self, n): ...\n\n    def execute"),
+        (
+            "try:\n            x = self.known\n        except AttributeError:\n            pass",
+            "",
+            "",
+        ),
         ("x: unknown = 1", "", ""),
         ("while not self._preempt_requested: break", "", ""),
         ("if (n := 3) > 2: print(n)", "", ""),
@@ -166,7 +171,7 @@ def test_literals_that_do_not_fit_the_interface(value: str) -> None:
         "None",
         "arm.pose()",
         "HEIGHT",
-        "[arm.x, 0.0]",
+        "[arm.x, arm.y]",
         "{1: 2}",
         "HEIGHT == 1",
         "HEIGHT % 2",
@@ -206,11 +211,32 @@ def test_an_argument_that_the_constructor_does_not_keep() -> None:
         "self.grip = 2; print(self.grip)",
         "print(self.looks)",
         "setattr(self, 'grip', 1); print(self.grip)",
-        "print(self.force)",
+        "setattr(self, 'force', 1); print(self.force)",
     ],
 )
 def test_an_argument_that_is_set_elsewhere_or_not_read(body: str) -> None:
     assert report(body, *UNSET) == []
+
+
+@pytest.mark.parametrize(
+    ("body", "old", "new", "help"),
+    [
+        ("print(self.force)", "", "", "write `self.force = ...` in `__init__`"),
+        ("print(self.gripper.force)", "import math", "from tools import Gripper",
+         "write `self.gripper = Gripper(...)` in `__init__`"),
+        ("print(self.force)", "self.looks = 0\n\n    def exec",
+         "self.looks = 0\n        self.wait = 1\n\n    def exec", "did you mean `wait`?"),
+    ],
+)  # fmt: skip
+def test_an_attribute_that_nothing_sets(body: str, old: str, new: str, help: str) -> None:
+    (item,) = report(body, old, new)
+    assert (item.code, item.help) == ("SM609", help)
+
+
+def test_an_attribute_that_another_state_of_the_module_sets() -> None:
+    text = "self.looks = 0\n        self.lens = len('ab')\n\n    def search(self):\n"
+    (item,) = report("print(self.lens)", "self.looks = 0\n\n    def search(self):\n", text)
+    assert item.help == "write `self.lens = len('ab')` in `__init__`"
 
 
 SLIPS = [

@@ -407,3 +407,23 @@ def test_a_word_of_yaml_1_1_for_a_bool(word: str, meant: str) -> None:
     script = service(f"request: {{data: {word}}}", type="std_srvs/SetBool")
     ((text, _, help),) = faults(script, {})
     assert (text, help) == (word, f"write `{meant}`: in YAML 1.2, `{word}` is a text")
+
+
+@pytest.mark.parametrize(
+    ("pose", "expected"),
+    [
+        ("{position: {x: 1.0}, orientation: {w: 1.0}}", []),
+        ("{position: {x: 1.0}, turn: {w: 1.0}}", [("turn", "write `orientation`")]),
+        ("{position: {x: 1.0}, oreintation: {w: 1.0}}",
+         [("oreintation", "did you mean `orientation`?")]),
+        ("{position: {x: left}}", [("left", "write a value of the type `float64`, such as `1.5`")]),
+        ("[[0.5, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]", []),
+    ],
+)  # fmt: skip
+def test_a_mapping_in_a_slot(pose: str, expected: list[tuple[str, str]]) -> None:
+    script = SERVICE.format(
+        type="cell_msgs/Grasp",
+        data=f"grip: {pose}",
+        fields="request_slots: [pose]\n      input_keys: [pose]\n      remapping: {pose: grip}",
+    )
+    assert [each[0::2] for each in faults(script)] == expected

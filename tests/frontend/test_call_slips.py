@@ -232,3 +232,32 @@ def test_arguments_of_a_method_that_have_changed_places() -> None:
               "        return volume / flow\n\n    def handler(self):")  # fmt: skip
     body = "flow = 2\nneed = 3\nprint(self.pump(flow, need))"
     assert reported(body, method) == [("SM609", "flow, need", "write `self.pump(need, flow)`")]
+
+
+PUMPS = """
+
+class Pump:
+    def __init__(self, port, flow):
+        self.port = port / flow
+
+    def run(self, volume, flow):
+        return volume / flow
+
+
+class Mark(Base):"""
+
+
+@pytest.mark.parametrize(
+    ("body", "place", "help"),
+    [
+        ("print(self.pump.run(flow, need))", "flow, need", "write `self.pump.run(need, flow)`"),
+        ("print(self.pump.run(need, flow))", "", ""),
+        ("print(Pump(flow, need))", "flow, need", "write `Pump(need, flow)`"),
+        ("print(Pump(need, flow))", "", ""),
+    ],
+)
+def test_arguments_of_an_object_that_have_changed_places(body: str, place: str, help: str) -> None:
+    kept = ("self.arm = Arm()", "self.arm = Arm()\n        self.pump = Pump(3, 4)")
+    text = f"flow = 2\nneed = 3\n{body}"
+    found = reported(text, ("\n\nclass Mark(Base):", PUMPS), kept)
+    assert found == ([("SM609", place, help)] if help else [])

@@ -94,3 +94,60 @@ def test_a_method_that_is_not_called(call: str, message: str) -> None:
 )  # fmt: skip
 def test_no_finding(old: str, new: str, driver: str) -> None:
     assert reported(old, new, driver) == []
+
+
+OF_MODULE = (
+    DRIVER
+    + """
+    def move(self, position, rotation, speed=1.0):
+        return position or rotation
+
+
+ARM = Arm()
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("call", "place", "help"),
+    [
+        ("ARM.dune()", "dune", "did you mean `done`?"),
+        ("ARM.done", "ARM.done", "write `ARM.done()`"),
+        ("ARM.move(1)", "ARM.move(1)", "write `ARM.move(1, rotation=...)`"),
+        ("self.arm.move(1)", "self.arm.move(1)", "write `self.arm.move(1, rotation=...)`"),
+        ("ARM.move(rotation=1, speed=3)", "ARM.move(rotation=1, speed=3)",
+         "write `ARM.move(rotation=1, speed=3, position=...)`"),
+        ("self.arm.move(1, 2, 3, 4)", "4",
+         "its parameters are those of `self.arm.move(position, rotation, speed)`"),
+        ("ARM.move(1, 2)", "", ""),
+        ("ARM.move(*self.x)", "", ""),
+        ("(lambda ARM: ARM.dune())(1)", "", ""),
+    ],
+)  # fmt: skip
+def test_an_object_of_a_module(call: str, place: str, help: str) -> None:
+    new = f"{call}:\n                self.x = (1, 2)\n            if self.arm.halted()"
+    files = {
+        "main.yml": MAIN,
+        "templates/Move.yml": TYPE,
+        "cell/__init__.py": "",
+        "cell/states.py": CLASS.replace("import Arm", "import ARM, Arm")
+        .replace("self.arm.halted()", new),
+        "cell/driver.py": OF_MODULE,
+    }  # fmt: skip
+    found = [each for each in analysed(files).report if each.code == "SM609"]
+    assert [each.span.text for each in found] == ([place] if help else [])
+    assert all((each.help or "").startswith(help) for each in found)
+
+
+def test_an_argument_before_one_with_the_name_of_the_next_parameter() -> None:
+    new = (
+        "self.arm.move(rotation):\n                return 'there'\n            if self.arm.halted()"
+    )
+    ((place, message, help),) = reported(
+        "if self.arm.halted()",
+        f"position, rotation = 1, 2\n            if position and {new}",
+        OF_MODULE,
+    )
+    assert place == "self.arm.move(rotation)"
+    assert message == "this call of `self.arm.move` does not pass `position`"
+    assert help == "write `self.arm.move(position, rotation)`"

@@ -91,6 +91,38 @@ def test_a_body_that_is_right_or_cannot_be_judged(old: str, new: str) -> None:
     ] == []
 
 
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ("'{{ probe }}', {{ samples }}",
+         [("SM609", "'{{ probe }}', {{ samples }}",
+           "write `{{ class_name }}({{ samples }}, '{{ probe }}')`")]),
+        ("{{ probe | exptostr }}, {{ samples }}",
+         [("SM609", "{{ probe | exptostr }}, {{ samples }}",
+           "write `{{ class_name }}({{ samples }}, {{ probe | exptostr }})`")]),
+        ("{{ samples }}, {{ probe | exptostr }}", []),
+    ],
+)  # fmt: skip
+def test_a_call_of_the_class_under_its_name_in_templates(
+    arguments: str, expected: list[tuple[str, str, str]]
+) -> None:
+    old = "{{ '' }}Measure({{ samples }}, '{{ probe }}')"
+    assert findings(old, f"{{{{ class_name }}}}({arguments})") == expected
+
+
+def test_a_template_with_tags_that_begin_lines_between_brackets() -> None:
+    old = """Measure({{ samples }}, '{{ probe }}'){% if transitions is defined %},
+        {{ render_transitions(transitions) }}{% endif %})"""
+    new = """Measure({{ samples }}, '{{ probe }}')
+{%- if transitions is defined %},
+        {{ render_transitions(transitions) }}{% endif %})"""
+    assert findings(old, new) == []
+    text = TEMPLATE.replace(old, new).replace("print(self._samples", "print(self._rate")
+    files = {"main.yml": MAIN, "templates/Measure.tpl.py": text}
+    found = [(each.code, each.help) for each in analysed(files).report]
+    assert found == [("SM609", "did you mean `_samples`?")]
+
+
 def test_a_text_that_is_a_name_of_the_template() -> None:
     text = TEMPLATE.replace("class Measure", "left = 3\nclass Measure")
     text = text.replace("'{{ probe }}'", "{{ probe }}")
