@@ -109,7 +109,8 @@ def read_bytes(path: Path) -> bytes:
 def lies_inside(path: Path, folder: Path) -> bool:
     """Whether a path lies inside a folder after all links are followed."""
     try:
-        if path.parent == folder and path.name != ".." and not path.is_symlink():
+        plain = path.parent == folder and path.name != ".." and "\0" not in path.name
+        if plain and not path.is_symlink():
             return True
         return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))
     except (OSError, ValueError):  # a NUL in the name

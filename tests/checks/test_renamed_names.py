@@ -32,9 +32,9 @@ def of(interface: tuple[str, str], *pairs: tuple[str, str]) -> list[tuple[str, s
 def test_a_name_that_has_changed(
     interface: tuple[str, str], place: str, old: str, new: str
 ) -> None:
-    help = f"write `{new}` in place of `{old}`, also where `FindPart` declares it, or correct the"
+    help = f"write `{new}` in place of `{old}`, also where `FindPart` declares it, or write `{old}`"
     found = of(interface)
-    assert found == [(place, f"{help} interface")]
+    assert found == [(place, f"{help} in place of `{new}` in `FindPart.yml`")]
 
 
 def test_the_opposite_is_no_other_name() -> None:
