@@ -152,9 +152,11 @@ def with_outer_variables(
     """As `with_outer_fields`, for the variables of the state type, whose values are no names; and
     for those and the fields with one name in a mapping whose names the state declares."""
     own = _with_outer_names(name, own, owner, type_, report)
-    for part in _OF_NAMES:
+    for part in _OF_NAMES if type_.variables else ():
         entry = own.get(part)
         if entry is None or not isinstance(entry.value, Map):
+            continue
+        if type_.variables.keys().isdisjoint([each.key.value for each in entry.value.entries]):
             continue
         outer = {
             str(each.key.value): each
@@ -170,12 +172,13 @@ def _with_outer_names(
 ) -> dict[str, Entry]:
     """The fields with those of one value that are in a mapping of declared outcomes or keys."""
     fields, variables = _ONE_NAME[owner], type_.variables
-    parts = sorted(
-        [key for key, each in variables.items() if key in own and each.role in _CODE]
-    )  # fmt: skip
+    parts = sorted([key for key in own if key in variables and variables[key].role in _CODE])
     for part in ("transitions", "outcome_map", *parts):
         entry = own.get(part)
         if entry is None or not isinstance(entry.value, Map):
+            continue
+        keys = [each.key.value for each in entry.value.entries]
+        if fields.isdisjoint(keys) and variables.keys().isdisjoint(keys):
             continue
         outer = {str(key): each for each in entry.value.entries
                  if ((key := each.key.value) in fields or key in variables)
