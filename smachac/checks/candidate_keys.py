@@ -3,6 +3,7 @@ that is read (SM301)."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import NamedTuple
@@ -12,7 +13,7 @@ from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, misfit, widened
-from smachac.analysis.unset_reads import Reader, reader_at
+from smachac.analysis.unset_reads import Reader, Witness, reader_at
 from smachac.checks.messages import added_remapping
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import Guesser, guesser, words_of
@@ -43,31 +44,49 @@ def meant_input(key: str, guess: Guesser, used: AbstractSet[str], around: Contai
 
 class UnreadOutput(NamedTuple):
     """An output that nothing reads, with its name in the container, the place of its state or
-    remapping, and the help that names it."""
+    remapping, the help that names it, and the state that sets it."""
 
     key: str
     place: Span
     help: str
+    setter: str
 
 
 def unread_output(scope: UserdataScope, missing: str) -> UnreadOutput | None:
     """The only output in a container that nothing reads and that has a word of the missing key:
     `pose` for `found_pose`."""
+    words = words_of(missing)
+    found = [each for each in unread_outputs(scope, missing) if words & words_of(each.key)]
+    return found[0] if len(found) == 1 else None
+
+
+def unread_outputs(scope: UserdataScope, missing: str) -> Iterator[UnreadOutput]:
+    """The outputs of states of a container that nothing in it reads."""
     read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
-    found: list[UnreadOutput] = []
     for child in scope.container.children:
         names = remapping(child)
         for key in child.outputs:
             outer = names.get(key.name, key.name)
-            if outer in read or not words_of(outer) & words_of(missing):
+            if outer in read:
                 continue
             help = f"nothing reads `{outer}`, which `{child.name}` sets: did you mean it?"
             if key.name not in names:
                 help = f"{added_remapping(child, key.name, missing)}, whose `{key.name}` nothing"
                 help += " reads"
             place = next((each.to_span for each in child.remaps if each.to == outer), child.span)
-            found.append(UnreadOutput(outer, place, help))
-    return found[0] if len(found) == 1 else None
+            yield UnreadOutput(outer, place, help, child.name)
+
+
+def unread_before(
+    types: Types, scope: UserdataScope, missing: str, witness: Witness, wanted: Type
+) -> UnreadOutput | None:
+    """The only output in a container that nothing reads, if a state on the path to the reader of a
+    missing key sets it and the reader can have its type."""
+    before = {each.label for each in witness.path[:-1] if not each.is_outcome}
+    found = [*unread_outputs(scope, missing)] if before else []
+    if len(found) != 1 or found[0].setter not in before:
+        return None
+    return found[0] if may_be(types, scope, found[0].key, wanted) else None
 
 
 MOST_FITTING = 3

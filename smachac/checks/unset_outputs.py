@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from smachac.analysis.context import Context
-from smachac.analysis.type_lattice import present
+from smachac.analysis.type_lattice import is_open, present
+from smachac.checks.candidate_keys import SCALARS
 from smachac.checks.class_code import lone_output, own_types, used_here
 from smachac.checks.messages import other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import guesser, words_of
 from smachac.frontend.yaml_tree import Map, Seq, parse
 from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.nodes import Leaf, StateType
@@ -220,6 +221,37 @@ def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
     return () if found is None else other_place(found.span, f"`writes:` promises `{key}` here")
 
 
+def _setting(leaf: Leaf, type_: StateType, ending: Ending, key: str) -> str:
+    """The help that sets a key before a `return`: to the local variable of its name or the only one
+    with a word of it, or to the only input of its type."""
+    facts = leaf.class_facts
+    name = (facts.userdata if facts is not None else "") or "userdata"
+    at = ending.outcome.span
+    known = {
+        word.text
+        for word in (facts.local if facts is not None else ())
+        if word.span.source == at.source and word.span.start <= at.start < word.span.end
+    }
+    is_set = any(word.text == key for word in (facts.writes if facts is not None else ()))
+    words = words_of(key) if not is_set else set()
+    near = [key] if key in known else [each for each in known if words & words_of(each)]
+    if len(near) == 1:
+        return f"write `{name}.{key} = {near[0]}`"
+    return f"set `{name}.{key}`{_of_same_type(type_, key, name) if not is_set else ''}"
+
+
+def _of_same_type(type_: StateType, key: str, userdata: str) -> str:
+    """The part of a help that names the only input which has the type of an output, if that says
+    what the value means: no plain number, text or boolean."""
+    wanted = next(each.type for each in type_.output_keys if each.name == key)
+    if is_open(wanted) or (wanted.name in SCALARS and not wanted.args):
+        return ""
+    found = [each.name for each in type_.input_keys if each.type == wanted and each.name != key]
+    if len(found) != 1:
+        return ""
+    return f", for example to `{userdata}.{found[0]}`, which has its type,"
+
+
 def _broken_promise(
     path: str, leaf: Leaf, type_: StateType, ending: Ending, key: str
 ) -> Iterator[Finding]:
@@ -239,7 +271,7 @@ def _broken_promise(
         message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
         f" `{key}`",
         arguments=(leaf.type, key, ending.outcome.text),
-        help=f"set `userdata.{key}` {where} this `return`, or {other}",
+        help=f"{_setting(leaf, type_, ending, key)} {where} this `return`, or {other}",
         related=(*past, *promise, *used_here(leaf)),
         node=path,
     )

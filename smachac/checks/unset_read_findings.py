@@ -12,9 +12,11 @@ from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
 from smachac.checks.candidate_keys import (
+    UnreadOutput,
     fitting_keys,
     keys_of,
     may_be,
+    unread_before,
     unread_output,
     written_place,
 )
@@ -27,7 +29,7 @@ from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
 from smachac.ir.traversal import remapping
-from smachac.ir.types import ANY
+from smachac.ir.types import ANY, Type
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -151,10 +153,7 @@ def _meant_key(
     of_item = _item_help(scope.container, node, missing.key)
     help = name_help(node, reader.key, missing.key, guess) if guess is not None else None
     help = help or of_item
-    unread = unread_output(scope, missing.key)
-    if guess is not None and unread is not None:
-        is_slip = guesses.of(scope).sure(missing.key) is not None
-        unread = None if is_slip or unread.key != guess else unread
+    unread = _meant_output(missing, witness, guesses, types, guess, wanted)
     fitting = []
     if guess is None and (of_item is None or isinstance(node, nodes.Leaf)):
         fitting = fitting_keys(types, scope, reader, wanted)
@@ -176,6 +175,34 @@ def _meant_key(
     if isinstance(node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
         help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
     return help, (*related, *_item_place(scope.container, node))
+
+
+def _meant_output(
+    missing: Missing,
+    witness: Witness,
+    guesses: Guesses,
+    types: Types,
+    guess: str | None,
+    wanted: Type,
+) -> UnreadOutput | None:
+    """The output that nothing reads and that is probably meant by a missing key of the type
+    `wanted`, rather than the key of the nearest name, `guess`."""
+    scope, key = missing.scope, missing.key
+    near, is_slip = guesses.of(scope)(key), guesses.of(scope).sure(key) is not None
+    unread = unread_output(scope, key)
+    if guess is not None and unread is not None:
+        unread = None if is_slip or unread.key != guess else unread
+    if unread is not None or near is None or is_slip:
+        return unread
+    if guess is None or _is_read_elsewhere(scope, witness, guess):
+        return unread_before(types, scope, key, witness, wanted)
+    return None
+
+
+def _is_read_elsewhere(scope: UserdataScope, witness: Witness, key: str) -> bool:
+    """Whether another state of a container than the one that reads a missing key reads `key`."""
+    reader = witness.reader.node.name
+    return any(key in keys for vertex, keys in scope.reads.items() if vertex != reader)
 
 
 def name_help(node: Node, own: str, outer: str, meant: str) -> str:

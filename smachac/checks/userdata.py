@@ -140,8 +140,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             finding = unset_read(missing, witness, users, guesses, context.types)
             if wrong is not None:
                 help = f"did you mean `{wrong.word.text}`?"
-                related = other_place(wrong.word.span, f"nothing reads `{wrong.word.text}`")
-                finding = replace(finding, help=help, related=(*related, *finding.related))
+                finding = _with_unread(finding, help, wrong.word)
             elif meant is not None and meant.missing is missing:
                 finding = _with_meant_key(finding, witness, meant)
             elif missing.cause != "nowhere":
@@ -219,26 +218,25 @@ def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Find
     name, key, other = witness.reader.node.name, meant.missing.key, meant.word.text
     if meant.iterated and isinstance(witness.reader.node, nodes.Iterator):
         field = "in" if witness.reader.node.sugar else "it"
-        return replace(
-            finding,
-            help=f"write `{field}: {other}`, or rename `{other}` to `{key}`",
-            related=(*other_place(meant.word.span, f"nothing reads `{other}`"), *finding.related),
-        )
+        help = f"write `{field}: {other}`, or rename `{other}` to `{key}`"
+        return _with_unread(finding, help, meant.word)
     purpose = f"must read `{other}`"
     cure = added_remapping(witness.reader.node, key, other)
     if meant.looped:
         purpose = f"must run for each item of `{other}`"
         cure = f"write `for_each: {{item: {key}, in: {other}}}` in `{name}`"
     if not meant.looped and guesser([key]).sure(other) is not None:
-        help = f"rename `{other}` to `{key}`, or {cure}"
-        related = other_place(meant.word.span, f"nothing reads `{other}`")
-        return replace(finding, help=help, related=(*related, *finding.related))
-    return replace(
-        finding,
-        help=f"if `{name}` {purpose}, {cure}; otherwise give `{key}` an initial value in"
-        f" {container_name(meant.missing.scope, finding.span)}",
-        related=(*other_place(meant.word.span, f"nothing reads `{other}`"), *finding.related),
-    )
+        return _with_unread(finding, f"rename `{other}` to `{key}`, or {cure}", meant.word)
+    help = f"if `{name}` {purpose}, {cure}; otherwise give `{key}` an initial value in"
+    help += f" {container_name(meant.missing.scope, finding.span)}"
+    return _with_unread(finding, help, meant.word)
+
+
+def _with_unread(finding: Finding, help: str, word: Word) -> Finding:
+    """A finding with another help and the place of a key that nothing reads, once."""
+    related = other_place(word.span, f"nothing reads `{word.text}`")
+    others = (each for each in finding.related if each not in related)
+    return replace(finding, help=help, related=(*related, *others))
 
 
 def _swapped(missing: Missing, loop: nodes.Iterator) -> Finding:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span, Word
@@ -11,6 +11,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.python_functions import access_of, alternatives, returns_of
 from smachac.frontend.python_modules import Module, Names, OwnClass
+from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import ClassFault
 
 
@@ -46,6 +47,34 @@ def base_call_faults(own: OwnClass) -> Iterator[ClassFault]:
         if not faults and at == 0:
             faults = [*_shifted(own, call)] or [*_exchanged(own, call)]
         yield from faults
+
+
+def arguments_to_base(own: OwnClass) -> Mapping[str, tuple[PythonText, ast.expr]] | None:
+    """The arguments that a class passes to the constructor of the last of its base classes, by the
+    name of the parameter, and the default values of others, each with the text that it is in; not
+    those of a parameter to which that constructor gives another value. None if it is not known."""
+    call = _base_call(own, 0, own.names[0]) if len(own.classes) > 1 else None
+    if call is None or call.base not in own.classes[-1][1].body or [*base_call_faults(own)]:
+        return None
+    if call.node not in [each.value for each in call.maker.body if isinstance(each, ast.Expr)]:
+        return None
+    taken, text = call.taken, own.classes[-1][0].text
+    names = [each.arg for each in (*taken.posonlyargs, *taken.args)]
+    pairs = [*zip(reversed(names), reversed(taken.defaults), strict=False)]
+    pairs += [(each.arg, default) for each, default in
+              zip(taken.kwonlyargs, taken.kw_defaults, strict=True) if default]  # fmt: skip
+    found = {name: (text, default) for name, default in pairs}
+    given = [*zip(call.positional, call.arguments, strict=False)]
+    given += [(each.arg or "", each.value) for each in call.node.keywords]
+    found |= {name: (call.module.text, value) for name, value in given}
+    for each in ast.walk(call.base):
+        match each:
+            case (
+                ast.Name(id=name, ctx=ast.Store() | ast.Del())
+                | ast.Attribute(value=ast.Name(id=name))
+            ):
+                found.pop(name, None)
+    return found
 
 
 def _maker(names: Names) -> ast.FunctionDef | None:
@@ -277,22 +306,22 @@ def _roles(call: _Call) -> dict[str, str]:
     given = [*zip(LISTS, made.args[0 if through_super else 1 :], strict=False)]
     given += [(each.arg or "", each.value) for each in made.keywords]
     for role, value in given:
-        passed = _copied(value)
+        passed = copied(value)
         if isinstance(passed, ast.Name) and role in LISTS:
             found[passed.id] = role
     return found
 
 
-def _copied(node: ast.expr) -> ast.expr:
+def copied(node: ast.expr) -> ast.expr:
     """The list of which an expression makes a copy, or the expression itself: `list(keys)`,
     `[*keys]`, `keys or []`."""
     match node:
         case ast.Call(func=ast.Name(id="list" | "tuple"), args=[value], keywords=[]):
-            return _copied(value)
+            return copied(value)
         case ast.List(elts=[ast.Starred(value=value)]):
-            return _copied(value)
+            return copied(value)
         case ast.BoolOp(op=ast.Or(), values=[value, ast.List(elts=[]) | ast.Tuple(elts=[])]):
-            return _copied(value)
+            return copied(value)
     return node
 
 

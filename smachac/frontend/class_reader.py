@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.base_calls import base_call_faults
+from smachac.frontend.base_calls import arguments_to_base, base_call_faults, copied
 from smachac.frontend.call_slips import call_slips
 from smachac.frontend.class_members import missing_constants
 from smachac.frontend.class_messages import class_messages
@@ -41,6 +41,7 @@ from smachac.frontend.class_values import (
 )
 from smachac.frontend.library_names import missing_attributes
 from smachac.frontend.loader import Library
+from smachac.frontend.local_values import local_values, text_of, unused_values
 from smachac.frontend.lost_outcomes import lost_outcomes
 from smachac.frontend.module_members import module_slips
 from smachac.frontend.other_modules import module_with
@@ -142,7 +143,7 @@ def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
 def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
     """The facts about a class."""
     own = with_bases(module, node, library)
-    lists = _declared(module.text, node)
+    lists = _declared(own)
     whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
     undefined = (*_undefined(own, lists, library),) if whole else ()
     flow, execute, place = _execute(own, library)
@@ -169,13 +170,14 @@ def _facts(module: Module, node: ast.ClassDef, library: Library) -> ClassFacts:
         stub=execute is not None and all(map(_does_nothing, execute.body)),
         checks_stop=any(_checks_stop(each) for _, each in own.classes),
         values=written_values(own, execute, library) if execute is not None else (),
-        unused=_unused(own, execute) if execute is not None else (),
+        unused=unused_values(own, execute) if execute is not None else (),
+        local=local_values(text_of(own, execute), execute) if execute is not None else (),
         loops=loops(own) if whole else (),
         compared=tuple(compared_texts(own, kept_parameters(own), execute)) if whole else (),
         tables=tuple(table_look_ups(own, kept_parameters(own), execute)) if whole else (),
         hooks=_hooks(own),
         messages=class_messages(own),
-        parts=(*parts_read(_text_of(own, execute), execute), *parts_of_arguments(own, execute))
+        parts=(*parts_read(text_of(own, execute), execute), *parts_of_arguments(own, execute))
         if execute is not None and flow.reads
         else (),
         **operation_facts(own, execute if flow.reads or flow.writes else None),
@@ -194,36 +196,6 @@ def _hooks(own: OwnClass) -> tuple[str, ...]:
     used = {each.attr for _, node in own.classes for each in ast.walk(node)
             if isinstance(each, ast.Attribute)}  # fmt: skip
     return tuple(name for name in found if name not in used)
-
-
-def _text_of(own: OwnClass, function: ast.FunctionDef) -> PythonText:
-    """The text with a method of a class."""
-    return next(module.text for module, node in own.classes if function in node.body)
-
-
-def _unused(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, Word], ...]:
-    """The local variables that `execute` assigns and does not use, with the key of each."""
-    text = _text_of(own, function)
-    userdata = function.args.args[1].arg
-    names = [each for each in ast.walk(function) if isinstance(each, ast.Name)]
-    used = {each.id for each in names if not isinstance(each.ctx, ast.Store)}
-    assigned = [each.targets[0] for each in ast.walk(function)
-                if isinstance(each, ast.Assign) and len(each.targets) == 1]  # fmt: skip
-    local = tuple(
-        (each.id, Word(f"{userdata}.{each.id}", text.span(each)))
-        for each in assigned
-        if isinstance(each, ast.Name) and each.id not in used
-    )
-    read = {each.attr for _, node in own.classes for each in ast.walk(node)
-            if isinstance(each, ast.Attribute) and not isinstance(each.ctx, ast.Store)
-            and not (isinstance(each.value, ast.Name) and each.value.id == userdata)}  # fmt: skip
-    kept = tuple(
-        (each.attr, Word(f"{userdata}.{each.attr}", text.span(each)))
-        for each in assigned
-        if isinstance(each, ast.Attribute) and each.attr not in read
-        and isinstance(each.value, ast.Name) and each.value.id == "self"
-    )  # fmt: skip
-    return (*kept, *local)
 
 
 def _undefined(
@@ -573,11 +545,25 @@ def _place(text: PythonText, node: ast.arg) -> Span:
     return Span(text.source, start, start + len(node.arg))
 
 
-def _declared(text: PythonText, node: ast.ClassDef) -> dict[str, Words | None] | None:
-    """The lists that a class passes to `smach.State`; None if it is more than one `__init__` of a
-    plain `smach.State`."""
-    found = _base_call(text, node)
-    return {key: _words(text, value) for key, value in found[1].items()} if found else None
+def _declared(own: OwnClass) -> dict[str, Words | None] | None:
+    """The lists that a class passes to `smach.State`, itself or through the constructor of a base
+    class of the project; None if that is not known."""
+    found = _base_call(own.classes[0][0].text, own.classes[0][1])
+    if found is not None:
+        return {key: _words(own.classes[0][0].text, value) for key, value in found[1].items()}
+    last, node = own.classes[-1]
+    made = _base_call(last.text, node) if len(own.classes) > 1 else None
+    passed = arguments_to_base(own) if made is not None else None
+    if made is None or passed is None or any(_registers(each) for _, each in own.classes):
+        return None
+    lists: dict[str, Words | None] = {}
+    for key, value in made[1].items():
+        name = copied(value)
+        known = (last.text, value)
+        if isinstance(name, ast.Name):
+            known = passed.get(name.id, known)
+        lists[key] = _words(*known)
+    return lists
 
 
 def _passed(text: PythonText, node: ast.ClassDef) -> Iterator[tuple[str, tuple[str, ...]]]:

@@ -11,6 +11,7 @@ import ast
 import re
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Source, Span, Word
@@ -136,7 +137,8 @@ def _faults(one: Import, library: Library, user: PythonText | None = None) -> It
             if isinstance(other, ClassFault):
                 yield other
             elif other is None and not library.code_names(f"{path}/{word.text}"):
-                yield from _no_module(inner, word, library)
+                for fault in _no_module(inner, word, library):
+                    yield replace(fault, file=path)
 
 
 def _no_names(
@@ -161,7 +163,15 @@ def _no_names(
                 near=near,
                 file=file,
                 more=other_module,
+                lines=_lines_with(word.text, user) if user is not None and near else (),
             )
+
+
+def _lines_with(name: str, user: PythonText) -> tuple[int, ...]:
+    """The lines of code that use a name, each once."""
+    found = (each for each in ast.walk(user.tree) if isinstance(each, ast.Name))
+    spans = [user.span(each) for each in found if each.id == name]
+    return tuple(sorted({span.line for span in spans}))
 
 
 def _no_module(name: str, place: Word, library: Library) -> Iterator[ClassFault]:

@@ -122,7 +122,7 @@ class ClassFault:
     probably meant. `file` is the module that lacks the name,
     `owner` the class that lacks it, and `more` another part of the words. `outcomes` are those that
     `execute` does not return because of the fault, or ANY. `also` is another place that the fault
-    is about, with the words for it.
+    is about, with the words for it. `lines` are others that use the name.
     """
 
     kind: FaultKind
@@ -133,6 +133,7 @@ class ClassFault:
     owner: str = ""
     outcomes: tuple[str, ...] = ()
     also: Word | None = None
+    lines: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -265,8 +266,9 @@ class ClassFacts:
     `values` are the expressions that the class writes, each with its key; of a call of a function,
     also the texts that it returns. `loops` are the attributes that it loops over, each with the
     parameter of the constructor that it is. `unused` are the local variables, and the attributes of
-    `self`, that it assigns and does not use, each with the userdata key of that name. `parts` are
-    the parts of userdata keys that it reads itself: `userdata.pose.x`. `state_call`: the built-in
+    `self`, that it assigns and does not use, each with the userdata key of that name. `local` are
+    its local variables, each with the code in which it has a value. `parts` are the parts of
+    userdata keys that it reads itself: `userdata.pose.x`. `state_call`: the built-in
     `State.tpl.py` makes the state. `unlisted_reads` and `unlisted_writes` are the accesses of a
     class without an interface to keys that the constants in its constructor do not list. `hooks`
     are the methods of FlexBE's states, such as `on_enter`, that nothing in the class calls.
@@ -298,6 +300,7 @@ class ClassFacts:
     checks_stop: bool = False
     values: tuple[tuple[str, Word], ...] = ()
     unused: tuple[tuple[str, Word], ...] = ()
+    local: tuple[Word, ...] = ()
     parts: tuple[Part, ...] = ()
     loops: tuple[tuple[str, Word], ...] = ()
     state_call: StateCall | None = None

@@ -600,7 +600,10 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         renamed = f"rename the parameter `{one}` to `{fault.owner}`, which the script sets"
         return message, renamed + fault.more
     if fault.kind in ("skipped output", "early return") and fault.more:
-        return message, f"write `{fault.more}` before this `return` too"
+        too = " too" if fault.also is not None else ""
+        return message, f"write `{fault.more}` before this `return`{too}"
+    if fault.kind == "unset output" and fault.more:
+        return message, f"write `{fault.more}` before the `return`"
     if near is None or fault.kind in WRITTEN:
         return message, help
     if fault.kind == "no execute":

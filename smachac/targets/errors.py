@@ -388,7 +388,7 @@ def defined_twice(
     "SM608",
     "code-not-found",
     Severity.ERROR,
-    effect="Python raises an error for the module or import: the program stops when it starts",
+    effect="Python raises ImportError: the program stops when it starts",
 )
 def code_not_found(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
@@ -462,6 +462,9 @@ def code_not_found(
     elif fault.kind == "no imported name":
         message = f"`{fault.file}` has no `{word.text}`, which is imported from it"
         help = near or f"correct the name, or define it in `{fault.file}`"
+        if near is not None and fault.lines:
+            lines = ", ".join(map(str, fault.lines))
+            help = f"{near} write it here and in line{'s' if fault.lines[1:] else ''} {lines}"
         if fault.more:
             help = f"import `{word.text}` from `{fault.more}`, which defines it"
     else:
@@ -477,9 +480,18 @@ def code_not_found(
         message=message,
         arguments=(target, state_type, fault.kind, word.text),
         help=help,
-        effect="the C++ compiler does not find it" if target == "cpp" else None,
+        effect="the C++ compiler does not find it" if target == "cpp" else _not_imported(fault),
         related=used,
     )
+
+
+def _not_imported(fault: ClassFault) -> str | None:
+    """What Python raises for code that does not exist, where it is another error than for a name
+    that a module lacks."""
+    error = {"no module": "ModuleNotFoundError", "syntax": "SyntaxError"}.get(fault.kind)
+    if fault.kind == "no imported module" and not fault.file:
+        error = "ModuleNotFoundError"
+    return f"Python raises {error}: the program stops when it starts" if error else None
 
 
 def _file_of(module: str, target: str) -> str:

@@ -128,3 +128,32 @@ def test_a_list_that_is_no_list_of_outcomes() -> None:
     assert (
         reported('super().__init__(["left", "right"], ["moved", "lost"], ["offset"])', base) == []
     )
+
+
+def test_lists_that_pass_through_the_base_class() -> None:
+    files = {
+        "main.yml": MAIN.replace("offset", "height"),
+        "templates/Move.yml": TYPE.replace("offset", "height"),
+        "cell/__init__.py": "",
+        "cell/base.py": BASE,
+        "cell/states.py": CLASS.replace("CALL", GOOD),
+    }
+    (one,) = analysed(files).report
+    assert (one.code, one.span.text, one.span.line) == ("SM310", "offset", 9)
+    assert one.help is not None
+    assert one.help.startswith("write `height` in place of `offset`, also where `Move` declares it")
+    assert [each.span.text for each in one.related][:1] == ['"offset"']
+
+
+@pytest.mark.parametrize(
+    ("call", "base", "place"),
+    [
+        (f'super().__init__(node, {LISTS.replace("lost", "gone")})', BASE, '"gone"'),
+        (GOOD, BASE.replace("        super", "        outcomes.append('gone')\n        super"), ""),
+        (GOOD, BASE.replace("        super", "        input_keys = ()\n        super"), ""),
+        (GOOD.replace(', ["offset"]', ""), BASE, "Move"),
+    ],
+)  # fmt: skip
+def test_other_lists_through_the_base_class(call: str, base: str, place: str) -> None:
+    found = [each for each in reported(call, base) if each[0] == "SM603"]
+    assert [each[1] for each in found] == ([place] if place else [])

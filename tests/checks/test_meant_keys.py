@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.project_text import analysed
 
 COUNT = """\
 name: sm
@@ -170,3 +171,59 @@ def test_two_keys_of_the_type_of_an_input() -> None:
     help = "write `remapping: {place: up}` or `remapping: {place: down}` in `SHOW`: these keys have"
     found = [row for row in reported({"main.yml": text}) if row[0] == "SM301"]
     assert found == [("SM301", "place", f"{help} its type")]
+
+
+FILL = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {well: {row: A}, count: 0}
+states:
+  - DISPENSE: {template: Dispense, transitions: {dosed: COUNT}}
+  - COUNT:
+      template: CallbacksState
+      input_keys: [count]
+      output_keys: [count]
+      callbacks: {count: 'lambda ud: ud.count + 1'}
+      transitions: {succeeded: REPORT}
+  - REPORT:
+      template: PrintUserdataState
+      input_keys: [in_well, count]
+      transitions: {succeeded: done}
+"""
+DISPENSE = """\
+input_keys: {well: "{row: str}"}
+output_keys: {dispensed: float<ul>}
+outcomes: {dosed: {}}
+"""
+WRITE_DISPENSED = "write `remapping: {dispensed: in_well}` in `DISPENSE`, whose `dispensed` nothing"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "help"),
+    [
+        ("", "", WRITE_DISPENSED + " reads"),
+        ("in_well", "welll", "did you mean `well`?"),  # one slip
+        ("[in_well, count]", "[in_well, count, dispensed]", "did you mean `well`?"),
+    ],
+)
+def test_an_output_that_nothing_reads_before_a_distant_name(old: str, new: str, help: str) -> None:
+    files = {"main.yml": FILL.replace(old, new), "templates/Dispense.yml": DISPENSE}
+    assert [each for each in reported(files) if each[0] == "SM301"] == [
+        ("SM301", new if new == "welll" else "in_well", help)
+    ]
+
+
+def test_the_place_of_an_unread_key_is_named_once() -> None:
+    text = """\
+name: sm
+template: Base
+outcomes: [done]
+userdata: {home: [0.0, -0.8, 0.5]}
+states:
+  - GO_HOME: {template: Go, transitions: {there: done}}
+"""
+    type_ = 'input_keys: {positions: "float[3]"}\noutcomes: {there: {}}\n'
+    (one,) = analysed({"main.yml": text, "templates/Go.yml": type_}).report
+    assert one.code == "SM301"
+    assert [each.message for each in one.related] == ["nothing reads `home`"]

@@ -87,3 +87,37 @@ def test_no_finding(code: str, type_: str, writes: str) -> None:
 def test_a_key_that_one_outcome_sets_may_pass_through_with_another() -> None:
     promise = "writes: {placed: [count], dropped: [count]}"
     assert reported("userdata.count += 1", "int", promise) == []
+
+
+OUTPUT = """\
+input_keys: {load: float<kg>}
+output_keys: {mass: float<kg>}
+outcomes: {placed: {}, dropped: {failure: true}}
+writes: {placed: [mass]}
+code: {python: "cell:Place"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "help"),
+    [
+        ("mass = arm.weigh()\narm.log(mass)", "write `userdata.mass = mass` before this `return`"),
+        ("net_mass = arm.weigh()\narm.log(net_mass)", "write `userdata.mass = net_mass` before"),
+        (
+            "if arm.full():\n    mass = 2.0\n    arm.log(mass)",
+            "set `userdata.mass`, for example to",
+        ),
+        ("mass_1 = mass_2 = 1.0\narm.log(mass_1, mass_2)", "set `userdata.mass`, for example to"),
+        ("arm.log(1)", "set `userdata.mass`, for example to `userdata.load`, which has its type,"),
+    ],
+)
+def test_the_value_of_an_output_that_is_not_set(code: str, help: str) -> None:
+    body = "\n".join(f"        {line}" for line in code.split("\n"))
+    text = CLASS.replace('["count"], output_keys=["count"]', '["load"], output_keys=["mass"]')
+    main = MAIN.replace("input_keys: [count]", "input_keys: [load]").replace("[count]", "[mass]")
+    main = main.replace("{count: 0}", "{load: 0.5}")
+    files = {"main.yml": main, "templates/Place.yml": OUTPUT}
+    report = analysed({**files, "cell.py": text.replace("CODE", body)}).report
+    (item,) = [each for each in report if each.code == "SM314"]
+    assert item.help is not None
+    assert item.help.startswith(help)

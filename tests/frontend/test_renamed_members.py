@@ -37,7 +37,9 @@ def help_of(name: str, helpers: str = HELPERS, call: str = CALL, **others: str) 
 
 @pytest.mark.parametrize("name", ["is_sharp", "sharpness_test", "in_focus", "enough_light"])
 def test_the_function_that_nothing_uses(name: str) -> None:
-    assert help_of(name) == ["SM608 did you mean `sharp_enough`?"]
+    (help,) = help_of(name)
+    line = CLASS.split("BODY")[0].count("\n") + 2
+    assert help == f"SM608 did you mean `sharp_enough`? write it here and in line {line}"
 
 
 CORRECT = "SM608 correct the name, or define it in `cell/helpers.py`"
@@ -55,3 +57,15 @@ CORRECT = "SM608 correct the name, or define it in `cell/helpers.py`"
 )
 def test_no_certain_function(name: str, helpers: str, call: str, others: dict[str, str]) -> None:
     assert help_of(name, helpers, call, **others) == [CORRECT]
+
+
+def test_python_cannot_import_it() -> None:
+    text = CLASS.replace("import enum", f"import enum\n{USED.format(name='is_sharp')}")
+    files = {"main.yml": MAIN, "templates/Mark.yml": TYPE, "cell/__init__.py": "",
+             "cell/mark.py": text.replace("BODY", "return None"),
+             "cell/helpers.py": HELPERS}  # fmt: skip
+    for module, error in (("helpers", "ImportError"), ("helprs", "ModuleNotFoundError")):
+        code = files["cell/mark.py"].replace("cell.helpers", f"cell.{module}")
+        report = analysed({**files, "cell/mark.py": code}).report
+        (found,) = [each for each in report if each.code == "SM608"]
+        assert found.effect == f"Python raises {error}: the program stops when it starts"

@@ -504,3 +504,11 @@ def test_the_field_of_a_new_key_is_in_the_help() -> None:
     report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
     (found,) = [each for each in report if each.code == "SM604"]
     assert "write `smachac::Key<std::vector<double>> &slip;` in `Out`, then" in str(found.help)
+
+
+def test_the_local_variable_that_is_meant() -> None:
+    text = PUSH_CLASS.replace(SETS, "    const double force = arm_.now();\n" + "    log(force);\n")
+    files = {"main.yml": PUSH_SCRIPT, "templates/Push.yml": PUSH, "arm/push.hpp": text}
+    report = analyse(Source("main.yml", PUSH_SCRIPT), memory_library(files, BUILT_IN), []).report
+    (found,) = [each for each in report if "never sets its output key" in each.message]
+    assert found.help == "write `out.force = force;` before the `return`"

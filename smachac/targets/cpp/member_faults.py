@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 
 from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import words_of
 from smachac.frontend.cpp_text import Part
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
@@ -234,14 +235,37 @@ def _unset(code: ClassCode, body: Part, run: Part, parameters: str) -> Iterator[
         inside = re.search(rf"\b{re.escape(name)}\b", fields.text)
         used = re.search(rf"\b{re.escape(named[1])}\s*\.\s*{re.escape(name)}\b", run.text)
         if inside is not None and used is None:
-            promised = _promised(code, run, key.name)
+            promised = _promised(code, run, key.name, named[1])
             if promised is not None:
                 yield promised
                 continue
-            yield ClassFault(kind="unset output", name=fields.word(key.name, *inside.span()))
+            value = _local_value(run, key.name, len(run.text), named[1])
+            place = fields.word(key.name, *inside.span())
+            yield ClassFault(kind="unset output", name=place, more=value)
 
 
-def _promised(code: ClassCode, run: Part, key: str) -> ClassFault | None:
+_LOCAL = re.compile(r"(?:^|[;{}])\s*(?:const\s+)?[A-Za-z_][\w:]*(?:<[\w:<>, ]*>)?\s+(\w+)\s*[={]")
+"""The declaration of a local variable with a value."""
+
+
+def _local_value(run: Part, key: str, at: int, out: str) -> str:
+    """The assignment of the local variable with the name of an output key, or of the only one with
+    a word of it, that has a value at a place; empty if there is none."""
+    known = {each[1] for each in _LOCAL.finditer(_open_blocks(run.text[:at]))} - {"return"}
+    words = words_of(key)
+    near = [key] if key in known else [each for each in known if words & words_of(each)]
+    return f"{out}.{identifier(key)} = {near[0]};" if len(near) == 1 else ""
+
+
+def _open_blocks(text: str) -> str:
+    """Code without the blocks that it closes."""
+    shorter = ""
+    while text != shorter:
+        text, shorter = re.sub(r"\{[^{}]*\}", ";", text), text
+    return text
+
+
+def _promised(code: ClassCode, run: Part, key: str, out: str) -> ClassFault | None:
     """The only `return` of an outcome that promises an output key in `writes:`."""
     found = [
         (outcome, end)
@@ -255,7 +279,8 @@ def _promised(code: ClassCode, run: Part, key: str) -> ClassFault | None:
         return None
     ((outcome, end),) = found
     place = run.word(key, end.start(), end.end() - 1)
-    return ClassFault(kind="skipped output", name=place, near=outcome)
+    value = _local_value(run, key, end.start(), out)
+    return ClassFault(kind="skipped output", name=place, near=outcome, more=value)
 
 
 def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault]:
@@ -311,9 +336,7 @@ def _later(run: Part, out: str, key: str, at: int) -> Word | None:
     found = [*re.finditer(rf"\b{out}\s*\.\s*{name}\s*=(?!=)([^;{{}}]*);", run.text)]
     if len(found) != 1 or found[0].start() < at:
         return None
-    before, opened = run.text[:at], ""
-    while before != opened:
-        before, opened = re.sub(r"\{[^{}]*\}", " ", before), before
+    before = _open_blocks(run.text[:at])
     words = re.findall(r"(?<![\w.>])[A-Za-z_]\w*", found[0][1])
     if not words or any(re.search(rf"\b{each}\b", before) is None for each in words):
         return None
