@@ -66,7 +66,7 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
             left -= sum(len(each.scope.steps) + len(each.scope.reads) for each in levels)
             if not is_named and levels:
                 left -= len(scope.steps) + len(scope.reads)
-                if not (_is_dead(scope, writer, own) or _accumulates(scope, writer, own)):
+                if not _is_for_outside(scope, writer, own):
                     continue
             whole = not _is_leaf(writer)
             for level, vertex in chain(_after(levels), _again(scope, own, writer, levels)):
@@ -87,6 +87,11 @@ class _Kept(NamedTuple):
     written: Key
     own: str
     is_named: bool
+
+
+def _is_for_outside(scope: UserdataScope, writer: Node, own: str) -> bool:
+    """Whether no state in a container needs a key that is set there, but for changing it."""
+    return _is_dead(scope, writer, own) or _accumulates(scope, writer, own)
 
 
 def _accumulates(scope: UserdataScope, writer: Node, own: str) -> bool:
@@ -120,7 +125,8 @@ def _levels(flow: DataFlow, scope: UserdataScope, own: str, writer: Node) -> Ite
     innermost first.
 
     A container made for a field of a state passes every key on. Another one passes the key on as an
-    output that nothing else in it sets; then the key must also be of no use inside the keeper.
+    output that nothing else in it sets; then the key must also be of no use inside the keeper, or
+    be changed from item to item.
     """
     inner, key = scope, own
     for _ in range(MOST_LEVELS):
@@ -132,7 +138,7 @@ def _levels(flow: DataFlow, scope: UserdataScope, own: str, writer: Node) -> Ite
         yield _Level(outer, place, key)
         if not outer.container.sugar:
             is_set = any(key in _set_by(child) for child in outer.container.children)
-            if key not in outer.outputs or is_set or not _is_dead(scope, writer, own):
+            if key not in outer.outputs or is_set or not _is_for_outside(scope, writer, own):
                 return
         inner = outer
 

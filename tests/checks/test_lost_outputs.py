@@ -302,3 +302,51 @@ def test_the_item_of_a_loop_is_not_lost() -> None:
         "give_up: failed}", "give_up: failed, succeeded: delivered}"
     )
     assert [each for each in reported({"main.yml": text}) if each[0] == "SM307"] == []
+
+
+SLOTS = """\
+name: carton
+outcomes: [full, short]
+userdata: {slots: [a, b], placed: 0}
+states:
+  - WORK:
+      template: Concurrence
+      outcomes: [done, stopped]
+      default_outcome: stopped
+      input_keys: [slots, placed]
+      output_keys: [placed]
+      outcome_map: {done: {FILL: all}}
+      transitions: {done: JUDGE, stopped: short}
+      states:
+        - FILL:
+            template: Iterator
+            outcomes: [all, preempted]
+            input_keys: [slots, placed]OUT
+            it: slots
+            it_label: slot
+            exhausted_outcome: all
+            loop_outcomes: [succeeded]
+            states:
+              - ADD:
+                  template: CallbacksState
+                  input_keys: [placed]
+                  output_keys: [placed]
+                  callbacks: {placed: 'lambda ud: ud.placed + 1'}
+        - GUARD:
+            template: ScriptedState
+            outcomes: [closed]
+  - JUDGE:
+      template: ConditionalOutcomeState
+      outcomes: [enough]
+      input_keys: [placed]
+      callbacks: {enough: 'lambda ud: ud.placed >= 2'}
+      default_outcome: few
+      transitions: {enough: full, few: short}
+"""
+
+
+@pytest.mark.parametrize("out", ["", "\n            output_keys: [placed]"])
+def test_a_count_of_an_iterator_leaves_a_concurrence(out: str) -> None:
+    found = [each for each in reported({"main.yml": SLOTS.replace("OUT", out)}) if "7" in each[0]]
+    help = "write `output_keys: [placed]` in `FILL`"
+    assert found == ([] if out else [("SM307", "FILL", help)])
