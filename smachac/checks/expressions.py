@@ -10,6 +10,7 @@ from dataclasses import replace
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
+from smachac.analysis.type_lattice import NONE
 from smachac.analysis.units import conversion
 from smachac.checks.class_values import (
     missing_choices,
@@ -18,18 +19,17 @@ from smachac.checks.class_values import (
     wrong_parts,
 )
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
+from smachac.checks.null_keys import null_keys, output_for_null
 from smachac.checks.rule import rule
 from smachac.checks.swapped_params import swapped_params_help
 from smachac.checks.types import written
-from smachac.checks.value_places import place_of_part
+from smachac.checks.value_places import place_of_fault, place_of_part
 from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, in_quotes, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import (
-    attribute_place,
-    node_place,
     node_range,
     place_in,
     python_tree,
@@ -38,7 +38,7 @@ from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct, is_number
-from smachac.ir.traversal import expressions, outcome_names, values
+from smachac.ir.traversal import expressions, outcome_names, remapping, values
 
 MAX_LEVELS = 500
 """The most levels of an expression; Python compiles no more than about 1,000 frames deep."""
@@ -290,14 +290,16 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
     example, it adds a number to text, or calls a function with too many arguments.
 
     Exactly: a warning if only some runs evaluate that part of the code. Values of the type `any` or
-    of a type `T?` are not checked. An index is too large if a declaration fixes the length of the
-    list, or if the list is an initial value and only built-in states whose code reads items of it
-    can reach it: others can make it longer. The same holds for an entry that a mapping of the
-    script lacks, which a class that was read can reach too. In the Python class of a state type,
-    the types are those of its interface; an index, the fields of records (`pad["at"]`) and those of
-    messages (`.x`, `.position`) are checked, and the keys of a dictionary in which it looks up a
-    word that a variable can have. In code that runs for each item of a list, such as `[p["at"] for
-    p in ud.pads]` or `key=lambda p: p["at"]`, every finding is a warning.
+    of a type `T?` are not checked, except a key that begins as null and that no state sets, if a
+    state sets another one with a word of its name, which nothing reads. An index is too large if a
+    declaration fixes the length of the list, or if the list is an initial value and only built-in
+    states whose code reads items of it can reach it: others can make it longer. The same holds for
+    an entry that a mapping of the script lacks, which a class that was read can reach too. In the
+    Python class of a state type, the types are those of its interface; an index, the fields of
+    records (`pad["at"]`) and those of messages (`.x`, `.position`) are checked, and the keys of a
+    dictionary in which it looks up a word that a variable can have. In code that runs for each item
+    of a list, such as `[p["at"] for p in ud.pads]` or `key=lambda p: p["at"]`, every finding is a
+    warning.
 
     Wrong:
         name: sm
@@ -330,8 +332,9 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         severity = None if fault.always else Severity.WARNING
         finding = _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
         swapped = swapped_params_help(_places_of_values(site, fault), site.node.span.source)
-        help = swapped or _number_in_quotes(site, fault)
+        help = swapped or _number_in_quotes(site, fault) or _set_by_other_key(context, site, fault)
         yield replace(finding, help=help) if help else finding
+    yield from null_keys(context)
     yield from wrong_parts(context)
     yield from wrong_operations(context, "operation")
     yield from missing_choices(context)
@@ -435,6 +438,18 @@ def _number_in_quotes(site: ExpressionSite, fault: Fault) -> str | None:
     return None
 
 
+def _set_by_other_key(context: Context, site: ExpressionSite, fault: Fault) -> str | None:
+    """The help for an operation with a key that is null in every run, where an output that nothing
+    reads is probably meant for it."""
+    for key in fault.keys:
+        if (site.types or {}).get(key) == NONE and isinstance(site.node, Leaf):
+            outer = remapping(site.node).get(key, key)
+            meant = output_for_null(context, site.path.rpartition("/")[0], outer)
+            if meant is not None:
+                return meant.help
+    return None
+
+
 def _places_of_values(site: ExpressionSite, fault: Fault) -> Iterator[Span]:
     """The places of the literals that reach a fault."""
     for key in fault.keys:
@@ -459,7 +474,7 @@ def _finding(
     span = site.expression.span
     if fault.entry:
         guess = f"write `{in_quotes_for(fault.entry, span)}` for the entry of the mapping"
-    place = _place(site.expression, fault)
+    place = place_of_fault(site.expression, fault)
     return Finding(
         span=place,
         message=message,
@@ -471,18 +486,6 @@ def _finding(
         effect=fault.effect,
         edits=respelt(Word(fault.word, place), guesser(fault.choices).sure(fault.word)),
     )
-
-
-def _place(code: Expression, fault: Fault) -> Span:
-    """The place of a fault: of the name of an attribute, or of the part of the expression."""
-    tree, part = python_tree(code.text), python_tree(print_expression(fault.expr))
-    text = ast.dump(part) if part is not None else ""
-    for node in ast.walk(tree) if tree is not None else ():
-        if isinstance(node, ast.expr) and type(node) is type(part) and ast.dump(node) == text:
-            if isinstance(node, ast.Attribute) and node.attr == fault.word:
-                return attribute_place(code, node)
-            return node_place(code, node)
-    return code.span
 
 
 def _sources(site: ExpressionSite, fault: Fault) -> Iterator[Related]:

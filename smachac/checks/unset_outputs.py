@@ -221,7 +221,7 @@ def _promise(type_: StateType, outcome: str, key: str) -> tuple[Related, ...]:
     return () if found is None else other_place(found.span, f"`writes:` promises `{key}` here")
 
 
-def _setting(leaf: Leaf, type_: StateType, ending: Ending, key: str) -> str:
+def _setting(leaf: Leaf, type_: StateType, ending: Ending, key: str, where: str) -> str:
     """The help that sets a key before a `return`: to the local variable of its name or the only one
     with a word of it, or to the only input of its type."""
     facts = leaf.class_facts
@@ -236,8 +236,9 @@ def _setting(leaf: Leaf, type_: StateType, ending: Ending, key: str) -> str:
     words = words_of(key) if not is_set else set()
     near = [key] if key in known else [each for each in known if words & words_of(each)]
     if len(near) == 1:
-        return f"write `{name}.{key} = {near[0]}`"
-    return f"set `{name}.{key}`{_of_same_type(type_, key, name) if not is_set else ''}"
+        return f"write `{name}.{key} = {near[0]}` {where} this `return`"
+    example = _of_same_type(type_, key, name) if not is_set else ""
+    return f"set `{name}.{key}` {where} this `return`{example}"
 
 
 def _of_same_type(type_: StateType, key: str, userdata: str) -> str:
@@ -249,7 +250,7 @@ def _of_same_type(type_: StateType, key: str, userdata: str) -> str:
     found = [each.name for each in type_.input_keys if each.type == wanted and each.name != key]
     if len(found) != 1:
         return ""
-    return f", for example to `{userdata}.{found[0]}`, which has its type,"
+    return f", for example to `{userdata}.{found[0]}`, which has its type"
 
 
 def _broken_promise(
@@ -271,7 +272,7 @@ def _broken_promise(
         message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
         f" `{key}`",
         arguments=(leaf.type, key, ending.outcome.text),
-        help=f"{_setting(leaf, type_, ending, key)} {where} this `return`, or {other}",
+        help=f"{_setting(leaf, type_, ending, key, where)}, or {other}",
         related=(*past, *promise, *used_here(leaf)),
         node=path,
     )

@@ -6,9 +6,11 @@ part; so no part needs a span of its own.
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
+from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import (
     FLOAT,
@@ -22,7 +24,9 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
-from smachac.ir.nodes import Data, Struct
+from smachac.ir.code_places import attribute_place, node_place, python_tree
+from smachac.ir.expressions import print_expression
+from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.types import Type
 
 LONGEST = 20_000
@@ -140,3 +144,15 @@ def _items(data: tuple[Data, ...], wanted: Type) -> Iterator[tuple[Data, Type]]:
         yield from zip(data, (POINT, QUATERNION), strict=True)
     elif wanted.name in ("list", "array") and length_of(wanted) in (None, count):
         yield from ((each, inside(wanted)) for each in data)
+
+
+def place_of_fault(code: Expression, fault: Fault) -> Span:
+    """The place of a fault: of the name of an attribute, or of the part of the expression."""
+    tree, part = python_tree(code.text), python_tree(print_expression(fault.expr))
+    text = ast.dump(part) if part is not None else ""
+    for node in ast.walk(tree) if tree is not None else ():
+        if isinstance(node, ast.expr) and type(node) is type(part) and ast.dump(node) == text:
+            if isinstance(node, ast.Attribute) and node.attr == fault.word:
+                return attribute_place(code, node)
+            return node_place(code, node)
+    return code.span

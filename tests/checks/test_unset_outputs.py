@@ -98,6 +98,9 @@ code: {python: "cell:Place"}
 """
 
 
+EXAMPLE = "set `userdata.mass` before this `return`, for example to `userdata.load`, which has its"
+
+
 @pytest.mark.parametrize(
     ("code", "help"),
     [
@@ -105,10 +108,10 @@ code: {python: "cell:Place"}
         ("net_mass = arm.weigh()\narm.log(net_mass)", "write `userdata.mass = net_mass` before"),
         (
             "if arm.full():\n    mass = 2.0\n    arm.log(mass)",
-            "set `userdata.mass`, for example to",
+            EXAMPLE,
         ),
-        ("mass_1 = mass_2 = 1.0\narm.log(mass_1, mass_2)", "set `userdata.mass`, for example to"),
-        ("arm.log(1)", "set `userdata.mass`, for example to `userdata.load`, which has its type,"),
+        ("mass_1 = mass_2 = 1.0\narm.log(mass_1, mass_2)", EXAMPLE),
+        ("arm.log(1)", EXAMPLE),
     ],
 )
 def test_the_value_of_an_output_that_is_not_set(code: str, help: str) -> None:

@@ -1,0 +1,58 @@
+"""SM311: a key that begins as null and that no state sets, beside an output that nothing reads."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+
+MAIN = """\
+name: rack
+template: Base
+outcomes: [light, heavy]
+userdata:
+  rack_mass: PRESET
+states:
+  - LIFT:
+      template: Lift
+      transitions: {lifted: CHECK}
+  - CHECK:
+      template: ConditionalOutcomeState
+      outcomes: [too_heavy]
+      input_keys: [rack_mass]
+      callbacks: {too_heavy: 'lambda ud: CODE'}
+      default_outcome: ok
+      transitions: {too_heavy: heavy, ok: light}
+"""
+LIFT = "output_keys: {OUT: float<kg>}\noutcomes: {lifted: {}}\n"
+NULL = "{type: float<kg>?, value: null}"
+HEAVY = "ud.rack_mass > 600.0"
+HELP = "write `remapping: {mass: rack_mass}` in `LIFT`, whose `mass` nothing reads"
+
+
+def found(preset: str = NULL, code: str = HEAVY, out: str = "mass", old: str = "", new: str = "") \
+        -> list[tuple[str, str, str | None]]:  # fmt: skip
+    text = MAIN.replace("PRESET", preset).replace("CODE", code)
+    text = text.replace(old, new) if old else text
+    return reported({"main.yml": text, "templates/Lift.yml": LIFT.replace("OUT", out)})
+
+
+@pytest.mark.parametrize("preset", [NULL, "null"])
+def test_a_key_that_is_always_null(preset: str) -> None:
+    assert found(preset) == [("SM311", HEAVY, HELP)]
+
+
+@pytest.mark.parametrize(
+    ("preset", "code", "out", "old", "new"),
+    [
+        ("{type: float<kg>?, value: 2.0}", HEAVY, "mass", "", ""),
+        (NULL, "ud.rack_mass is not None and ud.rack_mass > 6.0", "mass", "", ""),
+        (NULL, HEAVY, "weight", "", ""),  # another word
+        (NULL, HEAVY, "mass", "template: Lift\n",
+         "template: Lift\n      remapping: {mass: rack_mass}\n"),
+        (NULL, HEAVY, "mass", "userdata:", "input_keys: [rack_mass]\nuserdata:"),
+        (NULL, "ud.rack_mass > ud.mass", "mass", "[rack_mass]", "[rack_mass, mass]"),
+    ],
+)  # fmt: skip
+def test_a_key_that_can_have_a_value(preset: str, code: str, out: str, old: str, new: str) -> None:
+    assert [each for each in found(preset, code, out, old, new) if each[0] == "SM311"] == []
