@@ -114,8 +114,10 @@ def interfaces_differ(
     leads nowhere.
 
     Exactly: a class is read and never run: in Python the lists that `__init__` passes to
-    `smach.State`, in C++ the names in `Outcome`, `In` and `Out`. A part that cannot be read does
-    not count. `check` reports a warning; a build for the language of the class fails.
+    `smach.State`, itself or through the constructor of a base class of the project, in C++ the
+    names in `Outcome`, `In` and `Out`. A part that cannot be read does not count. `check` reports a
+    warning; a build for the language of the class fails. An interface that names the class of
+    another one, where there is a class with its own name, is one finding at the name in `code`.
 
     Wrong:
         name: sm
