@@ -235,13 +235,13 @@ def _led_past(
     if isinstance(container, Sequence):
         return None
     after = {step.target for step in group[0].transitions if step.target in seen}
-    good = {step.target for each in group for step in each.transitions
-            if step.target in seen and not fails(each, step.outcome)
-            and step.outcome != PREEMPTED}  # fmt: skip
+    led = {step.target for each in group for step in each.transitions
+           if not fails(each, step.outcome) and step.outcome != PREEMPTED}  # fmt: skip
+    good = led.intersection(seen)
     if before is not None and before.name in seen:
         steps = [step for step in before.transitions if step.origin == "written"]
         for found in (
-            [each for each in steps if each.target in after | good
+            [each for each in steps if each.target in after | led
              and each.outcome != PREEMPTED and not fails(before, each.outcome)],
             [each for each in steps if each.target in good and fails(before, each.outcome)],
         ):  # fmt: skip
