@@ -99,13 +99,13 @@ outcomes: [done, failed, preempted]
 states:
   - WELD:
       template: ScriptedState
-      outcomes: [welded, lost, preempted]
+      outcomes: [welded, weld_failed, preempted]
       transitions: {welded: RELEASE, preempted: LET_GO}
   - RELEASE: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
   - LET_GO: {template: ScriptedState, outcomes: [ok], transitions: {ok: preempted}}
 """
     found = [row for row in reported({"main.yml": text}) if row[0] == "SM104"]
-    assert found == [("SM104", "WELD", "add `lost: LET_GO` to the transitions of `WELD`")]
+    assert found == [("SM104", "WELD", "add `weld_failed: LET_GO` to the transitions of `WELD`")]
 
 
 def test_the_bracket_of_a_look_up_is_closed_after_its_param() -> None:
