@@ -19,7 +19,13 @@ from smachac.analysis.filled_lists import filled_loops
 from smachac.analysis.item_reads import ItemRead, item_reads
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
-from smachac.analysis.misplaced_states import Misplaced, Stray, misplaced_states, stray_transitions
+from smachac.analysis.misplaced_states import (
+    Misplaced,
+    Stray,
+    misplaced_branches,
+    misplaced_states,
+    stray_transitions,
+)
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
 from smachac.analysis.reaching_values import reaching_clashes
 from smachac.analysis.resource_claims import Held, claims
@@ -293,7 +299,8 @@ class Context:
     @cached_property
     def misplaced(self) -> tuple[Misplaced, ...]:
         """The states that are indented wrongly."""
-        return tuple(misplaced_states(self.containers, self.strays)) if self.strays else ()
+        found = misplaced_states(self.containers, self.strays) if self.strays else []
+        return (*found, *misplaced_branches(self.containers))
 
     @cached_property
     def claims(self) -> Held:

@@ -1,11 +1,14 @@
-"""States in a wrong container: only transitions of another container lead to them."""
+"""States in a wrong container: only transitions of another container lead to them, or only the
+outcome map of a concurrence beside them names them."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Sequence as PathSequence
 from typing import NamedTuple
 
 from smachac.analysis.control_flow import Linear, children_names, strays
+from smachac.diagnostics.source import Span
 from smachac.ir.nodes import (
     Concurrence,
     Container,
@@ -18,15 +21,15 @@ from smachac.ir.traversal import outcome_names, remapping
 
 
 class Misplaced(NamedTuple):
-    """A state with its path and its container, and the container that was meant with its path and a
-    transition there that leads to the state."""
+    """A state with its path and its container, and the container that was meant with its path and
+    the place of the name of the state there: in a transition, or in a rule of a concurrence."""
 
     path: str
     container: Container
     child: Node
     meant_path: str
-    meant: Linear
-    step: Transition
+    meant: Linear | Concurrence
+    place: Span
 
 
 class Stray(NamedTuple):
@@ -68,8 +71,34 @@ def misplaced_states(
                 own = [step.target for step in child.transitions if step.outcome != child.catches]
                 if known.issuperset(own):
                     whole = f"{path}/{child.name}"
-                    found.append(Misplaced(whole, container, child, meant_path, meant, stray.step))
+                    place = stray.step.target_span
+                    found.append(Misplaced(whole, container, child, meant_path, meant, place))
                     break
+    return found
+
+
+def misplaced_branches(containers: PathSequence[tuple[str, Container]]) -> list[Misplaced]:
+    """The states beside a concurrence that only its outcome map names and that have no transitions:
+    they are meant as its branches."""
+    found = []
+    around: dict[str, Container] = {}
+    for path, meant in containers:
+        if not isinstance(meant, Concurrence):
+            continue
+        names = children_names(meant)
+        unknown = {part.child: part.span for rule in meant.rules for part in rule.when
+                   if part.child and part.child not in names}  # fmt: skip
+        around = around or (dict(containers) if unknown else {})
+        outer_path = path.rpartition("/")[0]
+        outer = around.get(outer_path)
+        if outer is None or not unknown:
+            continue
+        for child in _unentered(outer, unknown):
+            steps = (each for each in child.transitions if each.outcome != child.catches)
+            if not any(step.origin == "written" for step in steps):
+                place = unknown[child.name]
+                whole = f"{outer_path}/{child.name}"
+                found.append(Misplaced(whole, outer, child, path, meant, place))
     return found
 
 

@@ -3,7 +3,7 @@ that is read (SM301)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import NamedTuple
@@ -13,12 +13,13 @@ from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, misfit, widened
-from smachac.analysis.unset_reads import Reader, Witness, reader_at
+from smachac.analysis.unset_reads import Missing, Reader, Witness, reader_at
 from smachac.checks.messages import added_remapping
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import Guesser, guesser, words_of
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Node, Remap
+from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
 
@@ -40,6 +41,20 @@ def meant_input(key: str, guess: Guesser, used: AbstractSet[str], around: Contai
     exactly this name, and the code reads the nearest one too (`used`)."""
     near = guess(key)
     return None if near in used and key in keys_around(around) else near
+
+
+def outer_value(missing: Missing, scopes: Mapping[str, UserdataScope]) -> tuple[str, str] | None:
+    """The key of a container around, with the path of that one, that has an initial value for an
+    output of a container which is read in it before it is set, and is no input of it."""
+    scope, key = missing.scope, missing.key
+    if key in scope.inputs or key not in scope.outputs:
+        return None
+    outer = scope.outputs[key]
+    around = scopes.get(scope.path.rpartition("/")[0])
+    while around is not None and around.container.sugar and outer in around.outputs:
+        outer = around.outputs[outer]
+        around = scopes.get(around.path.rpartition("/")[0])
+    return (around.path, outer) if around is not None and outer in around.held else None
 
 
 class UnreadOutput(NamedTuple):
@@ -109,6 +124,9 @@ def fitting_keys(types: Types, scope: UserdataScope, reader: Reader, wanted: Typ
     ]
     read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
     found.sort(key=lambda key: (key in read, key in scope.held))
+    unread = [key for key in found if key not in read]
+    if len(unread) == 1:
+        return unread
     return found if len(found) <= MOST_FITTING else []
 
 
@@ -254,6 +272,14 @@ def written_place(scope: UserdataScope, key: str) -> Span | None:
     return None
 
 
+def _input_type(types: Types, reader: Reader) -> Type:
+    """The type of the input of a state; also of one around which sugar makes containers."""
+    node, path = reader.node, reader.path
+    while not isinstance(node, nodes.Leaf) and (child := sugared_child(node)) is not None:
+        node, path = child, f"{path}/{child.name}"
+    return types.inputs.get((path, reader.key), ANY)
+
+
 def meant_by_types(context: Context) -> set[tuple[str, str]]:
     """The keys that nothing reads and that SM301 names as the only ones of the type that a state
     reads from a key that nothing sets, each with the path of its container."""
@@ -261,7 +287,7 @@ def meant_by_types(context: Context) -> set[tuple[str, str]]:
     for missing in context.missing_keys("nowhere"):
         scope = missing.scope
         reader = reader_at(scope, missing.vertices[0], missing.key)
-        wanted = context.types.inputs.get((reader.path, reader.key), ANY)
+        wanted = _input_type(context.types, reader)
         known = sorted({*scope.held, *scope.inputs} - {missing.key})
         if unread_output(scope, missing.key) is None and guesser(known)(missing.key) is None:
             keys = fitting_keys(context.types, scope, reader, wanted)

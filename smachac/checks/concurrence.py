@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open, outcome_of_one_meaning
@@ -16,6 +16,7 @@ from smachac.analysis.outcome_rules import (
 )
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place
+from smachac.checks.misplaced_states import misplaced_finding
 from smachac.checks.outcomes import inverted_rules
 from smachac.checks.rule import rule
 from smachac.checks.rule_slips import (
@@ -84,10 +85,15 @@ def dead_rule(context: Context) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done]}
               transitions: {ready: ready, failed: failed}
     """
+    branches = [each for each in context.misplaced if isinstance(each.meant, Concurrence)]
+    yield from map(misplaced_finding, branches)
+    moved: dict[str, set[str]] = {}
+    for branch in branches:
+        moved.setdefault(branch.meant_path, set()).add(branch.child.name)
     for path, container in context.containers:
         match container:
             case Concurrence():
-                yield from _dead_rules(path, container)
+                yield from _dead_rules(path, container, moved.get(path, ()))
             case nodes.Iterator(sugar=""):
                 yield from _dead_renames(path, container)
     for each in context.judged:
@@ -115,7 +121,9 @@ def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -
     )
 
 
-def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
+def _dead_rules(path: str, container: Concurrence, moved: Collection[str]) -> Iterator[Finding]:
+    """The rules about states and outcomes that do not exist, but for states that are `moved`: they
+    are beside the concurrence."""
     children = {child.name: child for child in container.children}
     if len(children) < len(container.children):
         return  # SM106: a rule can be about a state that has the name of another one
@@ -157,7 +165,7 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 node=path,
             )
         for condition in entry.when:
-            if not condition.child or condition in swapped:
+            if not condition.child or condition in swapped or condition.child in moved:
                 continue  # a rule of a wrong shape: SM004
             child, span = children.get(condition.child), condition.span
             if child is None:

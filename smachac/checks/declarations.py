@@ -17,7 +17,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
-from smachac.checks.candidate_keys import meant_by_remaps, meant_by_types
+from smachac.checks.candidate_keys import meant_by_remaps, meant_by_types, outer_value
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.empty_remaps import meant_by_empty_remaps
@@ -202,6 +202,9 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
     found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
     found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
+    scopes = context.corrected_flow.scopes
+    unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
+    found |= {place for place in unset if place is not None}  # SM301
     found |= _swapped_lists(context)
     found |= meant_by_types(context)  # SM301
     found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302

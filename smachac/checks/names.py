@@ -95,7 +95,8 @@ def unknown_target(context: Context) -> Iterator[Finding]:
     """
     yield from misdeclared(context, "container", "child")
     lost = context.at_containers(_lost) if context.strays else ()
-    misplaced = context.misplaced if lost else ()
+    misplaced = [each for each in context.misplaced if not isinstance(each.meant, Concurrence)] \
+        if lost else []  # fmt: skip
     for each in misplaced:
         yield misplaced_finding(each)
     causes = {(each.meant_path, each.child.name) for each in misplaced}

@@ -242,7 +242,9 @@ def unhandled_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped, blocked]
               transitions: {done: picked, slipped: lost, blocked: lost}
     """
-    yield from context.at_containers(_unhandled_outcomes)
+    found = context.at_containers(_unhandled_outcomes)
+    moved = {each.path for each in context.misplaced} if found else ()
+    yield from (each for each in found if each.node not in moved)
 
 
 def _unhandled_outcomes(path: str, container: Container) -> Iterator[Finding]:
@@ -291,7 +293,7 @@ def _targets(
     bad = [name for name in rest if name not in good and name != PREEMPTED]
     for outcome in (*good, *bad):
         after = (name for name in free if order[name] > order[child.name])
-        choice = next(after, free[0] if free else None)
+        choice = next(after, next((name for name in free if name != child.name), None))
         if choice is not None:
             found[outcome] = choice
             free.remove(choice)
@@ -302,9 +304,9 @@ def _targets(
 
 
 def _target(container: Linear, child: Node, outcome: str) -> str:
-    """The target that an outcome probably needs: that of the other failures of the state, that of
-    the same outcome of other states, a failure of the container or its stop, or what comes after a
-    success."""
+    """The target that an outcome probably needs: that of the other failures of the state, the state
+    after a stop request, that of the same outcome of other states, a failure of the container or
+    its stop, or what comes after a success."""
     ends = outcome_names(container)
     failed = [name for name in ends if fails(container, name)]
     names = [each.name for each in container.children]
@@ -317,7 +319,9 @@ def _target(container: Linear, child: Node, outcome: str) -> str:
         near = [name for name in others if name in own]
         targets = [*([PREEMPTED] if PREEMPTED in ends else []), *near, *others, *failed]
     elif fails(child, outcome):
-        targets = [*(own if len(own) == 1 else ()), *others, *failed]
+        stopped = [step.target for step in child.transitions
+                   if step.outcome == PREEMPTED and step.target in names]  # fmt: skip
+        targets = [*(own if len(own) == 1 else ()), *stopped, *others, *failed]
     elif outcome in successes(child):
         targets = [*names[names.index(child.name) + 1 :], *successes(container)]
     else:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.ir.nodes import Leaf, Node, Transition
 from smachac.ir.outcome_names import fails
-from smachac.ir.properties import After, AlwaysEnds, AtMost, Atoms, Form
+from smachac.ir.properties import After, AlwaysEnds, AtMost, Atoms, Before, Form, Never
 from smachac.ir.traversal import walk
 
 if TYPE_CHECKING:
@@ -41,8 +41,9 @@ def turn_of(form: Form, replayed: Replay, visits: int, nodes: Mapping[str, Node]
     """The turn of a counterexample with a number of visits; None if there is none. `nodes` are all
     nodes by path. For an `after` it is the transition that leads past a required state, or the
     first one behind which no required state comes, otherwise the one that follows its first event;
-    for the other forms it is the last transition, and of repeated states the last one for a
-    failure.
+    for a `never` with `until` and for a `before` the transition that leads past a required state to
+    which nothing leads. Otherwise it is the last transition, and of repeated states the last one
+    for a failure.
     """
     steps = list(_steps(replayed, visits, nodes))
     if isinstance(form, After):
@@ -51,9 +52,27 @@ def turn_of(form: Form, replayed: Replay, visits: int, nodes: Mapping[str, Node]
         if missed is not None:
             return missed
         steps = steps[:1]
+    if isinstance(form, Never | Before):
+        missed = _unled_miss(form, steps, nodes)
+        if missed is not None:
+            return missed
     if isinstance(form, AtMost | AlwaysEnds):
         steps = [each for each in steps if fails(nodes[each.path], each.step.outcome)] or steps
     return Turn(nodes[steps[-1].path], steps[-1].step) if steps else None
+
+
+def _unled_miss(
+    form: Never | Before, steps: list[_Taken], nodes: Mapping[str, Node]
+) -> Turn | None:
+    """The transition that leads past a state which must come between two events, or before one, if
+    nothing leads to that state."""
+    if isinstance(form, Never):
+        found = (
+            _first_miss(form.until, _from_last(form.after, steps), nodes) if form.until else None
+        )
+    else:
+        found = _first_miss(form.earlier, steps, nodes)
+    return found if found is not None and found.unled else None
 
 
 def _steps(replayed: Replay, visits: int, nodes: Mapping[str, Node]) -> Iterator[_Taken]:

@@ -146,6 +146,8 @@ def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
             others = first[child.name] - {child.name}
             group = [child, *(each for each in hidden if each.name in others)]
             past = _led_past(container, one, group, seen) if alone else None
+            if past is None and led_twice is None and alone:
+                past = _led_out(container, one, group, seen)
             way_out = _way_out(container, one, seen) if past is None else None
             yield _Hidden(path, container, group, past, way_out, led_twice if alone else None)
 
@@ -257,6 +259,22 @@ def _led_past(
     if len(others) == 1:
         return others[0]
     return _led_back(container, before) if before is not None and before.name in seen else None
+
+
+def _led_out(
+    container: Linear, before: Node | None, group: list[Node], seen: Collection[str]
+) -> _LedPast | None:
+    """The only transition for a success of the state before a group of states that leads to an
+    outcome of the container, no failure, to which one of the group leads as well."""
+    if before is None or before.name not in seen or isinstance(container, Sequence):
+        return None
+    ends = {step.target for each in group for step in each.transitions
+            if step.target in outcome_names(container) and not fails(container, step.target)
+            and step.outcome != PREEMPTED and not fails(each, step.outcome)}  # fmt: skip
+    steps = [step for step in before.transitions
+             if step.origin == "written" and step.target in ends
+             and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
+    return _LedPast(before, steps[0], True) if len(steps) == 1 else None
 
 
 def _led_back(container: Linear, before: Node) -> _LedPast | None:

@@ -23,6 +23,7 @@ from smachac.checks.candidate_keys import (
     keys_of_type,
     may_be,
     meant_by_remap,
+    outer_value,
     unread_output,
 )
 from smachac.checks.declarations import swapped_loop
@@ -175,18 +176,12 @@ def _with_outer_key(
 ) -> Finding:
     """The finding on an output of a container that is read before it is set, where the container
     around it has a value for it: the key is probably meant as an input too."""
-    scope, key = missing.scope, missing.key
-    if key in scope.inputs or key not in scope.outputs:
+    place = outer_value(missing, scopes)
+    if place is None:
         return finding
-    outer = scope.outputs[key]
-    around = scopes.get(scope.path.rpartition("/")[0])
-    while around is not None and around.container.sugar and outer in around.outputs:
-        outer = around.outputs[outer]
-        around = scopes.get(around.path.rpartition("/")[0])
-    if around is None or outer not in around.held:
-        return finding
-    help = listing([scope.container], "input_keys", key)
-    return replace(finding, help=f"{help}: `{around.container.name}` has a value for it")
+    help = listing([missing.scope.container], "input_keys", missing.key)
+    owner = scopes[place[0]].container.name
+    return replace(finding, help=f"{help}: `{owner}` has a value for it")
 
 
 def _with_end(

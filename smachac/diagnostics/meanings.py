@@ -39,6 +39,7 @@ def of_same_meaning(word: str, choices: Sequence[str]) -> str | None:
 
 
 QUANTITIES = (
+    frozenset(["error", "failure", "exception", "fault"]),
     frozenset(["velocity", "speed", "vel"]),
     frozenset(["acceleration", "accel", "acc"]),
     frozenset(["time", "duration", "timeout", "delay", "seconds", "secs"]),

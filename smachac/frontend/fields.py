@@ -193,10 +193,13 @@ def name_of(tree: Tree) -> Word | None:
 
 def as_name(tree: Tree, report: Report) -> Word | None:
     """A name: of a state, an outcome, a key, a script, a template."""
-    text = name_text(tree, report)
-    if text is None or not isinstance(tree, Scalar):
+    if not isinstance(tree, Scalar):
+        name_text(tree, report)
         return None
-    return Word(text, Span(tree.source, tree.start, tree.end))
+    text = tree.value
+    if not isinstance(text, str) or text in YAML_1_1_BOOLEANS:  # few names: a call less for others
+        text = name_text(tree, report)
+    return Word(text, Span(tree.source, tree.start, tree.end)) if text is not None else None
 
 
 def _only_name(tree: Tree) -> Word | None:

@@ -16,13 +16,10 @@ from smachac.ir.nodes import StateType
 
 def has_unknown_variable(entries: Mapping[str, Entry], type_: StateType) -> bool:
     """Whether a state of a built-in type has a variable that the type does not have."""
-    if not type_.built_in or type_.open or type_.any_variable:
+    own = schema.OWN_FIELDS["state"]
+    if own.issuperset(entries) or not type_.built_in or type_.open or type_.any_variable:
         return False
-    for key in entries:
-        row = schema.VARIABLES.get(key)
-        if (row is None or "state" not in row.owners) and key not in type_.variables:
-            return True
-    return False
+    return any(key not in own and key not in type_.variables for key in entries)
 
 
 def meant_type(

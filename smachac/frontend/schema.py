@@ -227,3 +227,10 @@ REQUIRED: Mapping[FieldOwner, tuple[str, ...]] = {
 def names_for(owner: str) -> list[str]:
     """The long names of the fields of an owner, in the order of the schema."""
     return [row.name for row in VARIABLES.values() if owner in row.owners]
+
+
+OWN_FIELDS: Mapping[str, frozenset[str]] = {
+    owner: frozenset(names_for(owner)) for owner in {each for row in VARIABLES.values()
+                                                     for each in row.owners}
+}  # fmt: skip
+"""The long names of the fields of each owner."""

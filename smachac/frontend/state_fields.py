@@ -207,11 +207,13 @@ def with_meant_fields(
     certain: then one misspelt name is one finding. The role of a variable means the variable, as
     `conditions` in a ConditionalOutcomeState. Fields whose name and value have changed places are
     reported."""
+    own = schema.OWN_FIELDS[owner]
+    if own.issuperset(entries):
+        return entries
     unknown = [
         key
         for key in entries
-        if ((row := schema.VARIABLES.get(key)) is None or owner not in row.owners)
-        and (not accepts(type_, key) or _is_unused(key, type_))
+        if key not in own and (not accepts(type_, key) or _is_unused(key, type_))
     ]
     if not unknown:
         return entries

@@ -302,8 +302,12 @@ def _cost_of(tree: Tree, owner: str, text: str) -> float:
 
 
 def _cost_of_items(tree: Seq, owner: str, text: str) -> float:
-    """1 for names and entries mixed in a list, and for each item that is two."""
+    """1 for names and entries mixed in a list, for each item that is two, and for a look-up of a
+    param that has not two items."""
     items = tree.items
+    first = items[0] if items else None
+    if isinstance(first, Scalar) and first.plain and first.value == "params" and len(items) != 2:
+        return 1.0
     pairs = sum(isinstance(item, Map) and not item.span.text.startswith("{") for item in items)
     texts = [item.value for item in items if isinstance(item, Scalar) and item.plain]
     words = [each for each in texts if isinstance(each, str)]

@@ -408,3 +408,15 @@ states:
 """
     found = reported({"main.yml": text, "templates/Find.tpl.py": template})
     assert found == [("SM003", "bin", "did you mean `bin_name`?")]
+
+
+def test_a_field_of_the_script_by_a_word_of_the_same_meaning() -> None:
+    text = """\
+name: sm
+outcomes: [done, failed]
+on_failure: HALT
+states:
+  - A: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+  - HALT: {template: ScriptedState, outcomes: [ok], transitions: {ok: failed}}
+"""
+    assert ("SM003", "on_failure", "did you mean `on_error`?") in reported({"main.yml": text})

@@ -1,0 +1,176 @@
+"""States that are beside their concurrence, states past which a transition leads, and keys of one
+slip: one finding, with the text to write."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.checks.test_first_scripts import reported
+
+Row = tuple[str, str, str | None]
+
+BRANCH = """\
+name: sm
+outcomes: [done, failed]
+ON_ERROR
+states:
+  - BOTH:
+      template: Concurrence
+      outcomes: [done, failed]
+      default_outcome: failed
+      outcome_map: {done: {LEFT: ok, RIGHT: ok}}
+      transitions: {done: done, failed: failed}
+      states:
+        - LEFT: {template: ScriptedState, outcomes: [ok, lost]}
+RIGHT: {template: ScriptedState, outcomes: [ok, lost]TRANSITIONS}
+  - HALT: {template: ScriptedState, outcomes: [done], transitions: {done: failed}}
+"""
+
+
+def branch(
+    indent: str, transitions: str = "", on_error: str = ""
+) -> list[tuple[str, str, str | None]]:
+    text = BRANCH.replace("RIGHT: {", f"{indent}- RIGHT: {{").replace("TRANSITIONS", transitions)
+    text = text.replace("ON_ERROR", on_error or "doc: two arms")
+    if not on_error:
+        text = text.replace("  - HALT", "  # - HALT")
+    return reported({"main.yml": text})
+
+
+def test_a_branch_beside_its_concurrence() -> None:
+    assert branch(" " * 8) == []
+    help = "indent `RIGHT` by 6 more columns, as a state of `BOTH`"
+    assert branch("  ") == [("SM403", "RIGHT", help)]
+    assert branch("  ", on_error="on_error: HALT") == [("SM403", "RIGHT", help)]
+
+
+def test_a_state_with_transitions_is_no_branch() -> None:
+    found = branch("  ", ", transitions: {ok: done, lost: failed}")
+    assert ("SM403", "RIGHT", "use one of its states: `LEFT`") in found
+
+
+PATH = """\
+name: sm
+outcomes: [held, lost]
+PROPERTY
+states:
+  - OPEN: {template: ScriptedState, outcomes: [ok, failed], transitions: {ok: LIFT, failed: lost}}
+  - LIFT: {template: ScriptedState, outcomes: [ok, failed], transitions: {ok: TARGET, failed: lost}}
+  - CHECK: {template: ScriptedState, outcomes: [ok, failed], transitions: {ok: END, failed: lost}}
+"""
+
+
+def test_a_transition_out_of_the_container_past_a_state() -> None:
+    text = PATH.replace("PROPERTY\n", "").replace("TARGET", "held").replace("END", "held")
+    help = "write `ok: CHECK` in `LIFT`, or remove `CHECK` if its work is not needed"
+    assert reported({"main.yml": text}) == [("SM201", "CHECK", help)]
+
+
+@pytest.mark.parametrize(
+    "form", ["never: {after: OPEN, until: CHECK, enter: MOVE}", "before: {MOVE: CHECK}"]
+)
+def test_a_transition_past_a_state_that_a_property_requires(form: str) -> None:
+    text = PATH.replace("PROPERTY", f"properties: [{{{form}}}]").replace("TARGET", "MOVE")
+    text = text.replace("END", "MOVE")
+    text += "  - MOVE: {template: ScriptedState, outcomes: [ok], transitions: {ok: held}}\n"
+    ((code, place, help),) = reported({"main.yml": text})
+    assert (code, place) == ("SM701", "MOVE")
+    assert help is not None
+    assert help.startswith("write `ok: CHECK` in `LIFT`, or correct the property")
+
+
+def test_a_target_that_lacks_a_word_of_a_state() -> None:
+    text = """\
+name: sm
+outcomes: [done, lost]
+states:
+  - MOVE: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: PARK_ARM, bad: PARK}}
+  - PARK_ARM: {template: ScriptedState, outcomes: [ok, bad], transitions: {ok: done, bad: lost}}
+"""
+    assert reported({"main.yml": text}) == [("SM101", "PARK", "did you mean `PARK_ARM`?")]
+    failed = text.replace("PARK_ARM", "PARK_FAILED")
+    assert reported({"main.yml": failed})[0][2] != "did you mean `PARK_FAILED`?"
+
+
+def test_the_state_after_a_stop_is_that_after_a_failure_without_a_transition() -> None:
+    text = """\
+name: sm
+outcomes: [done, failed, preempted]
+states:
+  - WELD:
+      template: ScriptedState
+      outcomes: [welded, weld_failed, preempted]
+      transitions: {welded: RELEASE, preempted: LET_GO}
+  - RELEASE: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+  - LET_GO: {template: ScriptedState, outcomes: [ok], transitions: {ok: preempted}}
+"""
+    found = [row for row in reported({"main.yml": text}) if row[0] == "SM104"]
+    assert found == [("SM104", "WELD", "add `weld_failed: LET_GO` to the transitions of `WELD`")]
+
+
+def test_the_bracket_of_a_look_up_is_closed_after_its_param() -> None:
+    text = """\
+name: sm
+template: ROSBase
+outcomes: [done, lost]
+params: {camera: left}
+states:
+  - LOOK:
+      template: WaitForMsgState
+      topic: ['/', [params, camera, /image]
+      msg_type: std_msgs/Empty
+      transitions: {succeeded: done, aborted: lost, preempted: lost}
+"""
+    found = [row for row in reported({"main.yml": text}) if row[0] == "SM001"]
+    assert found == [("SM001", "camera", "write `topic: ['/', [params, camera], /image]`")]
+
+
+def test_an_initial_value_around_a_container_that_lacks_its_input() -> None:
+    text = """\
+name: sm
+outcomes: [done]
+userdata: {served: 0}
+states:
+  - SERVE:
+      template: StateMachine
+      outcomes: [done]
+      output_keys: [served]
+      transitions: {done: done}
+      states:
+        - COUNT:
+            template: CallbacksState
+            input_keys: [served]
+            output_keys: [served]
+            callbacks: {served: "lambda ud: ud.served + 1"}
+            transitions: {succeeded: done}
+"""
+    help = "write `input_keys: [served]` in `SERVE`: `sm` has a value for it"
+    assert reported({"main.yml": text}) == [("SM301", "served", help)]
+
+
+@pytest.mark.parametrize("timeout", ["", "timeout: 5s, "])
+def test_the_only_unread_value_of_the_type(timeout: str) -> None:
+    text = f"""\
+name: sm
+outcomes: [done, lost]
+userdata: {{cruise: {{type: float<m/s>, value: 0.8}}, count: 0}}
+states:
+  - A:
+      template: Drive
+      {timeout and "timeout: 5s"}
+      transitions: {{done: B{", timeout: lost, preempted: lost" if timeout else ""}}}
+  - B:
+      template: CallbacksState
+      input_keys: [count]
+      output_keys: [count]
+      callbacks: {{count: "lambda ud: ud.count + 1"}}
+      transitions: {{succeeded: C}}
+  - C: {{template: PrintUserdataState, input_keys: [count], transitions: {{succeeded: done}}}}
+"""
+    interface = "input_keys: {{speed: float<m/s>}}\noutcomes: {{done: {{}}}}\n".replace("{{", "{")
+    files = {"main.yml": text, "templates/Drive.yml": interface.replace("}}", "}")}
+    found = [row for row in reported(files) if row[0] in ("SM301", "SM305")]
+    ((code, place, help),) = found
+    assert (code, place) == ("SM301", "A")
+    assert help is not None
+    assert "write `remapping: {speed: cruise}` in `A`" in help
