@@ -261,9 +261,8 @@ def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]
     if sure is not None:
         return f"did you mean `{sure}`?"
     if not own:
-        of_language = by_words(word, names)
-        near = did_you_mean(word, names)
-        return near or (f"did you mean `{of_language}`?" if of_language is not None else None)
+        meant = by_words(word, names)
+        return did_you_mean(word, names) or (f"did you mean `{meant}`?" if meant else None)
     others = [name for name in names if name not in own]
     near = SequenceMatcher(a=word)
     for name in others:
