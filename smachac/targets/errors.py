@@ -466,7 +466,7 @@ def code_not_found(
         help = near or f"correct the name, or define it in `{fault.file}`"
         if near is not None and fault.lines:
             lines = ", ".join(map(str, fault.lines))
-            help = f"{near} write it here and in line{'s' if fault.lines[1:] else ''} {lines}"
+            help = f"{near} Write it here and in line{'s' if fault.lines[1:] else ''} {lines}"
         if fault.more:
             help = f"import `{word.text}` from `{fault.more}`, which defines it"
     else:

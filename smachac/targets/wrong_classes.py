@@ -42,7 +42,7 @@ def with_wrong_classes(report: Report, machine: Machine, library: Library) -> Re
         caused = [item for item in report if _is_caused(item, type_, types)]
         named = _other_class(type_, machine, library) if caused else None
         if named is not None:
-            text = f"it belongs to another interface, and `{name}` exists"
+            text = f"it belongs to another interface, and the class `{name}` exists"
             difference = Difference(Word(text, named.word.span), f"write `{named.meant}`")
             used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{name}`")
             found = interfaces_differ(used, named.language, name, named.word.text, [difference])

@@ -39,7 +39,7 @@ def help_of(name: str, helpers: str = HELPERS, call: str = CALL, **others: str) 
 def test_the_function_that_nothing_uses(name: str) -> None:
     (help,) = help_of(name)
     line = CLASS.split("BODY")[0].count("\n") + 2
-    assert help == f"SM608 did you mean `sharp_enough`? write it here and in line {line}"
+    assert help == f"SM608 did you mean `sharp_enough`? Write it here and in line {line}"
 
 
 CORRECT = "SM608 correct the name, or define it in `cell/helpers.py`"
