@@ -53,12 +53,13 @@ def arguments_to_base(own: OwnClass) -> Mapping[str, tuple[PythonText, ast.expr]
     """The arguments that a class passes to the constructor of the last of its base classes, by the
     name of the parameter, and the default values of others, each with the text that it is in; not
     those of a parameter to which that constructor gives another value. None if it is not known."""
-    call = _base_call(own, 0, own.names[0]) if len(own.classes) > 1 else None
-    if call is None or call.base not in own.classes[-1][1].body or [*base_call_faults(own)]:
+    *derived, (last, base) = own.classes
+    call = _base_call(own, 0, own.names[0]) if derived else None
+    if call is None or call.base not in base.body or [*base_call_faults(own)]:
         return None
     if call.node not in [each.value for each in call.maker.body if isinstance(each, ast.Expr)]:
         return None
-    taken, text = call.taken, own.classes[-1][0].text
+    taken, text = call.taken, last.text
     names = [each.arg for each in (*taken.posonlyargs, *taken.args)]
     pairs = [*zip(reversed(names), reversed(taken.defaults), strict=False)]
     pairs += [(each.arg, default) for each, default in
