@@ -186,8 +186,8 @@ def meant_by_remap(
 
 
 def keys_of_type(types: Types, scope: UserdataScope, wanted: Type) -> list[str]:
-    """The keys of a container that have a type; none for one that says little about what a value
-    means."""
+    """The keys of a container whose values have a type. Empty if the type is unknown or a plain
+    number, text or boolean: many keys with other meanings have these types."""
     if is_open(wanted) or wanted.name in SCALARS:
         return []
     return [

@@ -242,8 +242,8 @@ def _setting(leaf: Leaf, type_: StateType, ending: Ending, key: str, where: str)
 
 
 def _of_same_type(type_: StateType, key: str, userdata: str) -> str:
-    """The part of a help that names the only input which has the type of an output, if that says
-    what the value means: no plain number, text or boolean."""
+    """The part of a help with the only input that has the same type as an output. Empty if there is
+    no such input, or if the type is a plain number, text or boolean."""
     wanted = next(each.type for each in type_.output_keys if each.name == key)
     if is_open(wanted) or (wanted.name in SCALARS and not wanted.args):
         return ""

@@ -424,8 +424,8 @@ def _outcomes(entries: Entries, type_: StateType) -> set[str]:
 
 
 def _lacking_variable(name: str, entries: Entries, type_: StateType) -> str | None:
-    """The variable of a meta block that a state lacks and that another name stands for: the only
-    one, or the one with a word of that name."""
+    """The variable of a meta block that a state does not set and that is probably meant by the
+    unknown `name`: the variable that shares a word with `name`, or the only one. None otherwise."""
     lacking = [
         each.name
         for each in type_.variables.values()
