@@ -17,7 +17,12 @@ from smachac.frontend.own_objects import Objects
 from smachac.frontend.python_functions import is_plain, returns_of
 from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
 from smachac.frontend.silent_results import called_function, is_silent
-from smachac.frontend.swapped_arguments import called_code, swapped_arguments, takes_self
+from smachac.frontend.swapped_arguments import (
+    MethodCode,
+    called_code,
+    swapped_arguments,
+    takes_self,
+)
 from smachac.frontend.userdata_parts import tried_code
 from smachac.ir.class_facts import ClassFault
 
@@ -51,13 +56,14 @@ def call_slips(own: OwnClass, library: Library) -> Iterator[ClassFault]:
             every = [each for each in ast.walk(method) if each not in others]
             tried = tried_code(every)
             every = [each for each in every if each not in tried]
+            code = MethodCode(own, module, node, method, every, objects)
             found = [
-                *_called_early(own, module, node, method, every, objects),
+                *_called_early(code),
                 *_in_other_order(own, module, method, every, library),
                 *_wrong_numbers(module, every),
                 *_no_modules(module, method, every, library),
-                *swapped_arguments(own, module, node, method, every, objects),
-                *_wrong_counts(own, module, node, method, every, objects),
+                *swapped_arguments(code),
+                *_wrong_counts(code),
             ]
             yield from (each for each in found if not module.text.is_filled(each.name.span))
 
@@ -65,15 +71,9 @@ def call_slips(own: OwnClass, library: Library) -> Iterator[ClassFault]:
 # --- a call in place of a function
 
 
-def _called_early(
-    own: OwnClass,
-    module: Module,
-    node: ast.ClassDef,
-    method: ast.FunctionDef,
-    every: Sequence[ast.AST],
-    objects: Objects,
-) -> Iterator[ClassFault]:
+def _called_early(code: MethodCode) -> Iterator[ClassFault]:
     """The calls of functions without a result that are passed where the function is needed."""
+    own, module, node, method, every, objects = code
     for each in every:
         match each:
             case ast.Call(func=ast.Attribute(attr=name) | ast.Name(id=name)) if name in TAKERS:
@@ -206,22 +206,16 @@ def _kind(module: Module, node: ast.expr, library: Library) -> str:
 # --- too few or too many arguments
 
 
-def _wrong_counts(
-    own: OwnClass,
-    module: Module,
-    node: ast.ClassDef,
-    method: ast.FunctionDef,
-    every: Sequence[ast.AST],
-    objects: Objects,
-) -> Iterator[ClassFault]:
+def _wrong_counts(code: MethodCode) -> Iterator[ClassFault]:
     """The calls of functions and methods of the project that lack an argument, or pass one that the
     function does not have."""
-    for call in every:
+    module, method = code.module, code.method
+    for call in code.nodes:
         if not isinstance(call, ast.Call) or any(each.arg is None for each in call.keywords):
             continue
         if any(isinstance(each, ast.Starred) for each in call.args):
             continue
-        called = called_code(own, module, node, method, call, objects)
+        called = called_code(code, call)
         if called is None:
             continue
         taken = called.args

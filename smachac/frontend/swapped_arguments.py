@@ -123,6 +123,19 @@ ANYTHING = frozenset(
 """Words of parameters that can get any value."""
 
 
+class MethodCode(NamedTuple):
+    """A method of a class of a state type or of a base class of it: the class with its base
+    classes, the module and the class of the method, its nodes that are checked, and the objects
+    that the classes make."""
+
+    own: OwnClass
+    module: Module
+    class_node: ast.ClassDef
+    method: ast.FunctionDef
+    nodes: Sequence[ast.AST]
+    objects: Objects
+
+
 class _Place(NamedTuple):
     """A parameter with the argument that it gets."""
 
@@ -130,52 +143,33 @@ class _Place(NamedTuple):
     value: ast.expr
 
 
-def swapped_arguments(
-    own: OwnClass,
-    module: Module,
-    node: ast.ClassDef,
-    method: ast.FunctionDef,
-    every: Sequence[ast.AST],
-    objects: Objects,
-) -> Iterator[ClassFault]:
+def swapped_arguments(code: MethodCode) -> Iterator[ClassFault]:
     """The calls in a method of a class two of whose arguments have changed places."""
-    for call in every:
+    for call in code.nodes:
         if not isinstance(call, ast.Call) or len(call.args) < 2:
             continue
         if not any(_name(each) for each in call.args):
             continue
-        called = called_code(own, module, node, method, call, objects)
-        if called is None or called is method:
+        called = called_code(code, call)
+        if called is None or called is code.method:
             continue
         places = _places(call, called)
         pair = _pair(places, called) if places is not None else None
         if pair is not None:
-            yield _fault(module, call, places or [], pair)
+            yield _fault(code.module, call, places or [], pair)
 
 
-def called_code(
-    own: OwnClass,
-    module: Module,
-    node: ast.ClassDef,
-    method: ast.FunctionDef,
-    call: ast.Call,
-    objects: Objects,
-) -> ast.FunctionDef | None:
+def called_code(code: MethodCode, call: ast.Call) -> ast.FunctionDef | None:
     """The function or method of the project that a call in a method of a class runs, also that of
     an object, or the constructor; None for one with a decorator."""
-    if call not in objects.called:
-        objects.called[call] = _called_code(own, module, node, method, call, objects)
-    return objects.called[call]
+    called = code.objects.called
+    if call not in called:
+        called[call] = _called_code(code, call)
+    return called[call]
 
 
-def _called_code(
-    own: OwnClass,
-    module: Module,
-    node: ast.ClassDef,
-    method: ast.FunctionDef,
-    call: ast.Call,
-    objects: Objects,
-) -> ast.FunctionDef | None:
+def _called_code(code: MethodCode, call: ast.Call) -> ast.FunctionDef | None:
+    own, module, node, method, _, objects = code
     function = called_function(own, module, method, call.func, objects.library)
     called = function[1] if function is not None else objects.method(module, node, call.func)
     called = called or _constructor(module, call.func, objects.library)
