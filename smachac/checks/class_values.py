@@ -268,6 +268,12 @@ def wrong_operations(context: Context, kind: FaultKind) -> Iterator[Finding]:
                 break
 
 
+def _words_of(type_: Type) -> list[str]:
+    """The words of a type that is one of some words; empty for all others."""
+    words = [choice for choice in type_.args if isinstance(choice, str)]
+    return words if type_.name == "one_of" and len(words) == len(type_.args) else []
+
+
 def wrong_comparisons(context: Context) -> Iterator[Finding]:
     """The comparisons of a class with words that a variable or an input key cannot have by its
     interface (SM312)."""
@@ -282,9 +288,8 @@ def wrong_comparisons(context: Context) -> Iterator[Finding]:
             variable = type_.variables.get(each.name) if each.kind == "variable" else None
             declared = key or variable
             kind = present(declared.type) if declared is not None else ANY
-            choices = [choice for choice in kind.args if isinstance(choice, str)]
-            known = kind.name == "one_of" and len(choices) == len(kind.args)
-            if not known or each.word.text in done.union(choices):
+            choices = _words_of(kind)
+            if not choices or each.word.text in done.union(choices):
                 continue
             done.add(each.word.text)
             used = {one.word.text for one in facts.compared if one.name == each.name}
@@ -330,8 +335,7 @@ def missing_choices(context: Context) -> Iterator[Finding]:
         variables = {name: each.type for name, each in type_.variables.items()}
         done = set[tuple[str, str]]()
         for each in facts.tables:
-            declared = (keys if each.kind == "key" else variables).get(each.name, ANY)
-            choices = [str(choice) for choice in declared.args] if declared.name == "one_of" else []
+            choices = _words_of((keys if each.kind == "key" else variables).get(each.name, ANY))
             known = {word.text for word in each.keys}
             known |= {one.word.text for one in facts.compared if one.name == each.name}
             missing = [choice for choice in choices if choice not in known]

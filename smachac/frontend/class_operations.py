@@ -86,13 +86,21 @@ def _is_known(
     return used <= names and bool(keys) and not keys & written
 
 
+def _written_values(every: list[ast.AST], userdata: str) -> list[ast.expr]:
+    """The values of the assignments to one userdata key each."""
+    return [
+        each.value
+        for each in every
+        if isinstance(each, ast.Assign)
+        and len(each.targets) == 1
+        and access_of(each.targets[0], userdata) is not None
+    ]
+
+
 def number_writes(module: Module, function: ast.FunctionDef) -> tuple[Span, ...]:
     """The places of the values that `execute` writes to userdata keys and that are one number."""
-    userdata = function.args.args[1].arg
     every = [*ast.walk(function)]
-    values = [each.value for each in every
-              if isinstance(each, ast.Assign) and len(each.targets) == 1
-              and access_of(each.targets[0], userdata) is not None]  # fmt: skip
+    values = _written_values(every, function.args.args[1].arg)
     if not values:
         return ()
     local = dict(_local_values(every))
@@ -105,11 +113,8 @@ def collection_writes(
 ) -> Iterator[tuple[Span, Literal["list", "dict"]]]:
     """The places of the values that `execute` writes to userdata keys and that are a list or a
     dictionary, also in a local variable."""
-    userdata = function.args.args[1].arg
     every = [*ast.walk(function)]
-    values = [each.value for each in every
-              if isinstance(each, ast.Assign) and len(each.targets) == 1
-              and access_of(each.targets[0], userdata) is not None]  # fmt: skip
+    values = _written_values(every, function.args.args[1].arg)
     if not values:
         return
     local = dict(_local_values(every))
