@@ -56,6 +56,7 @@ FaultKind = Literal[
     "parameter order",
     "refused order",
     "no number",
+    "wrong number",
     "unused outcome",
     "unused call",
     "no answer to stops",

@@ -300,6 +300,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "the class `{name}` does not contain the number of its interface, `smachac_interface`",
         "write in the class: `static constexpr std::uint32_t smachac_interface = {near};`",
     ),
+    "wrong number": (
+        "`{word}` is no number of C++",
+        "write `{near}`, the number of the interface",
+    ),
     "unused outcome": (
         "`execute` of `{name}` never returns `Outcome::{word}`",
         "return it where it is meant, or remove it from `Outcome`, from the interface, and from the"
@@ -531,6 +535,7 @@ WRITTEN = frozenset[FaultKind](
         "parameter order",
         "refused order",
         "no number",
+        "wrong number",
         "skipped output",
         "early return",
         "other parameter",

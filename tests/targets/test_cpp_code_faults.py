@@ -273,6 +273,13 @@ def test_a_class_without_the_number_of_its_interface() -> None:
     assert found(grasp=CLASS.replace(line, "").replace("class Grasp {", "class Grasp : B {")) == []
 
 
+@pytest.mark.parametrize("wrong", ["0x81314g29U", "0x81314e29W", "1.5", "08131"])
+def test_a_number_of_an_interface_that_is_no_number(wrong: str) -> None:
+    (finding,) = found(grasp=CLASS.replace("0x81314e29U", wrong))
+    assert finding.startswith(f"SM609 arm/grasp.hpp:8:54 `{wrong}` is no number of C++")
+    assert finding.endswith("write `0x81314e29U`, the number of the interface")
+
+
 def test_parameters_of_a_constructor_in_another_order() -> None:
     (line,) = push_findings(
         ("Arm &arm, double speed, const std::string &name)",

@@ -30,6 +30,7 @@ _STRUCT = r"\bstruct\s+{}\s*\{{"
 _NUMBER = (
     r"\bsmachac_interface\s*[={]\s*(0[xX][\da-fA-F']{1,20}|\d[\d']{0,20})[uUlL]*\s*(?:\}\s*)?;"
 )
+_LITERAL = r"\bsmachac_interface\s*[={]\s*(\d[\w.']*)"
 _LAST_WORD = re.compile(r"\b[A-Za-z_]\w*$")
 _MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\(")
 """A call of what is probably a macro."""
@@ -216,7 +217,12 @@ def _faults(
 def _without_number(
     whole: Part, body: Part, name: Word, number: str, *, derived: bool
 ) -> Iterator[ClassFault]:
-    """The fault that a class lacks the interface hash; a base class and a macro can contain it."""
+    """The fault that a class lacks the interface hash, or has one that is no number; a base class
+    and a macro can contain it."""
+    literal, known = body.member(_LITERAL), body.member(_NUMBER)
+    if literal is not None and (known is None or _number(known[1]) is None):
+        word = body.word(literal[1], *literal.span(1))
+        yield ClassFault(kind="wrong number", name=word, near=number)
     if derived or "smachac_interface" in whole.text or _MACRO.search(body.text):
         return
     yield ClassFault(kind="no number", name=name, near=number)
