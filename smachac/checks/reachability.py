@@ -15,6 +15,7 @@ from smachac.analysis.misplaced_states import ends_of_misplaced
 from smachac.checks.hidden_conditions import hidden_conditions
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.misled_failures import linear_outcomes, misled_failures
+from smachac.checks.needed_variables import outcomes_without_variable
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
@@ -435,13 +436,16 @@ def _why_unreachable(container: Linear, group: list[Node]) -> str:
     effect="a transition for this outcome is never taken",
 )
 def impossible_outcome(context: Context) -> Iterator[Finding]:
-    """A container or a state of conditions has an outcome with which it can never end.
+    """A container or a state has an outcome with which it can never end.
 
     What the script does after that outcome never happens. If the outcome is one of failure, a
     failure of the robot probably ends the container with another outcome.
 
     Exactly: a condition of a state counts as hidden if it compares one key with numbers, and an
-    earlier one is true for each of these values: `ud.n > 3` before `ud.n > 5`.
+    earlier one is true for each of these values: `ud.n > 3` before `ud.n > 5`. An outcome with
+    `needs` in the interface of a state (such as `valid` of MonitorState, which needs `max_checks`)
+    is reported if the variable has no value, and only this outcome leads to a state or an end of
+    the container, or the rule of a concurrence contains it.
 
     Wrong:
         name: sm
@@ -464,6 +468,9 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
               transitions: {done: picked, slipped: lost}
     """
     yield from context.at_states(hidden_conditions)
+    types = {name: each for name, each in context.machine.state_types.items() if each.needs}
+    for path, container in context.containers if types else ():
+        yield from outcomes_without_variable(path, container, types)
     linear = iter(context.corrected)
     again = {found.stop.path for found in context.stop_paths.again}
     moved: set[tuple[str, str]] | None = None

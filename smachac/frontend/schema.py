@@ -207,6 +207,7 @@ OUTCOME_FACTS: Mapping[str, str] = {
     "doc": "When it ends so, in a sentence.",
     "failure": "Whether it means failure; without it, the name decides.",
     "optional": "The state has the outcome only if the script names it.",
+    "needs": "The variable, or one of the variables, without which it never ends so.",
 }
 """What an interface can state about an outcome, with descriptions."""
 

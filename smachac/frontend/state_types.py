@@ -51,6 +51,7 @@ from smachac.ir.nodes import (
     FunctionResult,
     Key,
     KeyRole,
+    Outcome,
     StateKind,
     StateType,
     VariableRole,
@@ -145,10 +146,8 @@ def _read_interface(
         variables=_variables(sections["variables"], report),
         input_keys=_keys(sections["input_keys"], report),
         output_keys=_keys(sections["output_keys"], report),
-        outcomes=tuple(
-            as_outcome(word, value, report, "optional")
-            for word, value in _outcome_words(sections["outcomes"], report)
-        ),
+        outcomes=_outcomes(sections["outcomes"], report),
+        needs=_needed_variables(sections, report),
         outcomes_place=_outcomes_place(tree, fields),
         writes=_writes(sections, report),
         given=given,
@@ -169,6 +168,12 @@ def _read_interface(
         optional=optional,
         secret_keys=_secret_keys(sections, report),
     )
+
+
+def _outcomes(section: Section, report: Report) -> tuple[Outcome, ...]:
+    """The outcomes that an interface declares."""
+    words = _outcome_words(section, report)
+    return tuple(as_outcome(word, value, report, "optional", "needs") for word, value in words)
 
 
 def _outcomes_place(tree: Map, fields: Mapping[str, Tree]) -> Span | None:
@@ -209,6 +214,22 @@ def _check_own_name(tree: Tree, name: str, report: Report) -> None:
 def _optional_outcomes(section: Section) -> frozenset[str]:
     """Outcomes with `optional: true`."""
     return frozenset(key for key, value in declared_in(section) if _is_set(value, "optional"))
+
+
+def _needed_variables(
+    sections: Mapping[str, Section], report: Report
+) -> dict[str, tuple[str, ...]]:
+    """The variables of which an outcome needs one, by outcome; only those that are declared."""
+    found: dict[str, tuple[str, ...]] = {}
+    for outcome, tree in declared_in(sections["outcomes"]):
+        needs = tree.get("needs") if isinstance(tree, Map) else None
+        if needs is None:
+            continue
+        one = isinstance(needs.value, Scalar)
+        words = [as_name(needs.value, report)] if one else as_names(needs.value, report)
+        known = [_check_declared(sections, "variables", each, report) for each in words if each]
+        found[outcome] = tuple(name for name in known if name is not None)
+    return {outcome: names for outcome, names in found.items() if names}
 
 
 def _frame_variables(

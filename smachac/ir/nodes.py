@@ -470,7 +470,9 @@ class StateType:
     interface.
     `prints_itself`: the Python template adds the state to its container, as SMACHA's templates do.
     A state has an outcome of `optional` only if its container or one of its transitions names it.
-    `outcomes_place` is the place of its outcomes in its interface, or of the first field there.
+    `needs` are the variables of an outcome, by outcome: without a value of one of them a state
+    never ends with it. `outcomes_place` is the place of its outcomes in its interface, or of the
+    first field there.
     `used` are the words in the template of a type that accepts any variable; None: not known.
     `default_keys` are the keys of a state for which the script lists none, by `input_keys` and
     `output_keys`.
@@ -493,6 +495,7 @@ class StateType:
     input_keys: tuple[Key, ...] = ()
     output_keys: tuple[Key, ...] = ()
     outcomes: tuple[Outcome, ...] = ()
+    needs: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     outcomes_place: Span | None = field(default=None, compare=False, repr=False)
     writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     given: frozenset[str] = frozenset()

@@ -86,7 +86,7 @@ OUTCOME: Schema = {
     "properties": {
         name: {"description": doc, "type": "boolean" if name == "failure" else "string"}
         for name, doc in schema.OUTCOME_FACTS.items()
-        if name != "optional"
+        if name not in ("optional", "needs")
     },
 }
 """What a script can state about an outcome."""
@@ -273,11 +273,11 @@ def interface_schema() -> Schema:
         "returns": {"enum": list(get_args(FunctionResult))},
         "unquoted": {"enum": list(VARIABLE_SHAPES)},
     }
-    keys = section(
-        facts(schema.KEY_FACTS, common | {"role": {"enum": list(get_args(KeyRole))}, "frame": text})
-    )
+    of_keys = common | {"role": {"enum": list(get_args(KeyRole))}}
+    keys = section(facts(schema.KEY_FACTS, of_keys))
     names: Schema = {"type": "array", "items": {"type": "string"}}
-    outcomes = section(facts(schema.OUTCOME_FACTS, common))
+    of_outcomes = common | {"needs": {"anyOf": [text, names]}}
+    outcomes = section(facts(schema.OUTCOME_FACTS, of_outcomes))
     class_: Schema = {
         "type": "object",
         "required": list(CLASS_FIELDS[:2]),

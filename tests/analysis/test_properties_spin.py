@@ -17,13 +17,15 @@ from smachac.ir.traversal import walk
 from tests.support.promela import spin_verdicts
 from tests.support.property_machines import random_machine, random_property
 
-pytestmark = pytest.mark.skipif(shutil.which("spin") is None, reason="needs SPIN")
+pytestmark = pytest.mark.skipif(
+    shutil.which("spin") is None or shutil.which("tcc") is None, reason="needs SPIN and tcc"
+)
 
 BATCH = 15
-"""Machines in one model: the C compiler takes as long for one machine as for a few."""
+"""Machines in one model: SPIN and the C compiler take as long for one machine as for a few."""
 
-LARGEST = 20
-"""States of the largest machine: the compiler takes long for more."""
+LARGEST = 60
+"""States of the largest machine: the search takes long for more."""
 
 
 def disagreements(seeds: Iterable[int], wanted: int, folder: Path) -> tuple[list[int], int]:

@@ -376,7 +376,7 @@ def spin_verdicts(pairs: Sequence[tuple[Machine, Property]], folder: Path) -> li
         return done.stdout
 
     run("spin", "-a", "model.pml")
-    run("cc", "-w", "-O0", "-DVECTORSZ=4096", "-DNOFAIR", "-o", "pan", "pan.c")
+    run("tcc", "-w", "-DVECTORSZ=4096", "-DNOFAIR", "-o", "pan", "pan.c")
     found = []
     for number, (_, given) in enumerate(pairs):
         cycles = ["-a"] if isinstance(given.form, AlwaysEnds) else []
