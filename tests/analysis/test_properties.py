@@ -23,8 +23,8 @@ from tests.support.property_machines import (
     random_trace,
 )
 
-MOST_NOT_FOLLOWED = 3
-"""Of 3,000 machines, the counterexamples of `always_ends` that a run does not follow exactly: seed
+MOST_NOT_FOLLOWED = 2
+"""Of 500 machines, the counterexamples of `always_ends` that a run does not follow exactly: seed
 1831 has a loop over three items, and its path leaves the loop after two. The verdict is right."""
 
 
@@ -70,8 +70,9 @@ def test_verdicts_agree_with_runs() -> None:
 
 
 @pytest.mark.slow
-def test_more_verdicts_agree_with_runs() -> None:
-    counts = compare(range(1000, 4000), runs=40)
+@pytest.mark.parametrize("start", range(1000, 4000, 500))
+def test_more_verdicts_agree_with_runs(start: int) -> None:
+    counts = compare(range(start, start + 500), runs=20)
     assert counts.get("not followed", 0) <= MOST_NOT_FOLLOWED
 
 

@@ -14,7 +14,7 @@ from tests.cpp.vector_programs import Part, part, replay
 from tests.support.stop_machines import cases, once
 
 MACHINES = 40
-MANY = 3_000
+MANY = 1_200
 
 
 def differing(seed: int, start: int, stop: int, compiler: Compiler, folder: Path) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from tests.trust.correct_projects import projects
@@ -27,13 +27,19 @@ class Tally:
         return self.counts["caught"] + self.counts["missed"]
 
 
-def mutants(subjects: list[tuple[str, Subject]], each: int) -> Iterator[tuple[str, str, Verdict]]:
-    """`each` mutants of each mutation, or as many as there are: its name, the origin, the verdict.
+def mutants(
+    subjects: list[tuple[str, Subject]], each: int, names: Iterable[str] = tuple(MUTATIONS)
+) -> Iterator[tuple[str, str, Verdict]]:
+    """`each` mutants of each mutation of `names`, or as many as there are: its name, the origin,
+    the verdict.
 
     The subjects are taken in turn, starting with a different one for each mutation. Equivalent
     mutants are extra, at most `each` of them.
     """
+    wanted = frozenset(names)
     for offset, name in enumerate(MUTATIONS):
+        if name not in wanted:
+            continue
         faults = equal = 0
         for turn in range(3 * len(subjects)):
             at = (turn + 7 * offset) % len(subjects)

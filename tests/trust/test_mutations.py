@@ -19,10 +19,16 @@ LEAST_OF_A_KIND, FEWEST = 0.8, 5
 """The same for one kind of damage of which there are at least so many."""
 
 
+PARTS = 4
+"""The parts of the mutations, so that the parts run at the same time."""
+
+
+@pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("each", [2, pytest.param(10, marks=pytest.mark.slow)])
-def test_nearly_all_damage_is_caught(each: int) -> None:
-    """All in one test, as all have one run in common."""
-    tallies = tallied(mutants(subjects_of(PROJECTS), each))
+def test_nearly_all_damage_is_caught(each: int, part: int) -> None:
+    names = [*MUTATIONS][part::PARTS]
+    found = tallied(mutants(subjects_of(PROJECTS), each, names))
+    tallies = {name: found[name] for name in names}
     assert len(tallies) >= 25
     told = "\n".join(
         f"{name} ({origin}): wanted {verdict.wanted}; said {', '.join(verdict.said)}"
