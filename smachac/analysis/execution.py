@@ -9,8 +9,7 @@ possible; only `preempted` is possible after a request, and only then.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Iterator
-from functools import partial
+from collections.abc import Container, Iterable, Iterator
 from typing import NamedTuple, TypeAlias
 
 from smachac.ir import nodes
@@ -48,6 +47,9 @@ class TooLargeError(Exception):
     """The configurations are too many to be examined."""
 
 
+NO_STATES: frozenset[int] = frozenset()
+
+
 class Config(NamedTuple):
     """A configuration of a run: the states that run, the preempt requests that are not served, and
     the items that iterators have used.
@@ -57,7 +59,7 @@ class Config(NamedTuple):
     """
 
     control: Control
-    asked: frozenset[int] = frozenset()
+    asked: frozenset[int] = NO_STATES
     used: tuple[tuple[int, int], ...] = ()
 
     @property
@@ -166,46 +168,48 @@ class Execution:
 
     def start(self, watched: Watched) -> list[ExecutionStep]:
         """The configurations in which a run can begin."""
-        return [
-            ExecutionStep(START, None, tuple(turn.events), turn.config(control))
-            for turn, control in self._each(Config(()), watched, partial(_Turn.enter, node=0))
-        ]
+        return self._turns(Config(()), watched, START, None)
 
     def steps(self, config: Config, watched: Watched) -> list[ExecutionStep]:
         """The steps that can follow, the usual ones first."""
-        found: list[ExecutionStep] = []
-        control = config.control
+        control, asked, used = config
         if config.outcome is not None:
-            return found
+            return []
+        found: list[ExecutionStep] = []
+        raised: list[ExecutionStep] = []
         for leaf in leaves(control):
-            stopped = leaf in config.asked and self.able[leaf]
-            before = config._replace(asked=config.asked - {leaf}) if stopped else config
-            for outcome in (PREEMPTED,) if stopped else self.outcomes[leaf]:
-                perform = partial(_Turn.advance, control=control, leaf=leaf, outcome=outcome)
-                for turn, after in self._each(before, watched, perform):
-                    found.append(
-                        ExecutionStep(leaf, outcome, tuple(turn.events), turn.config(after))
-                    )
-        found.sort(key=lambda step: step.outcome is None)
+            if leaf in asked and self.able[leaf]:
+                before = Config(control, asked - {leaf}, used)
+                found += self._turns(before, watched, leaf, PREEMPTED)
+                continue
+            for outcome in self.outcomes[leaf]:
+                steps = self._turns(config, watched, leaf, outcome)
+                (raised if outcome is None else found).extend(steps)
+        found += raised
         if self.stops:
             running = frozenset(self.active(control, 0))
-            if not running <= config.asked:
-                new = config._replace(asked=config.asked | running)
-                found.append(ExecutionStep(STOP, None, (), new))
+            if not running <= asked:
+                found.append(ExecutionStep(STOP, None, (), Config(control, asked | running, used)))
         return found
 
-    def _each(
-        self, config: Config, watched: Watched, perform: Callable[[_Turn], Control]
-    ) -> Iterator[tuple[_Turn, Control]]:
-        """Perform a turn once for each way in which its iterators can find items."""
+    def _turns(
+        self, config: Config, watched: Watched, leaf: int, outcome: str | None
+    ) -> list[ExecutionStep]:
+        """The steps with the end of a leaf, or `START`: one for each way in which the iterators
+        can find items."""
+        found: list[ExecutionStep] = []
         todo: list[tuple[bool, ...]] = [()]
         while todo:
             answers = todo.pop()
             turn = _Turn(self, config, watched, answers)
-            control = perform(turn)
+            if leaf == START:
+                control = turn.enter(0)
+            else:
+                control = turn.advance(config.control, leaf, outcome)
             for at in range(len(answers), len(turn.answers)):
                 todo.append((*turn.answers[:at], not turn.answers[at]))
-            yield turn, control
+            found.append(ExecutionStep(leaf, outcome, tuple(turn.events), turn.config(control)))
+        return found
 
     def active(self, control: Control, base: int) -> Iterator[int]:
         """The states that run in a branch, whose outermost state is `base`."""
@@ -262,6 +266,8 @@ class _Turn:
     `answers` decide whether an iterator whose items are not known has another item.
     """
 
+    __slots__ = ("answers", "asked", "empty", "events", "questions", "run", "used", "watched")
+
     def __init__(
         self, execution: Execution, config: Config, watched: Watched, answers: tuple[bool, ...]
     ) -> None:
@@ -275,9 +281,8 @@ class _Turn:
         self.events: list[Event] = []
 
     def config(self, control: Control) -> Config:
-        if self.used:
-            return Config(control, frozenset(self.asked), tuple(sorted(self.used.items())))
-        return Config(control, frozenset(self.asked))
+        asked = frozenset(self.asked) if self.asked else NO_STATES
+        return Config(control, asked, tuple(sorted(self.used.items())) if self.used else ())
 
     def emit(self, node: int, outcome: str | None) -> None:
         if (node, outcome) in self.watched:
@@ -456,7 +461,7 @@ class _Turn:
             elif sibling >= 0:
                 asked.discard(node)
                 asked.add(sibling)
-        if isinstance(self.run.nodes[node], Leaf):
+        if node in asked and isinstance(self.run.nodes[node], Leaf):
             asked.discard(node)
 
     def next_item(
