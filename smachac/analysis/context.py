@@ -194,6 +194,13 @@ class Context:
         )
 
     @cached_property
+    def misnamed(self) -> tuple[tuple[str, Linear], ...]:
+        """The containers of `linear` with a transition for an unknown outcome, or to an unknown
+        target."""
+        pairs = zip(self.linear, self.corrected, strict=True)
+        return tuple(each for each, whole in pairs if whole is not each[1])
+
+    @cached_property
     def spans(self) -> dict[str, Span]:
         """The span of each state by path; of two states with one path, that of the first."""
         return {path: node.span for path, node in reversed(self.states)}
@@ -294,7 +301,9 @@ class Context:
     @cached_property
     def strays(self) -> tuple[Stray, ...]:
         """The transitions that lead nowhere."""
-        return self.at_containers(stray_transitions)
+        return tuple(
+            stray for path, each in self.misnamed for stray in stray_transitions(path, each)
+        )
 
     @cached_property
     def misplaced(self) -> tuple[Misplaced, ...]:

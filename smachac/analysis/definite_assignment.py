@@ -10,7 +10,7 @@ with one bit for each key (fixpoint.py).
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
@@ -106,7 +106,8 @@ def data_flow(
     change: those of containers that have not changed, nor any inside, hold for this machine.
     `filled` are the paths of the iterators that surely have items (filled_lists.py)."""
     found: dict[str, UserdataScope] = {}
-    for path, container in reversed(list(containers(machine.root))):
+    every = list(containers(machine.root))
+    for path, container in reversed(every):
         scope = known.get(path)
         same = scope is not None and scope.filled is (path in filled)
         if scope is None or not same or not _is_unchanged(scope, container, found, known):
@@ -114,7 +115,7 @@ def data_flow(
         found[path] = scope
     entered = {machine.root.name}
     repeated: set[str] = set()
-    scopes = {path: found[path] for path, _ in containers(machine.root)}
+    scopes = {path: found[path] for path, _ in every}
     for path, scope in scopes.items():
         if path not in entered:
             continue
@@ -164,17 +165,22 @@ def _scope(
     raw = isinstance(container, nodes.Iterator)
     # Of two states of one name (SM106) the first counts, everywhere.
     children = {child.name: child for child in reversed(container.children)}
-    inner_containers = frozenset(name for name, c in children.items() if not isinstance(c, Leaf))
+    scopes = {
+        name: inner.get(f"{path}/{name}")
+        for name, child in children.items()
+        if not isinstance(child, Leaf)
+    }
     for child in reversed(children.values()):
         if child.inputs or raw:
-            reads[child.name] = _reads(child, inner.get(f"{path}/{child.name}"), raw)
-    steps = _steps(path, container, inner, filled=filled)
+            reads[child.name] = _reads(child, scopes.get(child.name), raw)
+    steps = _steps(container, children, scopes, filled=filled)
     order = flow_order(steps)
     reads = {vertex: keys for vertex, keys in reads.items() if keys}
     queried: dict[Vertex, list[str]] = {
         vertex: [key for key in keys if key not in held] for vertex, keys in reads.items()
     }
-    exits = [vertex for vertex in order if isinstance(vertex, tuple) and vertex != START]
+    ends = map(exit_vertex, outcome_names(container))
+    exits = [vertex for vertex in ends if vertex in order]
     unheld = [key for key in outputs if key not in held]
     at_end: dict[Vertex, list[str]] = dict.fromkeys(exits, unheld)
     found = may_be_unset(queried | at_end, steps, order)
@@ -196,8 +202,8 @@ def _scope(
         unset=unset,
         needed=frozenset(needed),
         endings=_with_caught(container, _endings(outputs, at_end, found, steps, order)),
-        inner=inner_containers,
-        again=looping(steps, order) & inner_containers if inner_containers else frozenset(),
+        inner=frozenset(scopes),
+        again=looping(steps, order).intersection(scopes) if scopes else frozenset(),
         filled=filled,
     )
 
@@ -287,57 +293,69 @@ def child_writes(
 
 
 def _steps(
-    path: str, container: Container, inner: Mapping[str, UserdataScope], *, filled: bool
+    container: Container,
+    children: Mapping[str, Node],
+    scopes: Mapping[str, UserdataScope | None],
+    *,
+    filled: bool,
 ) -> KeySteps:
     """The steps of a container; those of a concurrence lead from its start to each child and to
-    each of its outcomes. One that is `filled` has none from its start past its child."""
-    children = {child.name: child for child in reversed(container.children)}
+    each of its outcomes. `scopes`: those of the containers inside. One that is `filled` has no step
+    from its start past its child."""
     raw = isinstance(container, nodes.Iterator)
-    scopes = {
-        name: inner.get(f"{path}/{name}")
-        for name, child in children.items()
-        if not isinstance(child, Leaf)
-    }
 
     def writes(name: str, outcome: str) -> Writes | None:
         return child_writes(children[name], scopes.get(name), outcome, raw=raw)
 
-    found: dict[Vertex, list[KeyStep]] = {}
-    if isinstance(container, Concurrence):
-        for target, written in _concurrence_steps(container, writes):
-            found.setdefault(START, []).append(KeyStep(target, "", written))
-        return {vertex: tuple(steps) for vertex, steps in found.items()}
-    if isinstance(container, nodes.Iterator):
-        for child in container.children[:1]:
-            for outcome, result in stopped_endings(container).items():
-                stopped = writes(child.name, outcome)
-                if stopped is not None and result in outcome_names(container):
-                    step = KeyStep(exit_vertex(result), outcome, stopped)
-                    found.setdefault(child.name, []).append(step)
-    # The others write nothing, whatever their outcome is.
-    writers = {
-        child.name
-        for child in container.children
-        if raw or child.outputs or not isinstance(child, Leaf) or child.open
-    }
-    for edge in edges(container):
-        given: Writes | None = NOTHING
-        if filled and edge.source == START and not isinstance(edge.target, str):
+    found: defaultdict[Vertex, list[KeyStep]] = defaultdict(list)
+    match container:
+        case Concurrence():
+            for target, written in _concurrence_steps(container, writes):
+                found[START].append(KeyStep(target, "", written))
+        case nodes.Iterator():
+            for source, step in _iterator_steps(container, writes, filled=filled):
+                found[source].append(step)
+        case _:
+            # The others write nothing, whatever their outcome is.
+            writers = {
+                child.name
+                for child in container.children
+                if child.outputs or not isinstance(child, Leaf) or child.open
+            }
+            for source, leads, outcome, _, _ in edges(container):
+                given: Writes | None = NOTHING
+                if source in writers:
+                    given = writes(str(source), outcome)
+                if given is not None:
+                    found[source].append(KeyStep(leads, outcome, given))
+    return {vertex: tuple(steps) for vertex, steps in found.items()}
+
+
+def _iterator_steps(
+    container: nodes.Iterator, writes: Callable[[str, str], Writes | None], *, filled: bool
+) -> Iterator[tuple[Vertex, KeyStep]]:
+    """The steps of an iterator, each with the vertex that it leads from: first those after a
+    request to stop. The step to its child sets the item."""
+    for child in container.children[:1]:
+        for outcome, result in stopped_endings(container).items():
+            stopped = writes(child.name, outcome)
+            if stopped is not None and result in outcome_names(container):
+                yield child.name, KeyStep(exit_vertex(result), outcome, stopped)
+    item = frozenset([container.item_key])
+    for source, target, outcome, _, _ in edges(container):
+        if filled and source == START and not isinstance(target, str):
             continue
-        if isinstance(edge.source, str) and edge.source in writers:
-            given = writes(edge.source, edge.outcome)
+        given = writes(source, outcome) if isinstance(source, str) else NOTHING
         if given is None:
             continue
-        if isinstance(container, nodes.Iterator) and isinstance(edge.target, str):
-            item = frozenset([container.item_key])
+        if isinstance(target, str):
             given = Writes(
                 given.sure | item,
                 given.trusted | item,
                 given.perhaps | item,
                 given.anything or not container.item_key,
             )
-        found.setdefault(edge.source, []).append(KeyStep(edge.target, edge.outcome, given))
-    return {vertex: tuple(steps) for vertex, steps in found.items()}
+        yield source, KeyStep(target, outcome, given)
 
 
 ChildEndings = Mapping[str, Writes]

@@ -75,21 +75,21 @@ def may_be_unset(
     Trusted writes count; with `sure`, only sure writes count.
     """
 
-    def kept(bits: _Bits, writes: Writes) -> tuple[int, int]:
+    def left(bits: _Bits, writes: Writes, unset: int) -> int:
         if sure:
-            return bits.whole & ~bits.mask(writes.sure), 0
-        return 0 if writes.anything else bits.whole & ~bits.mask(writes.trusted), 0
+            return unset & ~bits.mask(writes.sure)
+        return 0 if writes.anything else unset & ~bits.mask(writes.trusted)
 
-    return _some_path(asked, steps, order, kept, from_start=True)
+    return _some_path(asked, steps, order, left, from_start=True)
 
 
 def may_be_set(asked: Asked, steps: KeySteps, order: Order) -> dict[Vertex, tuple[str, ...]]:
     """Of the keys of interest at each vertex, those that some path from the start sets."""
 
-    def added(bits: _Bits, writes: Writes) -> tuple[int, int]:
-        return bits.whole, bits.whole if writes.anything else bits.mask(writes.perhaps)
+    def more(bits: _Bits, writes: Writes, set_: int) -> int:
+        return bits.whole if writes.anything else set_ | bits.mask(writes.perhaps)
 
-    return _some_path(asked, steps, order, added, from_start=False)
+    return _some_path(asked, steps, order, more, from_start=False)
 
 
 class _Bits:
@@ -109,32 +109,27 @@ class _Bits:
         return self._known[keys]
 
 
+Effect: TypeAlias = "Callable[[_Bits, Writes, int], int]"
+"""The bits after a step that writes something, from those before it."""
+
+
 def _some_path(
     asked: Asked,
     steps: KeySteps,
     order: Order,
-    effect: Callable[[_Bits, Writes], tuple[int, int]],
+    effect: Effect,
     *,
     from_start: bool,
 ) -> dict[Vertex, tuple[str, ...]]:
-    """Of the keys of interest at each vertex, those that arrive on some path. `effect` gives the
-    bits that a step keeps and those that it adds; at the start all bits are set or none."""
+    """Of the keys of interest at each vertex, those that arrive on some path; at the start all
+    bits are set or none."""
     here = {vertex: tuple(dict.fromkeys(keys)) for vertex, keys in asked.items() if vertex in order}
-    keys = list(dict.fromkeys(key for several in here.values() for key in several))
+    keys = list(dict.fromkeys([key for several in here.values() for key in several]))
     size = max(1000, CELLS // len(order))
     found: dict[Vertex, list[str]] = {}
     for first in range(0, len(keys), size):
         bits = _Bits(keys[first : first + size])
-        unchanged = (bits.whole, 0)
-        moves = [
-            [
-                (order[to], kept, added)
-                for to, _, writes in steps.get(vertex, ())
-                for kept, added in [unchanged if writes is NOTHING else effect(bits, writes)]
-            ]
-            for vertex in order
-        ]
-        arrived = _spread(bits.whole if from_start else 0, moves)
+        arrived = _spread(bits, bits.whole if from_start else 0, steps, order, effect)
         for vertex, several in here.items():
             mask = arrived[order[vertex]]
             some = [key for key in several if bits.of.get(key, 0) & mask]
@@ -143,25 +138,25 @@ def _some_path(
     return {vertex: tuple(several) for vertex, several in found.items()}
 
 
-Moves: TypeAlias = Sequence[Sequence[tuple[int, int, int]]]
-"""From each vertex, by its number in the order, the numbers of the targets, the bits that stay on
-the way, and those that are added."""
-
-
-def _spread(start: int, moves: Moves) -> Sequence[int]:
-    """The union over all paths of the bits that arrive, by rounds in the order of the flow."""
-    found = [-1] * len(moves)  # not reached yet
+def _spread(
+    bits: _Bits, start: int, steps: KeySteps, order: Order, effect: Effect
+) -> Sequence[int]:
+    """The union over all paths of the bits that arrive, by the numbers of the vertices. Each vertex
+    is visited in the order of the flow, and again after a change by a step backwards."""
+    vertices = list(order)
+    found = [0] * len(vertices)
     found[0] = start
-    todo = [0]
-    waiting = {0}
+    todo = list(range(len(vertices)))  # a heap
+    waiting = set(todo)
     while todo:
         number = heappop(todo)
-        waiting.discard(number)
+        waiting.remove(number)
         here = found[number]
-        for target, kept, added in moves[number]:
+        for following, _, writes in steps.get(vertices[number], ()):
+            target = order[following]
             before = found[target]
-            after = (here & kept) | added | (before if before >= 0 else 0)
-            if before != after:
+            after = before | (here if writes is NOTHING else effect(bits, writes, here))
+            if after != before:
                 found[target] = after
                 if target not in waiting:
                     waiting.add(target)

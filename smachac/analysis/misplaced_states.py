@@ -41,10 +41,8 @@ class Stray(NamedTuple):
     step: Transition
 
 
-def stray_transitions(path: str, container: Container) -> Iterator[Stray]:
+def stray_transitions(path: str, container: Linear) -> Iterator[Stray]:
     """The transitions in a container that lead neither to one of its states nor out of it."""
-    if not isinstance(container, StateMachine | Sequence):
-        return
     names, exits = children_names(container), frozenset(outcome_names(container))
     for child in container.children:
         for step in strays(child, names, exits):

@@ -10,7 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.control_flow import Linear, children_names, is_open
 from smachac.analysis.fixpoint import flow_order, may_be_unset
 from smachac.analysis.unset_reads import Missing
-from smachac.checks.outcomes import unhandled
+from smachac.checks.outcomes import unhandled_in
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Outcome, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails
@@ -38,7 +38,7 @@ def misled_failures(context: Context) -> Mapping[tuple[str, str], Misled]:
         whole = wholes.get(each.scope.path)
         if whole is None:
             continue
-        possible = context.of_container(linear_outcomes, each.scope.path, whole)
+        possible = linear_outcomes(context, each.scope.path, whole)
         if possible is None:
             continue
         unled = [outcome for outcome in whole.outcomes
@@ -69,16 +69,19 @@ def _failures_to_readers(missing: Missing) -> Iterator[Transition]:
                 yield step
 
 
-def linear_outcomes(container: Linear) -> frozenset[str] | None:
-    """The outcomes with which a state machine or sequence can end; None where another fault makes
-    that unknown."""
+def linear_outcomes(context: Context, path: str, whole: Linear) -> frozenset[str] | None:
+    """The outcomes with which a corrected state machine or sequence can end; None where another
+    fault makes that unknown."""
+    if context.of_container(unhandled_in, path, whole):
+        return None
+    return context.of_container(_outcomes_if_handled, path, whole)
+
+
+def _outcomes_if_handled(container: Linear) -> frozenset[str] | None:
+    """The outcomes with which a container can end; None if a transition leads nowhere."""
     names = children_names(container)
     exits = frozenset(outcome_names(container))
-    found: set[str] = set()
-    for child in container.children:
-        if unhandled(child):
-            return None
-        found.update([step.target for step in child.transitions])
+    found = {step.target for child in container.children for step in child.transitions}
     if not found <= names | exits:
         return None
     handled = [

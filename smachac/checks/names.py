@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import count
 from typing import NamedTuple
@@ -94,7 +95,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               transitions: {done: stacked}
     """
     yield from misdeclared(context, "container", "child")
-    lost = context.at_containers(_lost) if context.strays else ()
+    lost = [each for path, container in context.misnamed for each in _lost(path, container)]
     misplaced = [each for each in context.misplaced if not isinstance(each.meant, Concurrence)] \
         if lost else []  # fmt: skip
     for each in misplaced:
@@ -122,17 +123,17 @@ def unknown_target(context: Context) -> Iterator[Finding]:
             yield from _idle_transitions(context, path, container, moved)
 
 
-def _lost(path: str, container: Container) -> Iterator[_Lost]:
+def _lost(path: str, container: Linear) -> Iterator[_Lost]:
     guess: Guesser | None = None
     targets: Mapping[str, MeantTarget] = {}
     copied = copied_name(container)
-    for _, linear, child, step in stray_transitions(path, container):
+    for _, _, child, step in stray_transitions(path, container):
         if guess is None:
-            guess, targets = places_of(container), meant_targets(linear)
+            guess, targets = places_of(container), meant_targets(container)
         if not _was_reported(step) and step.target != copied:  # SM106
             meant = targets.get(step.target)
             name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
-            yield _Lost(path, linear, child, step, name, guess.sure(step.target), paired)
+            yield _Lost(path, container, child, step, name, guess.sure(step.target), paired)
 
 
 def copied_name(container: Container) -> str | None:
@@ -343,7 +344,8 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               transitions: {done: picked, slipped: lost}
     """
     yield from misdeclared(context, "interface", "state")
-    found = context.at_containers(_unknown_outcomes)
+    misnamed = frozenset([path for path, _ in context.misnamed])
+    found = context.at_containers(_unknown_outcomes, misnamed)
     loops: set[str] = set()
     if any(each.span.text == PREEMPTED for each in found):
         # The states in which `for_each` is probably missing, which SM301 reports.
@@ -351,10 +353,13 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
     yield from (each for each in found if each.span.text != PREEMPTED or each.node not in loops)
 
 
-def _unknown_outcomes(path: str, container: Container) -> Iterator[Finding]:
+def _unknown_outcomes(
+    path: str, container: Container, misnamed: AbstractSet[str]
+) -> Iterator[Finding]:
+    """SM102 in a container; `misnamed` has the paths of those with transitions that have faults."""
     if isinstance(container, nodes.Iterator):
         yield from _unknown_loops(path, container)
-    elif not isinstance(container, Concurrence):
+    elif path in misnamed and not isinstance(container, Concurrence):
         for child in container.children:
             if unknown := unknown_outcomes(child):
                 yield from _unknown_steps(path, child, unknown)

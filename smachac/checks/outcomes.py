@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
@@ -28,7 +28,6 @@ from smachac.ir.nodes import (
     Node,
     Outcome,
     OutcomeRule,
-    StateMachine,
     Transition,
 )
 from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, successes
@@ -242,30 +241,35 @@ def unhandled_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped, blocked]
               transitions: {done: picked, slipped: lost, blocked: lost}
     """
-    found = context.at_containers(_unhandled_outcomes)
+    found = [
+        each for path, container in context.linear
+        for each in _unhandled_outcomes(
+            path, container, context.of_container(unhandled_in, path, container)
+        )
+    ]  # fmt: skip
     moved = {each.path for each in context.misplaced} if found else ()
     yield from (each for each in found if each.node not in moved)
 
 
-def _unhandled_outcomes(path: str, container: Container) -> Iterator[Finding]:
-    if isinstance(container, StateMachine | nodes.Sequence):
-        all_left = [(child, unhandled(child)) for child in container.children]
-        lacking = any(left for _, left in all_left)
-        free = unentered(container) if lacking else []
-        order = {child.name: at for at, child in enumerate(container.children)} if lacking else {}
-        for child, left in all_left:
-            meant = meant_ending(child) if isinstance(child, nodes.Iterator) and left else None
-            if meant is not None and meant.result in left:
-                left.remove(meant.result)
-                yield _misnamed_ending(path, meant)
-            if not left:
-                continue
-            targets = _targets(container, child, left, free, order)
-            if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
-                for outcome in left:
-                    yield _unhandled(path, container, child, outcome, targets[outcome.name])
-            else:
-                yield _several_unhandled(path, container, child, targets)
+def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Iterator[Finding]:
+    if not lacking:
+        return
+    free = unentered(container)
+    order = {child.name: at for at, child in enumerate(container.children)}
+    for child, outcomes in lacking:
+        left = [*outcomes]
+        meant = meant_ending(child) if isinstance(child, nodes.Iterator) else None
+        if meant is not None and meant.result in left:
+            left.remove(meant.result)
+            yield _misnamed_ending(path, meant)
+        if not left:
+            continue
+        targets = _targets(container, child, left, free, order)
+        if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
+            for outcome in left:
+                yield _unhandled(path, container, child, outcome, targets[outcome.name])
+        else:
+            yield _several_unhandled(path, container, child, targets)
 
 
 def unentered(container: Linear) -> list[str]:
@@ -397,6 +401,15 @@ def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
         ),
         node=f"{path}/{name}",
     )
+
+
+Unhandled: TypeAlias = "Sequence[tuple[Node, Sequence[Outcome]]]"
+"""The states of a container that have outcomes without a transition, with these."""
+
+
+def unhandled_in(container: Linear) -> Unhandled:
+    """The states of a container that have outcomes without a transition."""
+    return tuple([(child, left) for child in container.children if (left := unhandled(child))])
 
 
 def unhandled(child: Node) -> list[Outcome]:

@@ -476,7 +476,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
     moved: set[tuple[str, str]] | None = None
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
-        possible = context.of_container(_possible_outcomes, path, whole)
+        possible = _possible_outcomes(context, path, whole)
         # Where SM209 is reported, a state does not lead `preempted` out of the container.
         stops = path in again or ends_preempted(container)
         known = {container.catches, PREEMPTED if stops else ""}
@@ -493,21 +493,25 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
                     yield _impossible(path, container, outcome)
 
 
-def _possible_outcomes(container: Container) -> frozenset[str] | None:
+def _possible_outcomes(context: Context, path: str, container: Container) -> frozenset[str] | None:
     """The outcomes with which a corrected container can end; None where another fault makes that
     unknown."""
     if not container.children:
         return None
     match container:
         case StateMachine() | Sequence():
-            return linear_outcomes(container)
+            return linear_outcomes(context, path, container)
         case Concurrence():
-            results = {entry.outcome for entry in container.rules}
-            results.add(container.default_outcome)
-            return _if_declared(container, results)
+            return context.of_container(_concurrence_outcomes, path, container)
         case nodes.Iterator():
-            return _iterator_outcomes(container)
+            return context.of_container(_iterator_outcomes, path, container)
     return None
+
+
+def _concurrence_outcomes(container: Concurrence) -> frozenset[str] | None:
+    results = {entry.outcome for entry in container.rules}
+    results.add(container.default_outcome)
+    return _if_declared(container, results)
 
 
 def _if_declared(container: Container, results: set[str]) -> frozenset[str] | None:

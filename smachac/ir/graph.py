@@ -89,17 +89,29 @@ def is_unread(child: Node) -> bool:
     return isinstance(child, Leaf) and child.open and not child.type
 
 
+def _targets_inside(child: Node, names: frozenset[str]) -> list[str]:
+    """The states of its container, which have these names, to which a child can lead."""
+    declared = None if _is_open(child) else {outcome.name for outcome in child.outcomes}
+    return [  # `leads_to_child` in place, as every check of a state comes here
+        step.target
+        for step in child.transitions
+        if step.target in names
+        and step.origin != "implicit"
+        and (declared is None or step.outcome in declared)
+    ]
+
+
 def _transition_edges(container: nodes.StateMachine | nodes.Sequence) -> Iterator[Edge]:
-    names = frozenset(child.name for child in container.children)
-    exits = frozenset(outcome_names(container))
+    names = frozenset([child.name for child in container.children])
+    exits = {outcome.name: exit_vertex(outcome.name) for outcome in container.outcomes}
     if container.initial in names:
         yield Edge(START, container.initial, "", "enter")
     for child in container.children:
         for step in _live_transitions(child):
-            if leads_to_child(step, names):
-                yield Edge(child.name, step.target, step.outcome, step.origin, step)
-            elif step.target in exits:
-                target = exit_vertex(step.target)
+            target: Vertex | None = step.target
+            if not leads_to_child(step, names):
+                target = exits.get(step.target)
+            if target is not None:
                 yield Edge(child.name, target, step.outcome, step.origin, step)
 
 
@@ -177,19 +189,29 @@ def reachable(container: Container) -> frozenset[str]:
     An initial state that does not exist hides nothing, nor does a state that could not be read.
     Linear in the size of the container.
     """
-    names = [child.name for child in container.children]
+    # By hand, because every check comes here: networkx takes as long for 10,000 states (60 ms of
+    # CPU time), but its import adds 130 ms to a check of a short script, which takes 310 ms.
+    names = frozenset([child.name for child in container.children])
     if not isinstance(container, (nodes.StateMachine, nodes.Sequence)):
-        return frozenset(names)
+        return names
     if container.initial not in names:
-        return frozenset(names)
-    children = frozenset(names)
-    followers: dict[Vertex, list[Vertex]] = {}
-    for child in container.children:  # two states can have one name (SM106)
-        ahead = [each.target for each in _live_transitions(child) if leads_to_child(each, children)]
-        followers.setdefault(child.name, []).extend(ahead)
-    found = _children_from([container.initial], followers)
-    unread = any(child.name in found and is_unread(child) for child in container.children)
-    return frozenset(names) if unread else found
+        return names
+    found = {container.initial}
+    waiting: dict[str, list[Node]] = {}  # not entered yet; two states can have one name (SM106)
+    for child in container.children:
+        if child.name not in found:
+            waiting.setdefault(child.name, []).append(child)
+            continue
+        entered = [child]
+        while entered:
+            state = entered.pop()
+            if is_unread(state):
+                return names
+            for target in _targets_inside(state, names):
+                if target not in found:
+                    found.add(target)
+                    entered += waiting.pop(target, ())
+    return frozenset(found)
 
 
 def can_end(container: Container) -> frozenset[str]:
@@ -201,34 +223,30 @@ def can_end(container: Container) -> frozenset[str]:
     if not isinstance(container, (nodes.StateMachine, nodes.Sequence)):
         ending = (child for child in container.children if child.outcomes or _is_open(child))
         return frozenset(child.name for child in ending)
-    names = frozenset(child.name for child in container.children)
-    before: dict[Vertex, list[Vertex]] = {}
-    leaving: list[Vertex] = []
-    for child in container.children:
-        steps = _live_transitions(child)
-        handled = {step.outcome for step in steps}
-        if not handled.issuperset(outcome_names(child)) or (_is_open(child) and not steps):
-            leaving.append(child.name)
-        for step in steps:
-            if leads_to_child(step, names):
-                before.setdefault(step.target, []).append(child.name)
-            else:
-                leaving.append(child.name)
-    return _children_from(leaving, before)
+    names = frozenset([child.name for child in container.children])
+    found: set[str] = set()
+    waiting: dict[str, list[str]] = {}  # by the name of a state, those that lead to it
+    for child in reversed(container.children):  # most transitions lead to later states
+        targets = _targets_inside(child, names)
+        if found.isdisjoint(targets) and not _leads_out(child, targets):
+            for target in targets:
+                waiting.setdefault(target, []).append(child.name)
+            continue
+        ended = [child.name]
+        while ended:
+            name = ended.pop()
+            if name not in found:
+                found.add(name)
+                ended += waiting.pop(name, ())
+    return frozenset(found)
 
 
-def _children_from(places: list[Vertex], follow: dict[Vertex, list[Vertex]]) -> frozenset[str]:
-    """The children that can be reached from some places."""
-    # By hand, because every check comes here: networkx takes as long for 10,000 states (60 ms of
-    # CPU time), but its import adds 130 ms to a check of a short script, which takes 310 ms.
-    seen = set(places)
-    todo = list(places)
-    while todo:
-        for place in follow.get(todo.pop(), ()):
-            if place not in seen:
-                seen.add(place)
-                todo.append(place)
-    return frozenset(place for place in seen if isinstance(place, str))
+def _leads_out(child: Node, inside: Sequence[str]) -> bool:
+    """Whether a child leads out of its container, or to nowhere. `inside`: its targets in it."""
+    steps = _live_transitions(child)
+    if len(inside) < len(steps) or (_is_open(child) and not steps):
+        return True
+    return not {step.outcome for step in steps}.issuperset(outcome_names(child))
 
 
 Event: TypeAlias = "tuple[str, str]"
