@@ -344,6 +344,8 @@ def inside(path: str, node: Node, known: Mapping[str, Accesses]) -> Accesses:
 def around(node: Node, own: Accesses) -> Accesses:
     """The accesses to a state's own userdata that are also accesses to the userdata around it."""
     if isinstance(node, Leaf):
+        if not node.remaps:
+            return own
         return Accesses(_renamed(node, own.reads), _renamed(node, own.writes))
     inputs = {key.name for key in node.inputs}
     held = {*inputs, *(preset.key for preset in node.userdata)}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
@@ -17,6 +17,7 @@ from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
 from smachac.analysis.filled_lists import filled_loops
 from smachac.analysis.item_reads import ItemRead, item_reads
+from smachac.analysis.kept_facts import Fact, Found, Preorder, found_at
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
 from smachac.analysis.misplaced_states import (
@@ -65,15 +66,19 @@ class Context:
         self._scopes = previous.corrected_flow.scopes if previous is not None else {}
         self._known = previous._facts if previous is not None else {}
         self._facts: Facts = {}
+        self._found_before = previous._found if previous is not None else {}
+        self._found: dict[Fact, Found] = {}
 
     def of_container(self, fact: Callable[[C], T], path: str, container: C) -> T:
         """A fact about one container or its userdata scope, which is a function of nothing else;
         computed once."""
         which = fact, path
-        found = self._facts.get(which) or self._known.get(which)
+        found = self._facts.get(which)
         if found is None or found[0] is not container:
-            found = container, fact(container)
-        self._facts[which] = found
+            found = self._known.get(which)
+            if found is None or found[0] is not container:
+                found = container, fact(container)
+            self._facts[which] = found
         return cast(T, found[1])
 
     def at_states(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
@@ -84,41 +89,19 @@ class Context:
         uses only what belongs to the state types below the node. So the result for a container and
         all below it holds for the next machine too, if the container is the same object.
         """
-        return self._found_at(self._with_values, self._ends_with_values, fact, given)
+        return self._found_at(self._with_values, fact, given)
 
     def at_containers(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
         """What a function finds at each container, in the order of `containers`: see `at_states`.
         It may use the children as well."""
-        return self._found_at(self.containers, self._ends_of_containers, fact, given)
+        return self._found_at(self._containers, fact, given)
 
     def _found_at(
-        self,
-        nodes: Sequence[tuple[str, Node]],
-        ends: Sequence[int],
-        fact: Callable[..., Iterable[T]],
-        given: tuple[object, ...],
+        self, states: Preorder, fact: Callable[..., Iterable[T]], given: tuple[object, ...]
     ) -> tuple[T, ...]:
-        """`ends`: for each of the nodes, the index after the last one below it."""
-        found: list[T] = []
-        begun: list[tuple[int, str, Node, int]] = []
-        at = 0
-        while at < len(nodes):
-            path, node = nodes[at]
-            if isinstance(node, Leaf):
-                found.extend(fact(path, node, *given))
-                at += 1
-            elif (known := self._known.get((fact, path))) is not None and known[0] is node:
-                self._facts[fact, path] = known
-                found.extend(cast("tuple[T, ...]", known[1]))
-                at = ends[at]
-            else:
-                begun.append((ends[at], path, node, len(found)))
-                found.extend(fact(path, node, *given))
-                at += 1
-            while begun and begun[-1][0] == at:  # all below this container has been visited
-                _, path, node, begin = begun.pop()
-                self._facts[fact, path] = node, tuple(found[begin:])
-        return tuple(found)
+        if fact not in self._found:
+            self._found[fact] = found_at(states, fact, given, self._found_before.get(fact))
+        return cast("tuple[T, ...]", self._found[fact].things)
 
     @cached_property
     def states(self) -> tuple[tuple[str, Node], ...]:
@@ -156,26 +139,12 @@ class Context:
         )
 
     @cached_property
-    def _with_values(self) -> Sequence[tuple[str, Node]]:
-        return [each for each in self.states if _has_values(each[1])]
+    def _with_values(self) -> Preorder:
+        return Preorder([each for each in self.states if _has_values(each[1])], _has_values)
 
     @cached_property
-    def _ends_with_values(self) -> Sequence[int]:
-        return _subtree_ends(
-            [
-                0 if isinstance(node, Leaf) else sum(map(_has_values, node.children))
-                for _, node in self._with_values
-            ]
-        )
-
-    @cached_property
-    def _ends_of_containers(self) -> Sequence[int]:
-        return _subtree_ends(
-            [
-                sum(not isinstance(child, Leaf) for child in container.children)
-                for _, container in self.containers
-            ]
-        )
+    def _containers(self) -> Preorder:
+        return Preorder(self.containers, _is_container)
 
     @cached_property
     def linear(self) -> tuple[tuple[str, Linear], ...]:
@@ -247,7 +216,7 @@ class Context:
     @cached_property
     def expression_faults(self) -> list[tuple[ExpressionSite, Fault]]:
         """The type errors in the code of the script."""
-        sites = expression_sites(self._with_values, self.types, self.machine.state_types)
+        sites = expression_sites(self._with_values.nodes, self.types, self.machine.state_types)
         return [(site, fault) for site in sites for fault in site.faults()]
 
     @cached_property
@@ -373,21 +342,6 @@ class Context:
         return tuple(failures(self.states, self.routes, self.plain_paths))
 
 
-def _subtree_ends(counts: Sequence[int]) -> Sequence[int]:
-    """For each node of a tree, parents before children, the index after the last node below it.
-    `counts` are the numbers of children."""
-    ends = [0] * len(counts)
-    following: list[int] = []  # the ends of the siblings that follow, the next one last
-    for at in range(len(counts) - 1, -1, -1):
-        end = at + 1
-        if counts[at]:
-            end = following[-counts[at]]
-            del following[-counts[at] :]
-        ends[at] = end
-        following.append(end)
-    return ends
-
-
 def _slots_of(
     path: str, node: Node, types: Mapping[str, StateType]
 ) -> Iterator[tuple[str, Node, CodeSlot]]:
@@ -396,3 +350,7 @@ def _slots_of(
 
 def _has_values(node: Node) -> bool:
     return not isinstance(node, Leaf) or bool(node.variables)
+
+
+def _is_container(node: Node) -> bool:
+    return not isinstance(node, Leaf)

@@ -62,7 +62,7 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
     one, first of those to which nothing leads; or the only one to which nothing leads. None for a
     state that is missing (`_missing_states`)."""
     names, exits = children_names(container), frozenset(outcome_names(container))
-    lost = [step.target for child in container.children for step in strays(child, names, exits)]
+    lost = [step.target for step in strays(container.children, names, exits)]
     if not lost:
         return {}
     led = {step.target for child in container.children for step in child.transitions
@@ -105,10 +105,13 @@ def _longer_name(target: str, names: Collection[str]) -> str | None:
     return found[0] if len(words_of(found[0]) - words) == 1 else None
 
 
-def strays(child: Node, names: frozenset[str], exits: frozenset[str]) -> list[Transition]:
-    """The transitions of a child that lead neither to one of `names` nor out by one of `exits`."""
-    return [  # `leads_to_child` in place: most checks of a state come here
+def strays(
+    children: Iterable[Node], names: frozenset[str], exits: frozenset[str]
+) -> list[Transition]:
+    """The transitions of children that lead neither to one of `names` nor out by one of `exits`."""
+    return [  # `leads_to_child` in place: the check of every state comes here
         step
+        for child in children
         for step in child.transitions
         if step.target not in exits and (step.target not in names or step.origin == "implicit")
     ]
@@ -221,8 +224,8 @@ def corrected(container: Linear) -> Linear:
     """
     names = children_names(container)
     exits = frozenset(outcome_names(container))
-    if not any(unknown_outcomes(child) or strays(child, names, exits)
-               for child in container.children):  # fmt: skip
+    has_strays = bool(strays(container.children, names, exits))
+    if not has_strays and not any(map(unknown_outcomes, container.children)):
         return container
     # An unlike name can also be a missing state: then nothing follows from it.
     meant = {name: each for name, each in meant_targets(container).items() if not each.paired}
@@ -233,7 +236,7 @@ def corrected(container: Linear) -> Linear:
 
     def child(node: Node) -> Node:
         unknown = unknown_outcomes(node)
-        lost = strays(node, names, exits)
+        lost = strays([node], names, exits)
         if not unknown and not lost:
             return node
         wrong = {step.outcome: meant for step, meant in unknown}
@@ -264,7 +267,7 @@ def _missing_states(
     meant: Mapping[str, MeantTarget],
 ) -> list[Leaf]:
     """Open states for the unknown targets of transitions in a container of states in upper case."""
-    lost = [step for child in container.children for step in strays(child, names, exits)]
+    lost = strays(container.children, names, exits)
     if not lost or not all(name.isupper() for name in names):
         return []
     spans = {step.target: step.span for step in reversed(lost)}
@@ -285,6 +288,8 @@ def outline(
     An open leaf can have any outcome, also one that its container has and no transition handles.
     `known` is the corrected container, if it has been computed.
     """
+    if not endless and not any(map(is_open, container.children)):
+        return known if known is not None else corrected(container)
     exits = outcome_names(container)
 
     def child(node: Node) -> Node:
@@ -313,6 +318,8 @@ def endless_states(states: Sequence[tuple[str, Node]]) -> frozenset[str]:
     """
     found: set[str] = set()
     for path, node in reversed(states):
+        if node.outcomes and isinstance(node, Leaf):
+            continue  # most states
         if _never_ends(path, node, found):
             found.add(path)
     return frozenset(found)

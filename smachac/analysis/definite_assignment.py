@@ -35,7 +35,7 @@ from smachac.analysis.fixpoint import (
     may_be_unset,
 )
 from smachac.ir import nodes
-from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings
+from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings, transitions
 from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node, OutcomeRule
 from smachac.ir.traversal import PREEMPTED, containers, ends_preempted, outcome_names, remapping
 
@@ -223,7 +223,8 @@ def _endings(
     if not outputs:
         return {vertex[1]: NOTHING for vertex in unheld}
     without_sure = without_trusted
-    if any(_is_trusted(each.writes) for leading in steps.values() for each in leading):
+    written = [each.writes for leading in steps.values() for each in leading]
+    if any(_is_trusted(each) for each in written if each is not NOTHING):
         without_sure = may_be_unset(unheld, steps, order, sure=True)
     perhaps = may_be_set(unheld, steps, order)
 
@@ -243,7 +244,7 @@ def _endings(
 
 def _is_trusted(writes: Writes) -> bool:
     """Whether some of these writes are trusted, but not sure."""
-    return writes is not NOTHING and (writes.anything or writes.sure != writes.trusted)
+    return writes.anything or writes.sure != writes.trusted
 
 
 def _with_caught(container: Container, found: Mapping[str, Writes]) -> Mapping[str, Writes]:
@@ -313,8 +314,8 @@ def _steps(
             for target, written in _concurrence_steps(container, writes):
                 found[START].append(KeyStep(target, "", written))
         case nodes.Iterator():
-            for source, step in _iterator_steps(container, writes, filled=filled):
-                found[source].append(step)
+            for vertex, made in _iterator_steps(container, writes, filled=filled):
+                found[vertex].append(made)
         case _:
             # The others write nothing, whatever their outcome is.
             writers = {
@@ -322,12 +323,12 @@ def _steps(
                 for child in container.children
                 if child.outputs or not isinstance(child, Leaf) or child.open
             }
-            for source, leads, outcome, _, _ in edges(container):
-                given: Writes | None = NOTHING
-                if source in writers:
-                    given = writes(str(source), outcome)
+            if container.initial in children:
+                found[START].append(KeyStep(container.initial, "", NOTHING))
+            for source, leads, step in transitions(container):
+                given = writes(source, step.outcome) if source in writers else NOTHING
                 if given is not None:
-                    found[source].append(KeyStep(leads, outcome, given))
+                    found[source].append(KeyStep(leads, step.outcome, given))
     return {vertex: tuple(steps) for vertex, steps in found.items()}
 
 

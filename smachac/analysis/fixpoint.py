@@ -48,7 +48,9 @@ def flow_order(steps: KeySteps) -> Order:
 def looping(steps: KeySteps, order: Order) -> frozenset[Vertex]:
     """The vertices that a path can come back to."""
     backwards = any(
-        order[step.target] <= order[vertex] for vertex in order for step in steps.get(vertex, ())
+        order[step.target] <= number
+        for vertex, number in order.items()
+        for step in steps.get(vertex, ())
     )
     if not backwards:
         return frozenset()

@@ -66,7 +66,7 @@ def _candidates(scope: UserdataScope) -> dict[str, list[tuple[Leaf, Key]]]:
     writers: dict[str, int] = {}
     found: dict[str, list[tuple[Leaf, Key]]] = {}
     for child in scope.children.values():
-        names = remapping(child)
+        names = remapping(child) if child.outputs else {}
         for key in child.outputs:
             name = names.get(key.name, key.name)
             writers[name] = writers.get(name, 0) + 1

@@ -45,7 +45,7 @@ def stray_transitions(path: str, container: Linear) -> Iterator[Stray]:
     """The transitions in a container that lead neither to one of its states nor out of it."""
     names, exits = children_names(container), frozenset(outcome_names(container))
     for child in container.children:
-        for step in strays(child, names, exits):
+        for step in strays([child], names, exits):
             yield Stray(path, container, child, step)
 
 

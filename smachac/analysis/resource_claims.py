@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from smachac.analysis.accesses import Accesses, inside
-from smachac.ir.nodes import Container, Data, Node
+from smachac.ir.nodes import Container, Data, Leaf, Node
 from smachac.ir.traversal import remapping
 
 Held = dict[str, dict[str, Node]]
@@ -35,13 +35,15 @@ def claims(
     values = _constants(containers, known) if _have_keys(states) else {}
     found: Held = {path: {} for path, _ in containers[:1]}
     for path, container in containers:
+        keys = values.get(path, {})
         for child in container.children:
-            keys = values.get(path, {})
-            own = [_filled(claim, child, keys) for claim in child.claims]
+            own = [_filled(claim, child, keys) for claim in child.claims] if child.claims else ()
             found.setdefault(f"{path}/{child.name}", dict.fromkeys(own, child))
     for path, container in reversed(containers):
         held = found[path]
         for child in container.children:
+            if isinstance(child, Leaf) and not child.claims:
+                continue
             for claim, origin in found[f"{path}/{child.name}"].items():
                 held.setdefault(claim, origin)
     return found

@@ -36,7 +36,7 @@ from smachac.ir import nodes
 from smachac.ir.graph import START, edges, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD, PREEMPTED, fails, successes
-from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.ir.traversal import outcome_names
 
 MOST_VISITS = 1_000_000
 """Limit on the states that the search for ways back visits in one container. After it, a finding
@@ -148,7 +148,7 @@ def _linear(
             here = f"{path}/{child.name}"
             answers, only = found.answers.get(here, NO_ANSWERS), found.only.get(here, ())
         for step in child.transitions:
-            beside = leads_to_child(step, names)
+            beside = step.target in names and step.origin != "implicit"  # `leads_to_child`
             if step.outcome in answers:
                 stop = StopStep(path, container, child, step, answers[step.outcome])
                 (onward if beside else leaving).append(stop)

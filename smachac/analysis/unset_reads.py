@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal, NamedTuple
 
+from smachac.analysis.accesses import NOTHING
 from smachac.analysis.def_use import Reached, Search, around, place_of, search, way_to
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope, child_writes
 from smachac.diagnostics.diagnostic import PathStep
@@ -123,9 +124,14 @@ def provided_keys(scope: UserdataScope) -> Provided:
         if child.outputs:
             names = remapping(child)
             keys.update(names.get(each.name, each.name) for each in child.outputs)
-    leading = [step for steps in scope.steps.values() for step in steps]
-    keys.update(key for step in leading for key in step.writes.perhaps)
-    return Provided(frozenset(keys), any(step.writes.anything for step in leading))
+    written = [
+        step.writes
+        for steps in scope.steps.values()
+        for step in steps
+        if step.writes is not NOTHING
+    ]
+    keys.update(*[writes.perhaps for writes in written])
+    return Provided(frozenset(keys), any(writes.anything for writes in written))
 
 
 def _outside(flow: DataFlow, path: str, key: str, provided: Callable[[str], Provided]) -> str:

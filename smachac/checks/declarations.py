@@ -120,9 +120,6 @@ def dead_key(context: Context) -> Iterator[Finding]:
             continue
         read = context.of_container(used_in, scope.path, scope)
         yield from loops_over_names_of_lists(scope, read)
-        misplaced = _misplaced_keys(container)
-        untyped = any(map(lacks_type_key, container.children))
-        types = (TYPE_KEY, type_key_meant(container)) if untyped else ()
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
                 continue
@@ -139,9 +136,9 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 continue  # SM301 or SM302 is about the same slip
             if any(_remaps_unknown(child, key) for child in container.children):
                 continue  # SM302
-            if key in types:
+            if _is_type_key(container, key):
                 continue  # SM515
-            if key.rpartition("_")[2] in misplaced or key in misplaced:
+            if not {key.rpartition("_")[2], key}.isdisjoint(_misplaced_keys(container)):
                 continue  # SM003 is about the same value
             # The userdata of the machine can be read after the run.
             loop = loop_over_the_word(container, key)
@@ -160,6 +157,13 @@ def dead_key(context: Context) -> Iterator[Finding]:
             if remap.to in read or (scope.path, remap.to) in reported:
                 continue
             yield _lost_result(scope, child, remap, meant)
+
+
+def _is_type_key(container: Container, key: str) -> bool:
+    """Whether a key probably holds the type of a message that a state reads without its type."""
+    if not any(map(lacks_type_key, container.children)):
+        return False
+    return key in (TYPE_KEY, type_key_meant(container))
 
 
 def _unread_key(
@@ -305,7 +309,7 @@ def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ..
     ]
     seen = {preset.key for preset in scope.container.userdata}
     for child in scope.container.children:
-        names = remapping(child)
+        names = remapping(child) if child.outputs else {}
         for each in child.outputs:
             key = names.get(each.name, each.name)
             if each.span == child.span != NOWHERE:
@@ -592,8 +596,9 @@ def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Fin
     fields = [each for each in known if each is not None]
     if len(fields) == len(known):
         used = {key for each in fields for key in (*each.read, *each.tested)}
-        used |= _meant_keys((key for key, _ in undeclared_reads(leaf)), leaf.inputs)
-        used |= {lone_input(leaf, container) or ""}  # SM310
+        undeclared = [key for key, _ in undeclared_reads(leaf)]
+        used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
+        used |= {(lone_input(leaf, container) if undeclared else None) or ""}  # SM310
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         if any(key.name not in used for key in arguments):
             used |= {name.id for code in called for name in free_in(code.text)}  # SM019

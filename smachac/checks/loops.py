@@ -215,7 +215,11 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
           - OPEN: {template: ScriptedState, outcomes: [done], transitions: {done: PICK}}
     """
     endless = context.endless
-    looping = [(path, each) for path, each in context.linear if _goes_back(each)]
+    looping = [
+        (path, each)
+        for path, each in context.linear
+        if context.of_container(_goes_back, path, each)
+    ]
     waiting = _waiting(context) if looping else frozenset()
     for path, container in looping:
         forever = isinstance(container, StateMachine) and container.forever
@@ -237,11 +241,11 @@ def unbounded_loop(context: Context) -> Iterator[Finding]:
 
 def _goes_back(container: Linear) -> bool:
     """Whether a transition leads to its own state or to one above it, as every loop needs."""
-    order = {child.name: number for number, child in enumerate(container.children)}
-    for number, child in enumerate(container.children):
-        for step in child.transitions:
-            if order.get(step.target, len(order)) <= number:
-                return True
+    above: set[str] = set()
+    for child in container.children:
+        above.add(child.name)
+        if not above.isdisjoint([step.target for step in child.transitions]):
+            return True
     return False
 
 
@@ -480,7 +484,9 @@ def unchanging_condition(context: Context) -> Iterator[Finding]:
               transitions: {again: PICK, enough: lost}
     """
     for (path, container), whole in zip(context.linear, context.corrected, strict=True):
-        deciding = list(filter(_is_condition, container.children)) if _goes_back(container) else []
+        if not context.of_container(_goes_back, path, container):
+            continue
+        deciding = list(filter(_is_condition, container.children))
         if not deciding:
             continue
         flow = _unpreempted(container)

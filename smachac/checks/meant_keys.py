@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import is_open
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import misfit
@@ -213,12 +212,13 @@ def misnamed_finding(found: Misnamed, path: str, where: str) -> Finding:
 def sees_everything(scope: UserdataScope) -> bool:
     """Whether a state in a container can read any key."""
     raw = isinstance(scope.container, nodes.Iterator)
-    return any(
-        is_open(child)
-        or (raw and isinstance(child, Leaf))
-        or (isinstance(child, nodes.Iterator) and not child.item_key)
-        for child in scope.container.children
-    )
+    for child in scope.container.children:
+        if isinstance(child, Leaf):
+            if raw or child.open:
+                return True
+        elif isinstance(child, nodes.Iterator) and not child.item_key:
+            return True
+    return False
 
 
 def used_in(scope: UserdataScope) -> set[str]:

@@ -34,6 +34,7 @@ from smachac.checks.message_types import (
     call_of,
     meant_type,
     missing_types,
+    names_type,
     no_type,
     type_in_place_of_part,
     word_in,
@@ -166,8 +167,9 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     """
     found, missing = context.machine.definitions, context.machine.missing_definitions
     for path, node in context.leaves_with_variables:
-        yield from missing_types(path, node, missing)
-        yield from type_in_place_of_part(path, node)
+        if names_type(node):
+            yield from missing_types(path, node, missing)
+            yield from type_in_place_of_part(path, node)
         yield from _wrong_messages(context, path, node, found, missing)
         if not found:
             continue
@@ -229,7 +231,8 @@ def untyped_message(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: done, aborted: failed}
     """
     for path, node in context.leaves_with_variables:
-        yield from _null_types(path, node)
+        if names_type(node):
+            yield from _null_types(path, node)
         yield from _untyped_mappings(context, path, node)
 
 

@@ -40,6 +40,11 @@ def _other_kind(parts: Sequence[str], kind: DefinitionKind) -> DefinitionKind | 
     return next((each for each in KIND_WORDS if each == parts[1] and each != kind), None)
 
 
+def names_type(leaf: Leaf) -> bool:
+    """Whether a state names the type of a message, a service or an action."""
+    return not DEFINITION_KINDS.keys().isdisjoint([held.role for held in leaf.variables])
+
+
 def missing_types(path: str, leaf: Leaf, missing: MissingDefinitions) -> Iterator[Finding]:
     """Types that a state names and that their packages do not have."""
     for role, kind in DEFINITION_KINDS.items():

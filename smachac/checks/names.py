@@ -144,8 +144,7 @@ def copied_name(container: Container) -> str | None:
     if not is_linear or len(container.children) - len(names) != 1:
         return None
     exits = frozenset(outcome_names(container))
-    steps = [step for child in container.children for step in strays(child, names, exits)]
-    targets = {step.target for step in steps}
+    targets = {step.target for step in strays(container.children, names, exits)}
     target = targets.pop() if len(targets) == 1 else None
     return target if target and places_of(container).sure(target) is None else None
 

@@ -523,9 +523,7 @@ def implicit_exit(context: Context) -> Iterator[Finding]:
               transitions: {done: placed}
     """
     for path, container in context.linear:
-        for child in container.children:
-            if container.sugar:
-                continue
+        for child in container.children if not container.sugar else ():
             steps = [step for step in child.transitions if step.origin == "implicit"]
             if steps:
                 yield from _implicit(path, container, child, steps)

@@ -156,7 +156,7 @@ def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
     for path, container in context.linear:
         names, exits = children_names(container), frozenset(outcome_names(container))
         for child in container.children:
-            ends = [step.outcome for step in strays(child, names, exits)]
+            ends = [step.outcome for step in strays([child], names, exits)]
             ends += [each.name for each in unhandled(child)]
             if unknown_outcomes(child):  # SM102: a transition of these is probably meant
                 handled = {step.outcome for step in child.transitions if step.origin == "written"}

@@ -95,14 +95,14 @@ def no_timeout(context: Context) -> Iterator[Finding]:
     stoppable = stoppable_branches(context.containers, context.endings)
     limits = _time_limits(context.machine.state_types)
     for path, node in context.states:
-        outer = around.get(path)
         if not isinstance(node, Leaf):
-            outer = node if isinstance(node, Concurrence) else outer
+            outer = node if isinstance(node, Concurrence) else around.get(path)
             if outer is not None:
                 around.update((f"{path}/{child.name}", outer) for child in node.children)
-        elif path in watched:
-            continue  # SM407
-        elif node.blocking and not _is_limited(node, limits.get(node.type, ())):
+        elif not node.blocking or path in watched:
+            continue  # SM407 is about the watched ones
+        elif not _is_limited(node, limits.get(node.type, ())):
+            outer = around.get(path)
             answers = PREEMPTED in outcome_names(node)
             timed = outer is not None and outer.sugar == "timeout"
             if (answers and branch_around(path, stoppable)) or (

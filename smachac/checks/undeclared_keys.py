@@ -240,8 +240,10 @@ def _undeclared_accesses(
 ) -> Iterator[Finding]:
     for inner, leaf in leaves_with_code(path, container):
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
+        if not read:
+            continue
         lone = lone_input(leaf, container) if len(read) == 1 else None
-        guess = guesser(each.name for each in leaf.inputs) if read else guesser(())
+        guess = guesser(each.name for each in leaf.inputs)
         names = [key for key, _ in read]
         if len(read) > 1 and not leaf.inputs and keys_around(container).issuperset(names):
             place = key_place(read[0][1], names[0])

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import assert_never
@@ -102,17 +103,25 @@ def _targets_inside(child: Node, names: frozenset[str]) -> list[str]:
 
 
 def _transition_edges(container: nodes.StateMachine | nodes.Sequence) -> Iterator[Edge]:
+    if any(child.name == container.initial for child in container.children):
+        yield Edge(START, container.initial, "", "enter")
+    for source, target, step in transitions(container):
+        yield Edge(source, target, step.outcome, step.origin, step)
+
+
+def transitions(
+    container: nodes.StateMachine | nodes.Sequence,
+) -> Iterator[tuple[str, Vertex, Transition]]:
+    """The transitions of a container that can be taken, each with the vertices that it leads from
+    and to."""
     names = frozenset([child.name for child in container.children])
     exits = {outcome.name: exit_vertex(outcome.name) for outcome in container.outcomes}
-    if container.initial in names:
-        yield Edge(START, container.initial, "", "enter")
     for child in container.children:
         for step in _live_transitions(child):
-            target: Vertex | None = step.target
-            if not leads_to_child(step, names):
-                target = exits.get(step.target)
-            if target is not None:
-                yield Edge(child.name, target, step.outcome, step.origin, step)
+            if step.target in names and step.origin != "implicit":  # `leads_to_child`
+                yield child.name, step.target, step
+            elif step.target in exits:
+                yield child.name, exits[step.target], step
 
 
 def _concurrence_edges(container: Concurrence) -> Iterator[Edge]:
@@ -227,9 +236,8 @@ def can_end(container: Container) -> frozenset[str]:
     found: set[str] = set()
     waiting: dict[str, list[str]] = {}  # by the name of a state, those that lead to it
     for child in reversed(container.children):  # most transitions lead to later states
-        targets = _targets_inside(child, names)
-        if found.isdisjoint(targets) and not _leads_out(child, targets):
-            for target in targets:
+        if not _leads_on(child, names, found):
+            for target in _targets_inside(child, names):
                 waiting.setdefault(target, []).append(child.name)
             continue
         ended = [child.name]
@@ -241,11 +249,15 @@ def can_end(container: Container) -> frozenset[str]:
     return frozenset(found)
 
 
-def _leads_out(child: Node, inside: Sequence[str]) -> bool:
-    """Whether a child leads out of its container, or to nowhere. `inside`: its targets in it."""
+def _leads_on(child: Node, names: frozenset[str], ending: AbstractSet[str]) -> bool:
+    """Whether a child leads out of its container, to nowhere, or to one of the states `ending`;
+    `names` are those of all states."""
     steps = _live_transitions(child)
-    if len(inside) < len(steps) or (_is_open(child) and not steps):
-        return True
+    for step in steps:
+        if step.target in ending or not leads_to_child(step, names):
+            return True
+    if _is_open(child):
+        return not steps
     return not {step.outcome for step in steps}.issuperset(outcome_names(child))
 
 

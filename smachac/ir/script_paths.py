@@ -73,9 +73,23 @@ def script_paths(root: Node) -> dict[str, str]:
 
 def plain_paths(root: Node) -> dict[str, str]:
     """The paths in the script without roles, by full path; only those that differ."""
-    if not _has_sugar(root):
+    if isinstance(root, Leaf) or not _has_sugar(root):
         return {}
-    return {each.full: each.plain for each in walk_script(root) if each.plain != each.full}
+    found: dict[str, str] = {}
+    stack: list[tuple[str, str, Container]] = [(root.name, root.name, root)]
+    while stack:
+        full, plain, container = stack.pop()
+        inside = sugared_child(container)
+        for child in container.children:
+            if full == plain and child is not inside and isinstance(child, Leaf):
+                continue  # most states, whose paths do not differ
+            below = f"{full}/{child.name}"
+            shown = plain if child is inside else f"{plain}/{child.name}"
+            if shown != below:
+                found[below] = shown
+            if not isinstance(child, Leaf):
+                stack.append((below, shown, child))
+    return found
 
 
 def _has_sugar(root: Node) -> bool:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Set
 from typing import TypeAlias
 
 from smachac.ir.nodes import Iterator as IteratorNode
-from smachac.ir.nodes import Leaf, Machine, Node
-from smachac.ir.traversal import remapping, walk
+from smachac.ir.nodes import Machine, Node
+from smachac.ir.traversal import containers, remapping, walk
 
 SecretKeys: TypeAlias = Mapping[str, Set[str]]
 """The secret keys of each state, by the path of the state, under its own names of the keys."""
@@ -43,14 +43,17 @@ def secret_keys(machine: Machine) -> SecretKeys:
 
 def _declared(root: Node) -> Iterator[_Cell]:
     """The keys that are declared as secret."""
-    for path, node in walk(root):
-        for key in (*node.inputs, *node.outputs):
-            if key.secret:
-                yield path, key.name
-        if not isinstance(node, Leaf):
-            for preset in node.userdata:
-                if preset.secret:
-                    yield path, preset.key
+    yield from ((root.name, key) for key in _secret_names(root))
+    for path, container in containers(root):
+        for child in container.children:
+            if child.inputs or child.outputs:
+                yield from ((f"{path}/{child.name}", key) for key in _secret_names(child))
+        yield from ((path, preset.key) for preset in container.userdata if preset.secret)
+
+
+def _secret_names(node: Node) -> list[str]:
+    """The input and output keys of a node that are declared as secret."""
+    return [key.name for key in (*node.inputs, *node.outputs) if key.secret]
 
 
 def _same_keys(root: Node) -> Mapping[_Cell, list[_Cell]]:
