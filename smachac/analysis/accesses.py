@@ -329,6 +329,8 @@ def inside(path: str, node: Node, known: Mapping[str, Accesses]) -> Accesses:
     reads: Keys = {}
     writes: Keys = {}
     for child in node.children:
+        if isinstance(child, Leaf) and not (child.inputs or child.outputs):
+            continue
         own = known[f"{path}/{child.name}"]
         for key, origin in own.reads.items():
             reads.setdefault(key, origin)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from smachac.analysis.code_slots import code_of
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
@@ -77,8 +77,7 @@ def expression_sites(
     for path, node in states:
         for expression, written in _expressions(path, node, types, state_types):
             if written is not None:
-                site = _over(path, node, expression, written, types)
-                yield replace(site, state_types=state_types)
+                yield _over(path, node, expression, written, types, state_types)
             else:
                 yield ExpressionSite(path=path, node=node, expression=expression)
 
@@ -137,8 +136,15 @@ def _called(path: str, leaf: Leaf, types: Types) -> dict[str, Written]:
 
 
 def _over(
-    path: str, node: Node, expression: Expression, written: Written, types: Types
+    path: str,
+    node: Node,
+    expression: Expression,
+    written: Written,
+    types: Types,
+    state_types: Mapping[str, StateType],
 ) -> ExpressionSite:
+    """The site of code that is called with userdata. `written`: the keys that were written before,
+    since the state began."""
     names = remapping(node) if isinstance(node, Leaf) else {}
     cells = {
         key: types.cells[path, key]
@@ -151,4 +157,11 @@ def _over(
         outer = names.get(key, key)
         if outer in written:
             held[key] = join(held[key], written[outer])
-    return ExpressionSite(path=path, node=node, expression=expression, types=held, cells=cells)
+    return ExpressionSite(
+        path=path,
+        node=node,
+        expression=expression,
+        types=held,
+        state_types=state_types,
+        cells=cells,
+    )

@@ -134,7 +134,7 @@ def _diagnostics(context: Context, rules: tuple[Rule, ...]) -> Iterator[Diagnost
             shown = steps_in_script(plain, finding.path)
             spans = context.spans if shown else {}
             places = tuple(spans.get(finding.path[at].node or "") for at, _ in shown)
-            if plain:
+            if plain and (finding.path or finding.node in plain):
                 finding = _in_script(plain, finding, shown)
             yield diagnostic(rule.code, finding, places)
 

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, children_names, is_open
+from smachac.analysis.control_flow import Linear, children_names
 from smachac.analysis.fixpoint import flow_order, may_be_unset
 from smachac.analysis.unset_reads import Missing
 from smachac.checks.outcomes import unhandled_in
 from smachac.ir.graph import Vertex
-from smachac.ir.nodes import Outcome, StateMachine, Transition
+from smachac.ir.nodes import Leaf, Outcome, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import outcome_names
 
@@ -87,7 +87,7 @@ def _outcomes_if_handled(container: Linear) -> frozenset[str] | None:
     handled = [
         frozenset(step.outcome for step in child.transitions)
         for child in container.children
-        if is_open(child)
+        if isinstance(child, Leaf) and child.open
     ]
     if handled:
         found |= exits.difference(frozenset.intersection(*handled))

@@ -75,10 +75,9 @@ def edges(container: Container) -> Iterator[Edge]:
 
 
 def _live_transitions(child: Node) -> Sequence[Transition]:
-    if _is_open(child):
-        return child.transitions
     declared = {outcome.name for outcome in child.outcomes}
-    return [step for step in child.transitions if step.outcome in declared]
+    live = [step for step in child.transitions if step.outcome in declared]
+    return child.transitions if len(live) < len(child.transitions) and _is_open(child) else live
 
 
 def _is_open(child: Node) -> bool:
@@ -92,7 +91,8 @@ def is_unread(child: Node) -> bool:
 
 def _targets_inside(child: Node, names: frozenset[str]) -> list[str]:
     """The states of its container, which have these names, to which a child can lead."""
-    declared = None if _is_open(child) else {outcome.name for outcome in child.outcomes}
+    is_open = isinstance(child, Leaf) and child.open
+    declared = None if is_open else {outcome.name for outcome in child.outcomes}
     return [  # `leads_to_child` in place, as every check of a state comes here
         step.target
         for step in child.transitions
