@@ -17,6 +17,7 @@ from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_errors import JOINED, spaced
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong, known_wrong
+from smachac.ir.makers import make_outcome
 from smachac.ir.nodes import Outcome, Preset, Value
 from smachac.ir.types import ANY, parse_type
 
@@ -259,14 +260,13 @@ def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ..
 def as_outcomes(tree: Tree, report: Report) -> tuple[Outcome, ...]:
     """Outcomes, each once: `[a, b]`, or with what they mean, `{a: {}, b: {failure: true}}`."""
     if not isinstance(tree, Map):
-        return tuple(
-            [Outcome(name=word.text, span=word.span) for word in as_names(tree, report, "outcomes")]
-        )
+        words = as_names(tree, report, "outcomes")
+        return tuple([make_outcome(name=word.text, span=word.span) for word in words])
     if _is_list_in_braces(tree):
         return tuple(Outcome(name=each.text, span=each.span)
                      for each in _listed(tree, "outcomes", report))  # fmt: skip
-    words = ((as_name(entry.key, report), entry.value) for entry in tree.entries)
-    return tuple([as_outcome(word, value, report) for word, value in words if word is not None])
+    rows = ((as_name(entry.key, report), entry.value) for entry in tree.entries)
+    return tuple([as_outcome(word, value, report) for word, value in rows if word is not None])
 
 
 def _is_list_in_braces(tree: Map) -> bool:

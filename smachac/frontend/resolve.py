@@ -658,7 +658,7 @@ class _Resolver:
         kind = schema.CONTAINERS.get(word.text)
         if not role and kind is not None:
             kind = meant_container(around.inner or name, word, kind, entries, self.report)
-            return StateType(name=kind, kind="container"), kind
+            return schema.CONTAINER_TYPES[kind], kind
         found = self.state_type(word.text)
         if found is None:
             searched, names = self.known_templates()
@@ -672,7 +672,7 @@ class _Resolver:
             self.not_found(unknown_template(word, read, found_in, self.other_type))
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
-                return StateType(name=meant, kind="container"), meant
+                return schema.CONTAINER_TYPES[meant], meant
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
