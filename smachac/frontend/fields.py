@@ -6,11 +6,12 @@ A reader reports each part that does not have the shape (SM004, SM002) and retur
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Span, Word, new_tuple
+from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
 from smachac.frontend.turned_entries import with_turned
@@ -200,7 +201,24 @@ def as_name(tree: Tree, report: Report) -> Word | None:
     text = tree.value
     if not isinstance(text, str) or text in YAML_1_1_BOOLEANS:  # few names: a call less for others
         text = name_text(tree, report)
-    return Word(text, Span(tree.source, tree.start, tree.end)) if text is not None else None
+    if text is None:
+        return None
+    return new_tuple(Word, (text, new_tuple(Span, (tree.source, tree.start, tree.end))))
+
+
+def expanded(entries: Iterable[Entry], report: Report) -> dict[str, Entry]:
+    """The fields by long name; duplicates are reported (SM002)."""
+    fields: dict[str, Entry] = {}
+    for entry in entries:
+        text = entry.key.value
+        if not isinstance(text, str) or text in YAML_1_1_BOOLEANS:  # as in `as_name`
+            text = name_text(entry.key, report)
+            if text is None:
+                continue
+        first = fields.setdefault(schema.LONG.get(text, text), entry)
+        if first is not entry and first.key.value != entry.key.value:
+            report.append(duplicate_key(Word(text, entry.key.span), first.key.span))
+    return fields
 
 
 def _only_name(tree: Tree) -> Word | None:
@@ -249,7 +267,7 @@ def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ..
     found: dict[str, Word] = {}
     for item in tree.items:
         word = as_name(item, report)
-        if word is None or is_known_wrong(item):
+        if word is None or (not word.text and is_known_wrong(item)):
             continue
         first = found.setdefault(word.text, word)
         if first is not word:
