@@ -145,18 +145,18 @@ def _interface(state: State) -> dict[str, Any]:
                 for key, target in state.transitions
             ]
         ),
-        "remaps": tuple(
-            [
-                Remap(key=key.text, to=to.text, span=key.span, to_span=to.span)
-                for key, to in state.remapping
-            ]
-        ),
+        "remaps": _remaps(state.remapping) if state.remapping else (),
         "claims": _claims(state) if type_.claims or state.claims else (),
-        "tags": tuple([word.text for word in state.tags]),
+        "tags": tuple([word.text for word in state.tags]) if state.tags else (),
         "span": state.name.span,
         "via": state.via,
         "written": state.written,
     }
+
+
+def _remaps(pairs: Pairs) -> tuple[Remap, ...]:
+    return tuple([Remap(key=key.text, to=to.text, span=key.span, to_span=to.span)
+                  for key, to in pairs])  # fmt: skip
 
 
 def _claims(state: State) -> tuple[str, ...]:
@@ -198,7 +198,7 @@ def _leaf(state: State) -> Leaf:
     leaf = make_leaf(
         **_interface(state),
         outcomes=tuple(outcomes.values()),
-        variables=(*state.variables, *_defaults(state)),
+        variables=(*state.variables, *_defaults(state)) if type_.variables else state.variables,
         writes=type_.writes,
         open=type_.open,
         blocking=type_.blocking,
@@ -366,15 +366,16 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
 
     docs/semantics.md, Steps and transitions.
     """
+    names = [each.name for each in child.outcomes if each.name in outcomes]
+    if not names:
+        return child
     own = {transition.outcome for transition in child.transitions}
     implied = [
-        make_transition(outcome=o.name, target=o.name, origin="implicit", span=child.span)
-        for o in child.outcomes
-        if o.name not in own and o.name in outcomes
+        make_transition(outcome=name, target=name, origin="implicit", span=child.span)
+        for name in names
+        if name not in own
     ]
-    if not implied:
-        return child
-    return replace(child, transitions=(*child.transitions, *implied))
+    return replace(child, transitions=(*child.transitions, *implied)) if implied else child
 
 
 def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Concurrence:
