@@ -15,18 +15,23 @@ from smachac.frontend.script import Keys, Pairs
 from smachac.ir.nodes import Key, Outcome, StateType
 
 
-def check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:
-    """The keys and outcomes that a state lists beyond those of a complete interface."""
+def _known(type_: StateType, part: str) -> list[str]:
+    """The names in a part of an interface, those included that a script may add."""
     declared: dict[str, tuple[Key, ...] | tuple[Outcome, ...]] = {
         "input_keys": type_.input_keys,
         "output_keys": type_.output_keys,
         "outcomes": type_.outcomes,
     }
     optional = {"input_keys": type_.listed_inputs, "output_keys": type_.listed_outputs}
-    for part, own in declared.items():
+    return [*(each.name for each in declared[part]), *optional.get(part, ())]
+
+
+def check_interface(read: Mapping[str, Any], type_: StateType, report: Report) -> None:
+    """The keys and outcomes that a state lists beyond those of a complete interface."""
+    for part in ("input_keys", "output_keys", "outcomes"):
         if part in type_.given or part not in read:
             continue
-        known = [*(each.name for each in own), *optional.get(part, ())]
+        known = _known(type_, part)
         if part == "outcomes":
             outcomes: tuple[Outcome, ...] = read[part]
             words = [Word(each.name, each.span) for each in outcomes]

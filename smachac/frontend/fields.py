@@ -6,17 +6,19 @@ A reader reports each part that does not have the shape (SM004, SM002) and retur
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Span, Word, new_tuple
+from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
 from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_errors import JOINED, spaced
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong, known_wrong
+from smachac.ir.makers import make_outcome
 from smachac.ir.nodes import Outcome, Preset, Value
 from smachac.ir.types import ANY, parse_type
 
@@ -199,7 +201,24 @@ def as_name(tree: Tree, report: Report) -> Word | None:
     text = tree.value
     if not isinstance(text, str) or text in YAML_1_1_BOOLEANS:  # few names: a call less for others
         text = name_text(tree, report)
-    return Word(text, Span(tree.source, tree.start, tree.end)) if text is not None else None
+    if text is None:
+        return None
+    return new_tuple(Word, (text, new_tuple(Span, (tree.source, tree.start, tree.end))))
+
+
+def expanded(entries: Iterable[Entry], report: Report) -> dict[str, Entry]:
+    """The fields by long name; duplicates are reported (SM002)."""
+    fields: dict[str, Entry] = {}
+    for entry in entries:
+        text = entry.key.value
+        if not isinstance(text, str) or text in YAML_1_1_BOOLEANS:  # as in `as_name`
+            text = name_text(entry.key, report)
+            if text is None:
+                continue
+        first = fields.setdefault(schema.LONG.get(text, text), entry)
+        if first is not entry and first.key.value != entry.key.value:
+            report.append(duplicate_key(Word(text, entry.key.span), first.key.span))
+    return fields
 
 
 def _only_name(tree: Tree) -> Word | None:
@@ -248,7 +267,7 @@ def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ..
     found: dict[str, Word] = {}
     for item in tree.items:
         word = as_name(item, report)
-        if word is None or is_known_wrong(item):
+        if word is None or (not word.text and is_known_wrong(item)):
             continue
         first = found.setdefault(word.text, word)
         if first is not word:
@@ -259,14 +278,13 @@ def as_names(tree: Tree, report: Report, shape: str = "names") -> tuple[Word, ..
 def as_outcomes(tree: Tree, report: Report) -> tuple[Outcome, ...]:
     """Outcomes, each once: `[a, b]`, or with what they mean, `{a: {}, b: {failure: true}}`."""
     if not isinstance(tree, Map):
-        return tuple(
-            [Outcome(name=word.text, span=word.span) for word in as_names(tree, report, "outcomes")]
-        )
+        words = as_names(tree, report, "outcomes")
+        return tuple([make_outcome(name=word.text, span=word.span) for word in words])
     if _is_list_in_braces(tree):
         return tuple(Outcome(name=each.text, span=each.span)
                      for each in _listed(tree, "outcomes", report))  # fmt: skip
-    words = ((as_name(entry.key, report), entry.value) for entry in tree.entries)
-    return tuple([as_outcome(word, value, report) for word, value in words if word is not None])
+    rows = ((as_name(entry.key, report), entry.value) for entry in tree.entries)
+    return tuple([as_outcome(word, value, report) for word, value in rows if word is not None])
 
 
 def _is_list_in_braces(tree: Map) -> bool:

@@ -15,6 +15,7 @@ from smachac.frontend.desugar import desugared
 from smachac.frontend.script import ANY_OUTCOME, ERROR, Keys, Pairs, Script, State
 from smachac.ir import nodes
 from smachac.ir.graph import is_unread
+from smachac.ir.makers import make_key, make_leaf, make_outcome, make_transition
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -103,7 +104,7 @@ def _keys(
     keys = {key.name: key for key in known}
     for word, type_ in listed:
         declared = keys.get(word.text)
-        keys[word.text] = Key(
+        keys[word.text] = make_key(
             name=word.text,
             type=type_ or (declared.type if declared else ANY),
             doc=declared.doc if declared else "",
@@ -138,24 +139,24 @@ def _interface(state: State) -> dict[str, Any]:
         ),
         "transitions": tuple(
             [
-                Transition(
+                make_transition(
                     outcome=key.text, target=target.text, span=key.span, target_span=target.span
                 )
                 for key, target in state.transitions
             ]
         ),
-        "remaps": tuple(
-            [
-                Remap(key=key.text, to=to.text, span=key.span, to_span=to.span)
-                for key, to in state.remapping
-            ]
-        ),
+        "remaps": _remaps(state.remapping) if state.remapping else (),
         "claims": _claims(state) if type_.claims or state.claims else (),
-        "tags": tuple([word.text for word in state.tags]),
+        "tags": tuple([word.text for word in state.tags]) if state.tags else (),
         "span": state.name.span,
         "via": state.via,
         "written": state.written,
     }
+
+
+def _remaps(pairs: Pairs) -> tuple[Remap, ...]:
+    return tuple([Remap(key=key.text, to=to.text, span=key.span, to_span=to.span)
+                  for key, to in pairs])  # fmt: skip
 
 
 def _claims(state: State) -> tuple[str, ...]:
@@ -194,10 +195,10 @@ def _leaf(state: State) -> Leaf:
         declared = outcomes.setdefault(given.name, given)
         if given.failure is not None:
             outcomes[given.name] = replace(declared, failure=given.failure)
-    leaf = Leaf(
+    leaf = make_leaf(
         **_interface(state),
         outcomes=tuple(outcomes.values()),
-        variables=(*state.variables, *_defaults(state)),
+        variables=(*state.variables, *_defaults(state)) if type_.variables else state.variables,
         writes=type_.writes,
         open=type_.open,
         blocking=type_.blocking,
@@ -240,7 +241,7 @@ def _given_outcomes(state: State) -> list[Outcome]:
 
 
 def _outcome(word: Word) -> Outcome:
-    return Outcome(name=word.text, span=word.span)
+    return make_outcome(name=word.text, span=word.span)
 
 
 def _defaults(state: State) -> Iterable[Variable]:
@@ -365,15 +366,16 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
 
     docs/semantics.md, Steps and transitions.
     """
+    names = [each.name for each in child.outcomes if each.name in outcomes]
+    if not names:
+        return child
     own = {transition.outcome for transition in child.transitions}
     implied = [
-        Transition(outcome=o.name, target=o.name, origin="implicit", span=child.span)
-        for o in child.outcomes
-        if o.name not in own and o.name in outcomes
+        make_transition(outcome=name, target=name, origin="implicit", span=child.span)
+        for name in names
+        if name not in own
     ]
-    if not implied:
-        return child
-    return replace(child, transitions=(*child.transitions, *implied))
+    return replace(child, transitions=(*child.transitions, *implied)) if implied else child
 
 
 def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Concurrence:

@@ -185,9 +185,11 @@ def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
         return False
     if facts is not None and any(word.text not in known for word in facts.returns):
         return False
-    if state.outcomes:
-        known = known.union([each.name for each in state.outcomes])
-    return known.issuperset([word.text for word, _ in state.transitions])
+    own = {each.name for each in state.outcomes} if state.outcomes else known
+    for word, _ in state.transitions:
+        if word.text not in own and word.text not in known:
+            return False
+    return True
 
 
 def _ends(state: State) -> Iterator[tuple[str, Span]]:

@@ -6,7 +6,7 @@ They are reported once (SM004) and then count as fields of the state, so that no
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Collection, Iterator, Mapping, Set
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Span, Word
@@ -69,12 +69,20 @@ _ONE_NAME: Mapping[str, frozenset[str]] = {
 """The fields with one name that not every state has, by owner."""
 
 
+def _has(tree: Map, names: Collection[object]) -> bool:
+    """Whether a key of a mapping is one of the names."""
+    found = False
+    for entry in tree.entries:  # `any` takes longer, and this is done several times for each state
+        found = found or entry.key.value in names
+    return found
+
+
 def with_outer_fields(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
     """The fields of a state by long name, with those that are in the mapping of another one beside
     it."""
     for part in _OF_NAMES:
         entry = own.get(part)
-        if entry is None or not isinstance(entry.value, Map):
+        if entry is None or not isinstance(entry.value, Map) or not _has(entry.value, _FIELDS):
             continue
         outer = dict(_outer_fields(entry.value, own))
         if outer:  # the rest that is no name was moved together with it
@@ -85,7 +93,9 @@ def with_outer_fields(name: Word, own: dict[str, Entry], report: Report) -> dict
                 if id(each) in found or not (_is_text(each.value) or look_up_word(each.value))
             }
         own = _moved(name, own, part, outer, report)
-    for part in [key for key in own if key not in _WITHOUT_FIELDS]:
+    for part in own:
+        if part in _WITHOUT_FIELDS:
+            continue
         tree = own[part].value
         if not isinstance(tree, Map):
             continue
@@ -156,7 +166,7 @@ def with_outer_variables(
         entry = own.get(part)
         if entry is None or not isinstance(entry.value, Map):
             continue
-        if type_.variables.keys().isdisjoint([each.key.value for each in entry.value.entries]):
+        if not _has(entry.value, type_.variables):
             continue
         outer = {
             str(each.key.value): each
@@ -172,13 +182,14 @@ def _with_outer_names(
 ) -> dict[str, Entry]:
     """The fields with those of one value that are in a mapping of declared outcomes or keys."""
     fields, variables = _ONE_NAME[owner], type_.variables
-    parts = sorted([key for key in own if key in variables and variables[key].role in _CODE])
+    parts: list[str] = []
+    if variables:
+        parts = sorted([key for key in own if key in variables and variables[key].role in _CODE])
     for part in ("transitions", "outcome_map", *parts):
         entry = own.get(part)
         if entry is None or not isinstance(entry.value, Map):
             continue
-        keys = [each.key.value for each in entry.value.entries]
-        if fields.isdisjoint(keys) and variables.keys().isdisjoint(keys):
+        if not _has(entry.value, fields) and not _has(entry.value, variables):
             continue
         outer = {str(key): each for each in entry.value.entries
                  if ((key := each.key.value) in fields or key in variables)

@@ -53,11 +53,17 @@ def is_flat(tree: Tree) -> bool:
     """Whether a value has no look-ups and no nested collections, as most values."""
     if isinstance(tree, Scalar):
         return True
-    inside = [entry.value for entry in tree.entries] if isinstance(tree, Map) else tree.items
-    for value in inside:  # a generator expression takes longer, and every value comes here
-        if not isinstance(value, Scalar):
-            return False
-    return isinstance(tree, Map) or look_up_word(tree) is None
+    names_params = False
+    if isinstance(tree, Map):
+        for entry in tree.entries:  # `all` takes longer, and every value comes here
+            if not isinstance(entry.value, Scalar):
+                return False
+    else:
+        for item in tree.items:
+            if not isinstance(item, Scalar):
+                return False
+            names_params = names_params or item.value == "params"
+    return not names_params or look_up_word(tree) is None
 
 
 def is_too_deep(tree: Tree) -> bool:

@@ -21,12 +21,8 @@ from smachac.frontend.errors.references import (
     recursive_include,
     script_not_found,
 )
-from smachac.frontend.errors.script import (
-    duplicate_key,
-    too_big,
-    wrong_shape,
-)
-from smachac.frontend.fields import as_name, kind_of, name_of, name_text, pairs_of, wrong
+from smachac.frontend.errors.script import too_big, wrong_shape
+from smachac.frontend.fields import as_name, expanded, kind_of, name_of, pairs_of, wrong
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
 from smachac.frontend.meant_declarations import with_meant_declarations
@@ -208,7 +204,7 @@ class _Resolver:
         self.uses.trees[source] = tree
         self.main = source.name
         begin = self.uses.mark(self.report)
-        entries = self.expand(tree.entries)
+        entries = expanded(tree.entries, self.report)
         if "types" in entries:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
@@ -253,18 +249,6 @@ class _Resolver:
         self.report.append(too_big(span, message, help, arguments=("keys",)))
         return True
 
-    def expand(self, entries: tuple[Entry, ...]) -> dict[str, Entry]:
-        """The fields by long name; duplicates are reported (SM002)."""
-        fields: dict[str, Entry] = {}
-        for entry in entries:
-            text = name_text(entry.key, self.report)
-            if text is None:
-                continue
-            first = fields.setdefault(schema.LONG.get(text, text), entry)
-            if first is not entry and first.key.value != entry.key.value:
-                self.report.append(duplicate_key(Word(text, entry.key.span), first.key.span))
-        return fields
-
     def state(
         self,
         name: Word,
@@ -279,7 +263,9 @@ class _Resolver:
             own["params"] = self.limit_depth(own["params"])
         params = own.get("params") or params_meant(own)
         begin = begin or self.uses.mark(self.report)
-        scope = child_scope(around.scope, params.value if params else None, self.report)
+        scope, via = around.scope, around.via
+        if params is not None:
+            scope = child_scope(scope, params.value, self.report)
         entries: dict[str, Entry] = {}
         for key, entry in own.items():
             if key == "states":
@@ -294,7 +280,8 @@ class _Resolver:
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
         entries = with_outer_variables(name, entries, owner, type_, self.report)
-        entries |= self.lists(own, scope, type_)
+        if type_.variables:
+            entries |= self.lists(own, scope, type_)
         if scope:
             entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_, self.report)
@@ -308,34 +295,36 @@ class _Resolver:
         )
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)
-        self.most_keys = max(self.most_keys, presets, key=len)
+        if len(presets) > len(self.most_keys):
+            self.most_keys = presets
         sugar: Sugar | None = fields.get("sugar")
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
         if owner != "base" and has_wrong_transitions(entries, fields):
-            return unknown_state(name, (), around.via)
-        if owner == "state" and has_unknown_outcomes(entries):
-            return unknown_state(name, fields.get("transitions", ()), around.via)
+            return unknown_state(name, (), via)
+        if owner == "state" and has_unknown_outcomes(entries, fields):
+            return unknown_state(name, fields.get("transitions", ()), via)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:
             message = f"containers are nested deeper than {MAX_NESTED:,} levels"
             span = entries["states"].key.span
             help = "use fewer levels of containers"
             self.report.append(too_big(span, message, help, arguments=("containers",)))
-            return unknown_state(name, fields.get("transitions", ()), around.via)
+            return unknown_state(name, fields.get("transitions", ()), via)
         if "states" in entries and owner != "state":
             inside = _Environment(around.source, scope, around.calls, around.depth + 1)
             children = self.children(name, entries["states"].value, owner, inside)
             if not children and fields.get("initial") is None:
                 fields["initial"] = Word("", entries["states"].value.span)
         elif owner != "state":
-            children = (no_states(name, around.via),)  # SM005 or SM003 was reported
-        self.uses.params(params, begin, self.report, around.via)
+            children = (no_states(name, via),)  # SM005 or SM003 was reported
+        if params is not None:
+            self.uses.params(params.value, begin, self.report, via)
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
         if "outcomes" in entries:
             fields["outcomes_place"] = entries["outcomes"].value.span
-        return State(owner=owner, type=type_, via=around.via, states=children, **fields)
+        return State(owner=owner, type=type_, via=via, states=children, **fields)
 
     def fill(self, key: str, entry: Entry, scope: Scope, *, flat: bool) -> Entry:
         """The field with values in place of its look-ups and aliases of types. `flat`: see
@@ -438,7 +427,7 @@ class _Resolver:
             return None
         nothing = isinstance(first.value, Scalar) and first.value.value is None
         if nothing and rest:
-            return self.call(name, self.expand(rest), around)
+            return self.call(name, expanded(rest, self.report), around)
         if nothing or not isinstance(first.value, Map):
             found = kind_of(first.value)
             fault = "is empty" if nothing else f"must be a mapping of variables, not {found}"
@@ -449,8 +438,8 @@ class _Resolver:
             return unknown_state(name, (), around.via)
         if rest:
             self.report.append(second_key(name, first.value, rest[0]))
-        own = [entry for entry in rest if is_field(entry)]
-        return self.call(name, self.expand((*first.value.entries, *own)), around)
+        own = tuple(entry for entry in rest if is_field(entry)) if rest else ()
+        return self.call(name, expanded(first.value.entries + own, self.report), around)
 
     def call(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
         """As `called`; for the call of a sub-script, the state of the last reading if it is still
@@ -533,7 +522,7 @@ class _Resolver:
             call = Span(around.source, entry.key.span.start, entry.value.span.end)
             calls = (*around.calls, (source.name, call))
             around = replace(around, source=source, calls=calls, inner=inner)
-            fields = self.expand(entries)
+            fields = expanded(entries, self.report)
             self.uses.replaced(fields, own)
             called.append((Word(word.text, call), _entries_of(params)))
             others = [key for key in own if key not in schema.VARIABLES]
@@ -658,7 +647,7 @@ class _Resolver:
         kind = schema.CONTAINERS.get(word.text)
         if not role and kind is not None:
             kind = meant_container(around.inner or name, word, kind, entries, self.report)
-            return StateType(name=kind, kind="container"), kind
+            return schema.CONTAINER_TYPES[kind], kind
         found = self.state_type(word.text)
         if found is None:
             searched, names = self.known_templates()
@@ -672,7 +661,7 @@ class _Resolver:
             self.not_found(unknown_template(word, read, found_in, self.other_type))
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
-                return StateType(name=meant, kind="container"), meant
+                return schema.CONTAINER_TYPES[meant], meant
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself

@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, NamedTuple, TypeAlias, get_args
 
-from smachac.ir.nodes import ContainerKind
+from smachac.ir.nodes import ContainerKind, StateType
 
 FieldOwner: TypeAlias = Literal["base", "state"] | ContainerKind
 """What has fields: the script itself, a state that is no container, or a container."""
 
 CONTAINERS: Mapping[str, ContainerKind] = {kind: kind for kind in get_args(ContainerKind)}
 """The built-in container types by name."""
+
+CONTAINER_TYPES: Mapping[ContainerKind, StateType] = {
+    kind: StateType(name=kind, kind="container") for kind in CONTAINERS.values()
+}
+"""The state types of containers: they have no variables, keys or outcomes of their own."""
 
 CONTAINER_DOCS: Mapping[ContainerKind, str] = {
     "StateMachine": "States that follow one another along transitions.",

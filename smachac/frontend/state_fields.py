@@ -6,7 +6,7 @@ Reported are unknown fields (SM003), values of the wrong shape (SM004) and missi
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Edit, Related, Report, did_you_mean
@@ -54,6 +54,8 @@ Entries = Mapping[str, Entry]
 
 _FIELDS = frozenset(State._fields) & frozenset(schema.VARIABLES)
 """The fields of the schema that a state keeps; tests compare their types with the readers'."""
+
+_ALL_FIELDS = frozenset(schema.VARIABLES)
 
 FIELDS_OF_STATES = tuple(schema.names_for("state"))
 
@@ -162,14 +164,16 @@ def read_fields(
         read["outcomes"] = outcomes_used(entries)
     if owner == "state" and not type_.open:
         check_interface(read, type_, report)
-    for part, keys in _listed_keys(entries, type_):
-        read[part] = (*read.get(part, ()), *keys)
+    if type_.variables:
+        for part, keys in _listed_keys(entries, type_):
+            read[part] = (*read.get(part, ()), *keys)
     examples = {}
     if "outcomes" not in entries and read.get("outcomes"):
         examples["outcomes"] = f"[{', '.join(each.name for each in read['outcomes'])}]"
     _check_required(read["name"], entries, owner, type_, rejected, inner, examples, report)
     read["variables"] = tuple(_variables(entries, owner, type_))
-    _check_unquoted(entries, owner, type_, report)
+    if owner == "base" or type_.variables:
+        _check_unquoted(entries, owner, type_, report)
     if type_.prints_itself:
         read["written"] = tuple(_written(read["name"], entries, scope))
     return read
@@ -243,6 +247,8 @@ def with_meant_fields(
 
 def params_meant(entries: Entries) -> Entry | None:
     """The field that is certainly a misspelt `params` (SM003)."""
+    if _ALL_FIELDS.issuperset(entries):
+        return None
     for key, entry in entries.items():
         is_map = key not in schema.VARIABLES and isinstance(entry.value, Map)
         if is_map and guesser_of(FIELDS_OF_STATES).sure(key) == "params":
@@ -262,12 +268,14 @@ def has_wrong_transitions(entries: Mapping[str, Entry], fields: Mapping[str, obj
     return given is not None and not isinstance(given.value, Map) and not fields.get("transitions")
 
 
-def has_unknown_outcomes(entries: Mapping[str, Entry]) -> bool:
-    """Whether a look-up in the outcomes of a state failed, which was reported."""
+def has_unknown_outcomes(entries: Mapping[str, Entry], fields: Mapping[str, Any]) -> bool:
+    """Whether a look-up in the outcomes of a state failed, which was reported. `fields` are those
+    that were read: an outcome that is not known is not among them."""
     given = entries.get("outcomes")
     if given is None or isinstance(given.value, Scalar):
         return given is not None and is_known_wrong(given.value)
-    return isinstance(given.value, Seq) and any(map(is_known_wrong, given.value.items))
+    items = given.value.items if isinstance(given.value, Seq) else ()
+    return len(items) > len(fields.get("outcomes", ())) and any(map(is_known_wrong, items))
 
 
 def _known_fields(
@@ -278,11 +286,11 @@ def _known_fields(
     read: dict[str, Any] = {}
     strays: list[tuple[Word, Word]] = []
     meant: set[str | None] = set()
+    known_here = schema.OWN_FIELDS[owner]
     for key, entry in entries.items():
-        row = schema.VARIABLES.get(key)
-        if row is not None and _is_field(key, owner, type_):
+        if key in known_here or (key in schema.VARIABLES and _is_field(key, owner, type_)):
             if key not in _READ_ELSEWHERE:
-                value = _read(key, row.shape, entry, report)
+                value = _read(key, schema.VARIABLES[key].shape, entry, report)
                 if key in _FIELDS and (key != "name" or owner == "base"):
                     read[key] = value
         elif key in type_.variables:
@@ -448,7 +456,8 @@ def _check_required(
     """Required fields that are missing; not those for which a misspelt one was found. `examples`
     are their values where the script shows them."""
     required = [*schema.REQUIRED[owner]]
-    required += [key for key, variable in type_.variables.items() if variable.required]
+    if type_.variables:
+        required += [key for key, variable in type_.variables.items() if variable.required]
     for key in required:
         if key not in entries and key not in meant:
             whose = _owner_of(owner, type_, of_type=key in type_.variables)
@@ -527,10 +536,12 @@ def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys
 
 def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterator[Variable]:
     """The variables of the state type that a script sets: all fields that are not the owner's."""
+    own: Collection[str] = () if owner == "base" else schema.OWN_FIELDS[owner]
     for name in (*_BASE_VARIABLES, *type_.variables) if owner == "base" else entries:
+        if name in own and not (name in NAMES and is_own(name, type_)):
+            continue
         entry, row = entries.get(name), schema.VARIABLES.get(name)
-        of_schema = owner != "base" and row is not None and owner in row.owners
-        if entry is None or (of_schema and not (name in NAMES and is_own(name, type_))):
+        if entry is None:
             continue
         named = row is not None and row.shape == "name" and _is_field(name, owner, type_)
         if named and not isinstance(entry.value, Scalar):

@@ -18,7 +18,7 @@ from itertools import accumulate
 from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Edit, Report
-from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.source import Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
 from smachac.frontend.yaml_errors import JOINED, SPACE_MISSING, spaced, stopped_at, syntax_error
 
@@ -59,7 +59,7 @@ class Scalar:
     @property
     def span(self) -> Span:
         """The place of the value, made when it is needed: a long list has millions of values."""
-        return Span(self.source, self.start, self.end)
+        return new_tuple(Span, (self.source, self.start, self.end))
 
 
 @dataclass(slots=True, unsafe_hash=True)
@@ -190,7 +190,7 @@ def parse(
             )
         )
         return None
-    bad = _UNPRINTABLE.search(source.text)
+    bad = _unprintable(source.text)
     if bad is not None:
         span = Span(source, bad.start(), bad.end())
         report.append(
@@ -209,6 +209,13 @@ def parse(
 _UNPRINTABLE = re.compile(
     "[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]"
 )
+
+
+def _unprintable(text: str) -> re.Match[str] | None:
+    """The first character that is not printable."""
+    if text.replace("\n", "").isprintable():  # quicker; fewer characters are printable for Python
+        return None
+    return _UNPRINTABLE.search(text)
 
 
 def _pure_events(text: str) -> Iterator[Any]:
@@ -254,7 +261,7 @@ def syntax_error_line(text: str) -> int | None:
     from ruamel.yaml.error import YAMLError
 
     last = text.count("\n")
-    bad = _UNPRINTABLE.search(text)
+    bad = _unprintable(text)
     if bad is not None:
         return text.count("\n", 0, bad.start())
     if _deepest_bracket(text) > DEEPEST_REREAD:
@@ -342,8 +349,9 @@ MOST_NAMES_SHOWN = 6
 """The most names of a key that a help shows."""
 
 
-def _jinja_look_up(items: list[Tree], span: Span) -> Seq | None:
-    """The look-up that is meant by `{{ name }}` or `{{ params.name }}`, a mapping in a mapping."""
+def _jinja_look_up(items: list[Tree], span: Span, report: Report) -> Seq | None:
+    """The look-up that is meant by `{{ name }}` or `{{ params.name }}`, a mapping in a mapping,
+    which is reported."""
     if len(items) != 2 or not isinstance(items[0], Map) or items[1].span.text:
         return None
     entries = items[0].entries
@@ -354,23 +362,16 @@ def _jinja_look_up(items: list[Tree], span: Span) -> Seq | None:
     if not key.plain or not name.isidentifier():
         return None
     word = Scalar(name, True, key.source, key.end - len(name), key.end)
+    message, written = "`{{ }}` is for templates, not for scripts", word.span.text
+    help = f"a param is looked up with `[params, {written}]`"
+    report.append(wrong_shape(span, message, help, arguments=("braces", written)))
     return Seq((Scalar("params", True, *span), word), span)
 
 
-class _Open:
-    """A collection that is being built. `before` is the number of nodes before it, `around` are the
-    items of the collection around it."""
-
-    __slots__ = ("anchor", "around", "before", "flow", "start")
-
-    def __init__(
-        self, around: list[Tree], before: int, flow: bool, start: int, anchor: str | None
-    ) -> None:
-        self.around = around
-        self.before = before
-        self.flow = flow
-        self.start = start
-        self.anchor = anchor
+_Open: TypeAlias = tuple[list[Tree], int, bool, int, str | None]
+"""A collection that is being built: the items of the collection around it, the number of nodes
+before it, whether it is in brackets or braces, its start and its anchor. A plain tuple, because
+there is one for each list and mapping."""
 
 
 def _identity(key: Scalar) -> str | tuple[type, object]:
@@ -433,66 +434,72 @@ class _Builder:
             raise _BeyondLimitError
 
     def drive(self, events: Iterator[Any]) -> None:
+        """Builds the tree. Scalars, which are most events, are read here, without calls."""
         from ruamel.yaml import events as kinds
 
         steps: dict[type, Callable[[Any], None]] = {
-            kinds.ScalarEvent: self._scalar,
             kinds.MappingStartEvent: self._open,
             kinds.SequenceStartEvent: self._open,
             kinds.MappingEndEvent: self._close_mapping,
             kinds.SequenceEndEvent: self._close_list,
             kinds.AliasEvent: self._alias,
         }
+        scalar, source = kinds.ScalarEvent, self.source
         for event in events:
-            step = steps.get(type(event))
-            if step is not None:
-                step(event)
+            kind = type(event)
+            if kind is not scalar:
+                step = steps.get(kind)
+                if step is not None:
+                    step(event)
+                elif self._is_second(event):
+                    break
                 continue
-            self.seen = True
-            if self.items and type(event) is kinds.DocumentStartEvent:
-                span = Span(self.source, event.start_mark.index, event.end_mark.index)
-                self.report.append(
-                    wrong_shape(
-                        span,
-                        "a second YAML document begins here",
-                        "remove the `---`: a script is one document",
-                        arguments=("document",),
-                    )
-                )
-                self.items = []  # what the rest of the text defines would be reported as missing
-                break
+            text: str = event.value
+            start, end = event.start_mark.index, event.end_mark.index
+            plain = not event.style
+            if not text and plain and start == end:  # positions of nothing differ between parsers
+                start = end = self.end
+            self.end = end
+            value: bool | int | float | str | None = text
+            if event.ctag is not None:  # `tag` makes a text of it
+                self._check_tag(event)
+            elif plain and (not text.isidentifier() or text in _WORDS):  # most texts are names
+                value = _resolve(text)
+                if " " in text or text[-1:] in _LAST_SIGNS:
+                    self._doubt(text, start)
+            node = Scalar(value, plain, source, start, end)
+            self.items.append(node)
+            self.nodes += 1
+            if self.nodes > self.most:
+                self._too_many(start)
+            if event.anchor is not None:
+                self.anchors[event.anchor] = (node, 1)
 
-    def _scalar(self, event: Any) -> None:
-        text: str = event.value
-        start, end = event.start_mark.index, event.end_mark.index
-        plain = not event.style
-        if plain and start == end and not text:  # positions of nothing differ between parsers
-            start = end = self.end
-        self.end = end
-        value: bool | int | float | str | None = text
-        if event.ctag is not None:  # `tag` makes a text of it
-            self._check_tag(event)
-        elif plain:
-            value = _resolve(text)
-            if " " in text or text[-1:] in _LAST_SIGNS:
-                self._doubt(text, start)
-        node = Scalar(value, plain, self.source, start, end)
-        self.items.append(node)
-        self.nodes += 1  # as `_count`, without a call for each value
-        if self.nodes > self.most:
-            self._too_many(start)
-        if event.anchor is not None:
-            self.anchors[event.anchor] = (node, 1)
+    def _is_second(self, event: Any) -> bool:
+        """Whether a second document begins, which is reported."""
+        from ruamel.yaml import events as kinds
+
+        self.seen = True
+        if not self.items or type(event) is not kinds.DocumentStartEvent:
+            return False
+        span = Span(self.source, event.start_mark.index, event.end_mark.index)
+        message = "a second YAML document begins here"
+        help = "remove the `---`: a script is one document"
+        self.report.append(wrong_shape(span, message, help, arguments=("document",)))
+        self.items = []  # what the rest of the text defines would be reported as missing
+        return True
 
     def _doubt(self, text: str, start: int) -> None:
         """Notes a text without quotes that is probably two, or a part of one: `done READY`."""
         if text[-1] in _LAST_SIGNS:
             if _is_torn(text):
                 self.doubtful.append(start)
-        elif " = " in text or (
-            self.stack and self.stack[-1].flow and _TWO_WORDS.fullmatch(text) is not None
-        ):
+        elif " = " in text or (self._is_flow() and _TWO_WORDS.fullmatch(text) is not None):
             self.doubtful.append(start)
+
+    def _is_flow(self) -> bool:
+        """Whether the innermost open collection is in brackets or braces."""
+        return bool(self.stack) and self.stack[-1][2]
 
     def _check_tag(self, event: Any) -> None:
         """Reports a tag of a scalar that is not for text."""
@@ -520,40 +527,37 @@ class _Builder:
             self._stop(start, message, "split the script into sub-scripts", "depth")
         if depth > self.deepest:
             self.deepest = depth
-        self.stack.append(_Open(self.items, self.nodes, event.flow_style, start, event.anchor))
+        self.stack.append((self.items, self.nodes, event.flow_style, start, event.anchor))
         self.items = []
         self.end = event.end_mark.index
-        self.nodes += 1  # as in `_scalar`
+        self.nodes += 1
         if self.nodes > self.most:
             self._too_many(start)
 
     def _close_mapping(self, event: Any) -> None:
-        done = self.stack.pop()
-        if done.flow:
+        items = self.items
+        self.items, before, flow, start, anchor = self.stack.pop()
+        if flow:
             self.end = event.end_mark.index
-        span = Span(self.source, done.start, self.end)
-        look_up = _jinja_look_up(self.items, span) if done.flow else None
-        if look_up is not None:
-            name = look_up.items[1].span.text
-            help = f"a param is looked up with `[params, {name}]`"
-            message = "`{{ }}` is for templates, not for scripts"
-            self.report.append(wrong_shape(span, message, help, arguments=("braces", name)))
-            self._close(done, look_up)
-            return
-        entries = self._entries(self.items, done.flow)
-        self._close(done, Map(entries, span))
+        span = new_tuple(Span, (self.source, start, self.end))
+        node: Seq | Map | None = None
+        if flow and items and isinstance(items[0], Map):
+            node = _jinja_look_up(items, span, self.report)
+        if node is None:
+            node = Map(self._entries(items, flow), span)
+        self.items.append(node)
+        if anchor is not None:
+            self.anchors[anchor] = (node, self.nodes - before)
 
     def _close_list(self, event: Any) -> None:
-        done = self.stack.pop()
-        if done.flow:
+        items = self.items
+        self.items, before, flow, start, anchor = self.stack.pop()
+        if flow:
             self.end = event.end_mark.index
-        self._close(done, Seq(tuple(self.items), Span(self.source, done.start, self.end)))
-
-    def _close(self, done: _Open, node: Seq | Map) -> None:
-        self.items = done.around
+        node = Seq(tuple(items), new_tuple(Span, (self.source, start, self.end)))
         self.items.append(node)
-        if done.anchor is not None:
-            self.anchors[done.anchor] = (node, self.nodes - done.before)
+        if anchor is not None:
+            self.anchors[anchor] = (node, self.nodes - before)
 
     def _alias(self, event: Any) -> None:
         self.end = event.end_mark.index
@@ -574,13 +578,9 @@ class _Builder:
                 span.start, message, "use fewer aliases, or aliases of shorter lists", "aliases"
             )
         self.items.append(node)
-        self._count(size, span.start)
-
-    def _count(self, nodes: int, at: int) -> None:
-        """Adds nodes; `at` is the place of an error if they are too many."""
-        self.nodes += nodes
+        self.nodes += size
         if self.nodes > self.most:
-            self._too_many(at)
+            self._too_many(span.start)
 
     def _too_many(self, at: int) -> None:
         self._stop(
@@ -604,26 +604,26 @@ class _Builder:
             if not isinstance(key, Scalar):
                 entries += self._wrong_key(key, value)
                 continue
-            if key.value == "<<" and key.plain:
-                merged.extend(self._merge(value))
-                continue
-            name = key.value
-            text = name if isinstance(name, str) else ""
-            if key.plain and not text.isidentifier() and _NO_KEY.search(text) is not None:
-                self.doubtful.append(key.start)
+            text = key.value
+            if not isinstance(text, str) or not text.isidentifier():  # few keys
+                if text == "<<" and key.plain:
+                    merged.extend(self._merge(value))
+                    continue
+                if key.plain and isinstance(text, str) and _NO_KEY.search(text) is not None:
+                    self.doubtful.append(key.start)
             if flow and isinstance(value, Scalar) and value.value is None:
                 if entries and value.start == value.end and not _is_empty(entries[-1].value):
                     self.doubtful.append(key.start)
                 key, value = self._separated(key, value)
-                name = key.value
-            known = first.setdefault(name if isinstance(name, str) else (type(name), name), key)
+                text = key.value
+            known = first.setdefault(text if isinstance(text, str) else _identity(key), key)
             if known is not key:
                 self.report.append(duplicate_key(Word(str(key.value), key.span), known.span))
                 if len(self.report) > MAX_DUPLICATES:
                     message = f"more than {MAX_DUPLICATES:,} keys are duplicates"
                     self._stop(key.span.start, message, "use each key once", "duplicates")
             entries.append(Entry(key, value))
-        if not flow and entries:
+        if not flow and (len(entries) > 1 or "states" in first):
             self._doubt_steps(entries, first)
         for entry in merged:
             if _identity(entry.key) not in first:
@@ -641,7 +641,7 @@ class _Builder:
                 self.misplaced.append(names["states"].start)
             elif "it" in names:
                 self._doubt_iterator(entries)
-        elif len(entries) > 1 and entries[0].value.__class__ is Map:
+        elif entries[0].value.__class__ is Map:
             start = entries[0].key.start
             if self.source.text[start - 2 : start] == "- ":
                 self.misplaced.append(entries[1].key.start)
