@@ -24,11 +24,11 @@ demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everyt
 
 test: ## Run the tests that a change is likely to break; ARGS="-k trace" selects some of them
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 -m "not slow and not ros and not ros2 and not browser" $(ARGS)
+	$(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not slow and not ros and not ros2 and not browser" $(ARGS)
 
 test-all: ## Run every test: also the slow ones, those with live ROS, and those in a browser
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 -m "not ros and not ros2 and not browser" $(ARGS)
+	$(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not ros and not ros2 and not browser" $(ARGS)
 	@$(MAKE) --no-print-directory test-ros test-ros2 test-browser
 
 test-ros: ## Install ROS from Debian and run the tests with live nodes
