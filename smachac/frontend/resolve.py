@@ -263,9 +263,7 @@ class _Resolver:
             own["params"] = self.limit_depth(own["params"])
         params = own.get("params") or params_meant(own)
         begin = begin or self.uses.mark(self.report)
-        scope, via = around.scope, around.via
-        if params is not None:
-            scope = child_scope(scope, params.value, self.report)
+        scope = child_scope(around.scope, params.value, self.report) if params else around.scope
         entries: dict[str, Entry] = {}
         for key, entry in own.items():
             if key == "states":
@@ -280,23 +278,21 @@ class _Resolver:
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
         entries = with_outer_variables(name, entries, owner, type_, self.report)
-        if type_.variables:
-            entries |= self.lists(own, scope, type_)
+        entries |= self.lists(own, scope, type_) if type_.variables else {}
         if scope:
             entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_, self.report)
         self.uses.type(type_)
         if scope:
             self.fixed_params += fixed_params(own, type_, scope)
-        if role != "base":
-            self.count += 1
+        self.count += role != "base"
+        via = around.via
         fields = read_fields(
             name, entries, owner, type_, self.report, scope=scope, inner=around.inner
         )
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)
-        if len(presets) > len(self.most_keys):
-            self.most_keys = presets
+        self.most_keys = presets if len(presets) > len(self.most_keys) else self.most_keys
         sugar: Sugar | None = fields.get("sugar")
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
@@ -318,8 +314,7 @@ class _Resolver:
                 fields["initial"] = Word("", entries["states"].value.span)
         elif owner != "state":
             children = (no_states(name, via),)  # SM005 or SM003 was reported
-        if params is not None:
-            self.uses.params(params.value, begin, self.report, via)
+        self.uses.params(params, begin, self.report, via)
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
         if "outcomes" in entries:

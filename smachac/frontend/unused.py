@@ -62,25 +62,25 @@ class Uses:
         """The current position: a state begins."""
         return len(self.looked_up), self.unknown, len(report)
 
-    def params(self, own: Tree, begin: Mark, report: Report, via: tuple[Span, ...]) -> None:
+    def params(self, own: Entry | None, begin: Mark, report: Report, via: tuple[Span, ...]) -> None:
         """Find the unused params of a state whose reading ends here. With errors or unknown uses in
         the state no param counts as unused."""
-        if not isinstance(own, Map):
+        if own is None or not isinstance(own.value, Map):
             return
         looked_up, unknown, before = begin
         if self.unknown > unknown or has_errors(report[before:]):
             return
         used = set(self.looked_up[looked_up:])
-        for entry in own.entries:
+        for entry in own.value.entries:
             name = str(entry.key.value)
             if name in used:
                 self.defaults.add(entry.key.span)
                 continue
             # Those of a called sub-script are in another text: the call can give them.
-            given = {str(each.key.value) for each in own.entries
+            given = {str(each.key.value) for each in own.value.entries
                      if each.key.span.source is entry.key.span.source}  # fmt: skip
             known = tuple(sorted(used - given))
-            kept = {str(each.key.value): each.value.span for each in own.entries
+            kept = {str(each.key.value): each.value.span for each in own.value.entries
                     if each.key.value in known}  # fmt: skip
             self.found.append(Unused("param", Word(name, entry.key.span), via, known, kept))
             self.anchored[entry.key.span] = [each.span for each in _inside(entry.value)]

@@ -22,7 +22,7 @@ states:
       {more}
       transitions: {{{transitions}}}
 """
-MONITOR = "valid: done, invalid: failed, preempted: failed"
+MONITOR = "valid: failed, invalid: done, preempted: failed"
 WAIT = "succeeded: done, aborted: failed, preempted: failed"
 
 
