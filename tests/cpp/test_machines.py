@@ -90,6 +90,7 @@ def agree(expected: list[Expected], compiler: Compiler, folder: Path, *flags: st
         assert difference is None, f"{machine.root.name}: {difference}"
 
 
+@pytest.mark.slow
 @COMPILERS
 def test_machines_do_what_the_interpreter_does(compiler: Compiler, tmp_path: Path) -> None:
     agree([*of_scripts(), *drawn(1, RANDOM[compiler.name])], compiler, tmp_path)

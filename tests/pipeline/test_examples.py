@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
+from tests.support.examples import every
 
 ROOT = Path(__file__).parents[2] / "examples"
 EXAMPLES = sorted(path.parent.name for path in ROOT.glob("*/main.yml"))
@@ -39,12 +40,12 @@ def test_checks_without_a_warning(name: str, capsys: pytest.CaptureFixture[str])
     assert main(["check", *strict, script(name)]) == 0, capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", every(2, EXAMPLES))
 def test_runs(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", script(name), "--expect", "succeeded"]) == 0, capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", sorted(set(EXAMPLES) - ON_THE_ARM))
+@pytest.mark.parametrize("name", every(2, sorted(set(EXAMPLES) - ON_THE_ARM)))
 def test_the_file_runs_alone_with_warnings_as_errors(name: str, built: Path) -> None:
     (path,) = (built / name).glob("*.py")
     ended = subprocess.run(

@@ -8,7 +8,7 @@ import pytest
 from _pytest.mark import ParameterSet
 from hypothesis import settings
 
-ALL, SOME = 100, 30
+ALL, SOME = 100, 20
 """The examples of a law without a number of its own, in all tests and in `make test`."""
 
 

