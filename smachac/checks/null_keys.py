@@ -33,14 +33,14 @@ def null_keys(context: Context) -> Iterator[Finding]:
 def _null_key(
     context: Context, path: str, container: Container, preset: Preset
 ) -> Iterator[Finding]:
-    readers = [*_readers(container, preset.key)]
+    readers = [*_readers(path, container, preset.key)]
     scope = context.corrected_flow.scopes.get(path) if readers else None
     if scope is None or not _is_always_null(scope, preset.key):
         return
     unread = unread_output(scope, preset.key)
     if unread is None or not may_be(context.types, scope, unread.key, present(preset.type)):
         return
-    for leaf, own in readers:
+    for place, leaf, own in readers:
         names: list[tuple[str, Type]] = [(each.name, ANY) for each in leaf.inputs]
         userdata = mapping((name, NONE if name == own else type_) for name, type_ in names)
         codes = [*(functions(leaf, "callbacks") or {}).values()]
@@ -60,19 +60,32 @@ def _null_key(
                     *other_place(preset.span, f"`{preset.key}` begins as `null`"),
                     *other_place(unread.place, f"nothing reads `{unread.key}`"),
                 ),
-                node=f"{path}/{leaf.name}",
+                node=place,
             )
             return
 
 
-def _readers(container: Container, key: str) -> Iterator[tuple[Leaf, str]]:
-    """The leaves in a container that read a key, with their name for it."""
+def _readers(path: str, container: Container, key: str) -> Iterator[tuple[str, Leaf, str]]:
+    """The leaves in a container and in those below it that read a key, with their paths and their
+    names for it; none below a container that compares the key with null."""
     for child in container.children:
-        if isinstance(child, Leaf):
-            names = remapping(child)
-            for each in child.inputs:
-                if names.get(each.name, each.name) == key:
-                    yield child, each.name
+        names, below = remapping(child), f"{path}/{child.name}"
+        for each in child.inputs:
+            if names.get(each.name, each.name) != key:
+                continue
+            if isinstance(child, Leaf):
+                yield below, child, each.name
+            elif not _is_compared(child, each.name):
+                yield from _readers(below, child, each.name)
+
+
+def _is_compared(container: Container, key: str) -> bool:
+    """Whether a state of a container compares a key with null."""
+    return any(
+        excludes_null(child, key, outcome)
+        for child in container.children
+        for outcome in outcome_names(child)
+    )
 
 
 def _is_always_null(scope: UserdataScope, key: str) -> bool:
@@ -84,9 +97,7 @@ def _is_always_null(scope: UserdataScope, key: str) -> bool:
         names = remapping(child)
         if any(names.get(each.name, each.name) == key for each in child.outputs):
             return False
-        if any(excludes_null(child, key, outcome) for outcome in outcome_names(child)):
-            return False
-    return True
+    return not _is_compared(scope.container, key)
 
 
 def output_for_null(context: Context, path: str, key: str) -> UnreadOutput | None:

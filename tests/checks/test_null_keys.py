@@ -56,3 +56,46 @@ def test_a_key_that_is_always_null(preset: str) -> None:
 )  # fmt: skip
 def test_a_key_that_can_have_a_value(preset: str, code: str, out: str, old: str, new: str) -> None:
     assert [each for each in found(preset, code, out, old, new) if each[0] == "SM311"] == []
+
+
+INSIDE = """\
+name: rack
+template: Base
+outcomes: [light, heavy]
+userdata:
+  rack_mass: {type: float<kg>?, value: null}
+states:
+  - LIFT:
+      template: Lift
+      transitions: {lifted: JUDGE}
+  - JUDGE:
+      template: StateMachine
+      outcomes: [light, heavy]
+      input_keys: [weight]
+      remapping: {weight: rack_mass}
+      states:
+        - KNOWN:
+            template: ConditionalOutcomeState
+            outcomes: [known]
+            input_keys: [weight]
+            callbacks: {known: 'lambda ud: FIRST'}
+            default_outcome: open
+            transitions: {known: CHECK, open: CHECK}
+        - CHECK:
+            template: ConditionalOutcomeState
+            outcomes: [too_heavy]
+            input_keys: [weight]
+            callbacks: {too_heavy: 'lambda ud: ud.weight > 600.0'}
+            default_outcome: ok
+            transitions: {too_heavy: heavy, ok: light}
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "expected"),
+    [("True", [("SM311", "ud.weight > 600.0", HELP)]), ("ud.weight is not None", [])],
+)
+def test_a_key_of_a_container_around(first: str, expected: list[tuple[str, str, str]]) -> None:
+    files = {"main.yml": INSIDE.replace("FIRST", first),
+             "templates/Lift.yml": LIFT.replace("OUT", "mass")}  # fmt: skip
+    assert [each for each in reported(files) if each[0] == "SM311"] == expected
