@@ -8,7 +8,7 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-ros test-ros2 test-browser test-vscode test-lowest check golden docs viewer bench build clean
+.PHONY: help demo test test-all test-ros test-ros2 test-browser test-vscode test-lowest check check-mypy check-pyright golden docs viewer bench build clean
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
@@ -65,7 +65,12 @@ check: ## Lint, formatting and types; a warning fails
 	@scripts/setup.sh dev
 	$(RUN) ruff check
 	$(RUN) ruff format --check
+	@$(MAKE) --no-print-directory -j 2 --output-sync check-mypy check-pyright
+
+check-mypy:
 	$(RUN) mypy
+
+check-pyright:
 	$(RUN) pyright --warnings
 
 golden: ## Rewrite the expected output of the tests and in docs; review it with git diff
