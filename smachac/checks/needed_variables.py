@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from smachac.checks.messages import calls, other_place
+from smachac.checks.type_words import placeholder
 from smachac.diagnostics.diagnostic import Finding
-from smachac.diagnostics.source import Span
+from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import edges, reachable
 from smachac.ir.leaf import variable
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Sequence, StateMachine, StateType
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Leaf,
+    Node,
+    Sequence,
+    StateMachine,
+    StateType,
+    Transition,
+)
 from smachac.ir.traversal import leads_to_child
 
 _Never = dict[str, dict[str, tuple[str, ...]]]
@@ -25,17 +35,21 @@ def outcomes_without_variable(
     """The outcomes that need a variable without a value, where the script relies on them: in a rule
     of a concurrence, or on the only path to a state or an end of the container."""
     never = {child.name: found for child in container.children if (found := _never(child, types))}
+    children = {child.name: child for child in container.children}
     match container:
-        case _ if not never:
+        case _ if not never or len(children) < len(container.children):  # SM106
             return
         case Concurrence():
             for entry in container.rules:
                 for condition in entry.when:
                     if condition.outcome in never.get(condition.child, ()):
-                        yield _finding(path, container, never, condition.child, condition.outcome,
-                                       condition.span)  # fmt: skip
+                        word = Word(condition.outcome, condition.span)
+                        yield _finding(path, children[condition.child], never, word, types)
         case StateMachine() | Sequence():
-            yield from _only_ways(path, container, never)
+            yield from (
+                _finding(path, child, never, Word(step.outcome, step.span), types)
+                for child, step in _only_ways(container, never)
+            )
 
 
 def _never(child: Node, types: Mapping[str, StateType]) -> dict[str, tuple[str, ...]]:
@@ -49,8 +63,11 @@ def _never(child: Node, types: Mapping[str, StateType]) -> dict[str, tuple[str, 
     }
 
 
-def _only_ways(path: str, container: StateMachine | Sequence, never: _Never) -> Iterator[Finding]:
-    """The transitions for impossible outcomes that are the only ones to their target."""
+def _only_ways(
+    container: StateMachine | Sequence, never: _Never
+) -> Iterator[tuple[Node, Transition]]:
+    """The transitions for impossible outcomes that are the only ones to their target, each with its
+    state."""
     children = tuple(
         replace(child, transitions=tuple(step for step in child.transitions
                                          if step.outcome not in never[child.name]))
@@ -66,24 +83,22 @@ def _only_ways(path: str, container: StateMachine | Sequence, never: _Never) -> 
                 continue
             inside = leads_to_child(step, entered)
             if step.target not in still if inside else ("outcome", step.target) not in ends:
-                yield _finding(path, container, never, child.name, step.outcome, step.span)
+                yield child, step
 
 
 def _finding(
-    path: str, container: Container, never: _Never, name: str, outcome: str, span: Span
+    path: str, child: Node, never: _Never, outcome: Word, types: Mapping[str, StateType]
 ) -> Finding:
-    child = next(each for each in container.children if each.name == name)
-    names = never[name][outcome]
+    """`outcome`: the impossible outcome, with the place where the script relies on it."""
+    name, names = child.name, never[child.name][outcome.text]
     lacking = f"`{names[0]}` has no value" if len(names) == 1 else f"{listed(names)} have no value"
+    variables = types[child.type].variables
+    added = [f"`{each}: {placeholder(variables[each].type)}`" for each in names]
     return Finding(
-        span=span,
-        message=f"`{name}` never ends with `{outcome}`: {lacking}",
-        arguments=(outcome, name),
-        help=f"add {_alternatives(names)} to `{name}`, or write another outcome",
-        related=(*other_place(child.span, f"`{name}` is here"), *calls(child, span)),
+        span=outcome.span,
+        message=f"`{name}` never ends with `{outcome.text}`: {lacking}",
+        arguments=(outcome.text, name),
+        help=f"add {' or '.join(added)} to `{name}`, or use another of its outcomes here",
+        related=(*other_place(child.span, f"`{name}` is here"), *calls(child, outcome.span)),
         node=f"{path}/{name}",
     )
-
-
-def _alternatives(names: Iterable[str]) -> str:
-    return " or ".join(f"`{name}: ...`" for name in names)

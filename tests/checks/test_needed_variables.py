@@ -22,7 +22,7 @@ states:
       outcomes: [done]
       transitions: {done: charged}
 """
-HELP = "add `max_checks: ...` to `WATCH`, or write another outcome"
+HELP = "add `max_checks: 3` to `WATCH`, or use another of its outcomes here"
 LIMITED = ("cond_cb:", "max_checks: 3\n      cond_cb:")
 
 
@@ -50,6 +50,16 @@ def test_a_variable_that_is_null_has_no_value(null: str) -> None:
 def test_a_state_with_another_way_to_it() -> None:
     assert found("CHARGE", "CHARGE", ("[charged, empty,", "[charged,")) == []
     assert found("charged", "CHARGE", ("[charged, empty,", "[charged,")) == []
+
+
+def test_states_with_one_name_are_not_judged() -> None:
+    second = (
+        "  - WATCH: {template: ScriptedState, outcomes: [valid], transitions: {valid: empty}}\n"
+    )
+    text = MAIN.replace("GOOD", "CHARGE").replace("LOW", "empty")
+    codes = {each[0] for each in reported({"main.yml": text + second})}
+    assert "SM106" in codes
+    assert "SM203" not in codes
 
 
 BOTH = """\
@@ -83,7 +93,7 @@ states:
 def test_a_rule_of_a_concurrence(variable: str, expected: int) -> None:
     text = BOTH.replace("topic: battery", f"topic: battery\n            {variable}")
     findings = [each for each in reported({"main.yml": text}) if each[0] == "SM203"]
-    help = "add `timeout: ...` or `msg_cb: ...` to `WAIT`, or write another outcome"
+    help = "add `timeout: 1.5` or `msg_cb: ...` to `WAIT`, or use another of its outcomes here"
     assert findings == [("SM203", "WAIT", help)] * expected
 
 
@@ -105,7 +115,7 @@ states:
 
 def test_an_interface_of_the_user() -> None:
     files = {"main.yml": SCRIPT, "templates/Weigh.yml": WEIGH.replace("NEEDS", "limit")}
-    help = "add `limit: ...` to `WEIGH`, or write another outcome"
+    help = "add `limit: 1.5` to `WEIGH`, or use another of its outcomes here"
     assert reported(files) == [("SM203", "heavy", help)]
 
 
