@@ -278,21 +278,24 @@ class _Resolver:
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
         entries = with_outer_variables(name, entries, owner, type_, self.report)
-        entries |= self.lists(own, scope, type_) if type_.variables else {}
+        if type_.variables:
+            entries |= self.lists(own, scope, type_)
         if scope:
             entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_, self.report)
         self.uses.type(type_)
         if scope:
             self.fixed_params += fixed_params(own, type_, scope)
-        self.count += role != "base"
+        if role != "base":
+            self.count += 1
         via = around.via
         fields = read_fields(
             name, entries, owner, type_, self.report, scope=scope, inner=around.inner
         )
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)
-        self.most_keys = presets if len(presets) > len(self.most_keys) else self.most_keys
+        if len(presets) > len(self.most_keys):
+            self.most_keys = presets
         sugar: Sugar | None = fields.get("sugar")
         if sugar is not None and (sugar.timeout is not None or sugar.retry is not None):
             self.state_type(TIMER)
@@ -302,10 +305,7 @@ class _Resolver:
             return unknown_state(name, fields.get("transitions", ()), via)
         children: tuple[State, ...] = ()
         if "states" in entries and around.depth >= MAX_NESTED:
-            message = f"containers are nested deeper than {MAX_NESTED:,} levels"
-            span = entries["states"].key.span
-            help = "use fewer levels of containers"
-            self.report.append(too_big(span, message, help, arguments=("containers",)))
+            self.report.append(_nested_too_deep(entries["states"].key.span))
             return unknown_state(name, fields.get("transitions", ()), via)
         if "states" in entries and owner != "state":
             inside = _Environment(around.source, scope, around.calls, around.depth + 1)
@@ -674,3 +674,9 @@ def _remapping_in_iterator(span: Span) -> Diagnostic:
     message = "the state of an Iterator cannot have a remapping: it uses the Iterator's keys"
     help = "rename the keys, or put the state into a StateMachine and remap there"
     return wrong_shape(span, message, help, arguments=("remapping",))
+
+
+def _nested_too_deep(span: Span) -> Diagnostic:
+    """SM006 for the `states` of a container below too many others."""
+    message = f"containers are nested deeper than {MAX_NESTED:,} levels"
+    return too_big(span, message, "use fewer levels of containers", arguments=("containers",))
