@@ -13,7 +13,7 @@ import array
 import math
 import reprlib
 import sys
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from numbers import Integral, Real
 from typing import Any
@@ -86,6 +86,25 @@ def filled(message: Any, values: Any, name: str | None = None) -> Any:
         return message
     except FieldError as error:
         raise error.inside(name or type(message).__name__) from None
+
+
+def checking(kind: type[Any], callback: Callable[..., Any] | None = None) -> Callable[..., Any]:
+    """A callback for a goal or a request of the class `kind`, for states that check no field.
+
+    It calls `callback`, whose outcomes and keys it has, and returns the message to send. FieldError
+    for a value that does not fit ends a state of smach_ros as aborted.
+    """
+
+    def call(userdata: Any, message: Any, *args: Any, **kwargs: Any) -> Any:
+        changed = None if callback is None else callback(userdata, message, *args, **kwargs)
+        name = kind.__name__.rpartition("_")[2].lower()
+        return checked(message if changed is None else changed, kind, name)
+
+    for getter in ("outcomes", "input_keys", "output_keys"):
+        name = f"get_registered_{getter}"
+        if hasattr(callback, name):
+            setattr(call, name, getattr(callback, name))
+    return call
 
 
 def is_message(value: Any) -> bool:
@@ -285,7 +304,9 @@ def _is_array(value: Any) -> bool:
 
 def _allows(kind: Any, length: int) -> bool:
     """Whether a type with a limit allows a length."""
-    return length == kind.size if isinstance(kind, definition.Array) else length <= kind.maximum_size
+    return (
+        length == kind.size if isinstance(kind, definition.Array) else length <= kind.maximum_size
+    )
 
 
 def _misfit(wanted: str, value: Any) -> FieldError:

@@ -196,16 +196,17 @@ class Publications:
         """
         create = message if callable(message) else lambda: message
 
-        def publish() -> None:
-            publisher.publish(checked(create(), msg_type, "msg"))
+        def checked_message() -> Any:
+            return checked(create(), msg_type, "msg")
 
         def publish_next() -> None:
             try:
-                publish()
+                publisher.publish(checked_message())
             except FieldError as error:
                 smach.logerr(f"the publication on '{topic}' ends: {error}")
                 self._stop_timer(topic)
 
+        first = checked_message()
         self._stop_timer(topic)
         with self._changing:
             publisher = self._publishers.get(topic)
@@ -213,7 +214,7 @@ class Publications:
                 profile = qos_profiles.profile(qos)
                 publisher = self._node.create_publisher(msg_type, topic, profile)
                 self._publishers[topic] = publisher
-            publish()
+            publisher.publish(first)
             if rate is not None:
                 self._timers[topic] = self._node.create_timer(
                     1 / rate, publish_next, callback_group=ros.own_group()
