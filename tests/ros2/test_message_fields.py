@@ -231,7 +231,7 @@ place(request_cb=lambda ud, request: {"parts": [{"name": "by a mapping"}]})
         "`request.thing.short_text` is string<=8, and the text has 9 characters",
         "`request.thing.few` is int32[<=4], and the list has 5 values",
         "`request.thing` is smachac_test_interfaces/msg/AllFields, not smachac_test_interfaces/msg",
-        "`request` is smachac_test_interfaces/srv/Place_Request, not smachac_test_interfaces/msg/Part",
+        "`request` is smachac_test_interfaces/srv/Place_Request, not smachac_test_interfaces/msg",
         "not None",
         "`request.parts[0].position` is float64[3], and the list has 1 values",
         "`request.thing.part.pose.position.x` is float64, not 'far'",
@@ -394,3 +394,10 @@ go(goal=Fibonacci.Goal(order=2))
     assert (
         f"{feedback} test_msgs/action/Fibonacci_Feedback, not std_msgs/msg/String" in server.output
     )
+
+
+def test_values_of_every_type_are_converted_or_refused_with_their_path(graph2: Graph) -> None:
+    graph2.use_interfaces()
+    laws = graph2.node("message_laws")
+    assert laws.end() == 0, laws.output
+    assert "sent: 8 messages of each of" in laws.output

@@ -24,8 +24,16 @@ definition: Any = ros.load("rosidl_parser.definition")
 """The classes of the types of fields, as the messages of rclpy describe themselves."""
 
 CODES: Mapping[str, str] = {
-    **{"int8": "b", "int16": "h", "int32": "i", "int64": "q", "float": "f", "double": "d"},
-    **{"uint8": "B", "uint16": "H", "uint32": "I", "uint64": "Q"},
+    "int8": "b",
+    "int16": "h",
+    "int32": "i",
+    "int64": "q",
+    "uint8": "B",
+    "uint16": "H",
+    "uint32": "I",
+    "uint64": "Q",
+    "float": "f",
+    "double": "d",
 }
 """The type code of `array.array` for each type of numbers whose lists are arrays."""
 
@@ -37,7 +45,10 @@ FLOATS: Mapping[str, float] = {
 """The largest finite number of each type of floats."""
 
 NAMES: Mapping[str, str] = {
-    **{"boolean": "bool", "octet": "byte", "float": "float32", "double": "float64"},
+    "boolean": "bool",
+    "octet": "byte",
+    "float": "float32",
+    "double": "float64",
 }
 """The names of types in .msg files, where they differ from those of the IDL."""
 
@@ -227,7 +238,7 @@ def _is_bool(value: Any) -> bool:
     """Whether a value is a truth value, also one of numpy, or 0 or 1."""
     if isinstance(value, Integral):
         return value in (0, 1)
-    return getattr(value, "dtype", None) == bool and value.ndim == 0
+    return getattr(value, "dtype", None) == "bool" and value.ndim == 0
 
 
 def _text(kind: Any, value: Any) -> str:
@@ -304,9 +315,8 @@ def _is_array(value: Any) -> bool:
 
 def _allows(kind: Any, length: int) -> bool:
     """Whether a type with a limit allows a length."""
-    return (
-        length == kind.size if isinstance(kind, definition.Array) else length <= kind.maximum_size
-    )
+    is_fixed = isinstance(kind, definition.Array)
+    return bool(length == kind.size if is_fixed else length <= kind.maximum_size)
 
 
 def _misfit(wanted: str, value: Any) -> FieldError:
