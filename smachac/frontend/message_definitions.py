@@ -33,10 +33,13 @@ from smachac.ir.message_types import (
     MissingDefinitions,
     OtherTypes,
 )
-from smachac.ir.nodes import DEFINITION_KINDS
+from smachac.ir.nodes import DEFINITION_KINDS, Expression
 
 LONGEST = 1_000_000
 """The longest file that is read, in characters."""
+
+MOST_CODE = 10_000
+"""The longest code in which calls of messages are searched, in characters."""
 
 MOST_OTHERS = 100
 """Limit on the types of a package that are searched for fields."""
@@ -48,6 +51,9 @@ _TYPE = re.compile(
     re.ASCII,
 )
 
+
+_CALLED = re.compile(r"(?<![\w.])(?:[a-z]\w*\.msg\.)?[A-Z]\w*(?=\()", re.ASCII)
+"""The call of a class, such as that of a message: `Bool(`, `std_msgs.msg.Bool(`."""
 
 _MADE = re.compile(r"(Action|ActionGoal|ActionResult|ActionFeedback|Goal|Result|Feedback)\Z")
 """The names of messages that ROS 1 makes of an action."""
@@ -136,6 +142,10 @@ def definitions_of(base: State, classes: Iterable[ClassFacts], library: Library)
     for facts in classes:
         for kind, text, _ in _readings(facts):
             todo.append((kind, text))
+    for text, name in _called_messages(base, library).items():
+        found["msg", text] = find_definitions(name, "msg", library)
+        for each in found["msg", text]:
+            todo.extend(("msg", nested) for nested in _nested(each))
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:
@@ -205,6 +215,29 @@ def _named_types(base: State) -> dict[tuple[DefinitionKind, str], None]:
             text = preset.value.data if preset.key.endswith("type") else None
             if isinstance(text, str) and type_name(text, "msg") is not None:
                 found["msg", text] = None
+    return found
+
+
+def _called_messages(base: State, library: Library) -> dict[str, str]:
+    """The names of the messages whose classes the code of a script calls, by the words of the call:
+    `std_msgs.msg.Bool(data=True)`, or `Bool(data=True)`, which a program imports from the only
+    common package that has it, unless a type of the script or a base of the user has its name."""
+    named = {re.split(r"[/.]", text)[-1] for _, text in _named_types(base)}
+    code = base.type.code.get("python", f"{base.type.name}.tpl.py")
+    found: dict[str, str] = {}
+    todo = [base]
+    while todo:
+        state = todo.pop()
+        todo += state.states
+        data = [held.value.data for held in (*state.variables, *state.userdata)]
+        codes = [each.text if isinstance(each, Expression) else each for each in data]
+        texts = [each for each in codes if isinstance(each, str) and len(each) <= MOST_CODE]
+        for word in [each for text in texts for each in _CALLED.findall(text)]:
+            if "." in word:
+                found[word] = word
+            elif word not in named and word not in found and library.own_template(code) is None:
+                packages = packages_with(word, "msg", library.ros)
+                found |= {word: f"{packages[0]}/{word}"} if len(packages) == 1 else {}
     return found
 
 

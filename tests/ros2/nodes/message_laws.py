@@ -25,7 +25,7 @@ NUMPY = {"float": "float32", "double": "float64"}
 """The names of types in numpy that differ from those of the definitions."""
 
 LARGEST = {"float": math.ldexp(1.0, 127)}
-"""A large number of a type: the limit in the checks of rclpy is rounded below the largest float32."""
+"""A large number of a type: the limit in the checks of rclpy is below the largest float32."""
 
 WRONG: dict[str, list[Any]] = {
     "boolean": [2, "x", 1.0, None],
