@@ -149,6 +149,9 @@ REFUSED_LISTS = {
     "bool_values=[True, False, 2]": "`request.bool_values[2]` is bool, not 2",
     "byte_values=['a', 'b', 'c']": "`request.byte_values[0]` is byte, not 'a'",
     "float64_values=[1.0]": "`request.float64_values` is float64[3], and the list has 1 values",
+    "float64_values=numpy.ma.array([1.0, 2.0, 3.0], mask=[0, 1, 0])": (
+        "`request.float64_values[1]` is float64, not None"
+    ),
     "float64_values=numpy.eye(3)": "`request.float64_values` is float64[3], and the array has the",
     "string_values='abc'": "`request.string_values` is string[3], not 'abc'",
     "string_values=['a', 'b', 3]": "`request.string_values[2]` is string, not 3",
@@ -232,7 +235,7 @@ place(request_cb=lambda ud, request: {"parts": [{"name": "by a mapping"}]})
         "`request.thing.few` is int32[<=4], and the list has 5 values",
         "`request.thing` is smachac_test_interfaces/msg/AllFields, not smachac_test_interfaces/msg",
         "`request` is smachac_test_interfaces/srv/Place_Request, not smachac_test_interfaces/msg",
-        "not None",
+        "Place_Request (a mapping or a list of thing, parts), not None",
         "`request.parts[0].position` is float64[3], and the list has 1 values",
         "`request.thing.part.pose.position.x` is float64, not 'far'",
     ):
@@ -401,3 +404,24 @@ def test_values_of_every_type_are_converted_or_refused_with_their_path(graph2: G
     laws = graph2.node("message_laws")
     assert laws.end() == 0, laws.output
     assert "sent: 8 messages of each of" in laws.output
+
+
+DURATIONS = """
+from smachac.runtime.smach_ros2.ros import duration
+
+print([duration(each).nanoseconds for each in (2.01, 0.1, 5, 1.9999999999, -0.5, 1e-9, 86400.3)])
+print("threads left: []")
+"""
+
+
+def test_a_duration_is_the_nearest_to_its_seconds(graph2: Graph) -> None:
+    nanoseconds = [
+        2_010_000_000,
+        100_000_000,
+        5_000_000_000,
+        2_000_000_000,
+        -500_000_000,
+        1,
+        86_400_300_000_000,
+    ]
+    assert f"{nanoseconds}\n" in graph2.run(DURATIONS)

@@ -222,5 +222,5 @@ def test_messages_are_made_from_values(graph2: Graph) -> None:
     assert lines[5].startswith("FieldError `PoseStamped.pose.positon` does not exist")
     assert "the fields of geometry_msgs/msg/Pose are position, orientation" in lines[5]
     assert "`PoseStamped.pose.position.x` is float64, not 'far'" in lines[6]
-    assert "Pose, made of a mapping or a list of position, orientation, not" in lines[7]
+    assert "Pose (a mapping or a list of position, orientation), not" in lines[7]
     assert lines[8] == "PointCloud2 3 PoseStamped"

@@ -167,8 +167,8 @@ def _by_name(message: Any, values: Any) -> Iterable[tuple[str, Any]]:
         return zip(names, divmod(ros.nanoseconds(float(values)), ros.NANOSECONDS), strict=True)
     is_list = isinstance(values, Sequence) and not isinstance(values, str | bytes)
     if not (is_list or _is_array(values)) or len(values) != len(names):
-        wanted = f"a mapping or a list of {', '.join(names)}"
-        raise _misfit(f"{_type_name(type(message))}, made of {wanted}", values)
+        made_of = f"a mapping or a list of {', '.join(names) or 'nothing'}"
+        raise _misfit(f"{_type_name(type(message))} ({made_of})", values)
     return zip(names, values, strict=True)
 
 
@@ -195,7 +195,7 @@ def _basic(name: str, value: Any) -> Any:
         fitting = bool(value) if _is_bool(value) else None
     elif name == "octet":
         if isinstance(value, Integral):
-            fitting = bytes([int(value)]) if 0 <= value <= 255 else None
+            fitting = bytes([int(value)]) if 0 <= int(value) <= 255 else None
         elif not isinstance(value, bytes) or len(value) != 1:
             fitting = None
     elif name in CODES:
@@ -238,7 +238,7 @@ def _is_bool(value: Any) -> bool:
     """Whether a value is a truth value, also one of numpy, or 0 or 1."""
     if isinstance(value, Integral):
         return value in (0, 1)
-    return getattr(value, "dtype", None) == "bool" and value.ndim == 0
+    return bool(getattr(value, "dtype", None) == "bool" and value.ndim == 0)
 
 
 def _text(kind: Any, value: Any) -> str:
@@ -289,7 +289,9 @@ def _numbers(kind: Any, name: str, value: Any) -> Any:
     """The numbers of a list: an array of numpy for a type with a fixed length, otherwise an
     `array.array`. An array that has this type of numbers is not read."""
     code, is_fixed = CODES[name], isinstance(kind, definition.Array)
-    if hasattr(value, "tobytes") and getattr(value, "dtype", None) == code:
+    # The subclasses of numpy's array, such as masked arrays, are read value by value.
+    is_numpy = (type(value).__module__, type(value).__name__) == ("numpy", "ndarray")
+    if is_numpy and value.dtype == code:
         return value if is_fixed else array.array(code, value.tobytes())
     if isinstance(value, array.array) and value.typecode == code and not is_fixed:
         return value

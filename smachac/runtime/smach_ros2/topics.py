@@ -209,7 +209,7 @@ class Publications:
         first = checked_message()
         self._stop_timer(topic)
         with self._changing:
-            publisher = self._publishers.get(topic)
+            publisher: Any = self._publishers.get(topic)
             if publisher is None:
                 profile = qos_profiles.profile(qos)
                 publisher = self._node.create_publisher(msg_type, topic, profile)
