@@ -196,10 +196,10 @@ def unknown_field(context: Context) -> Iterator[Finding]:
                 yield from wrong_reads(path, node, code, found, here)
                 yield from wrong_comparisons(path, node, code, found, here)
                 yield from wrong_operands(path, node, operands_of(slot, code), code, found, here)
-    for path, node in context.states if found else ():
-        for preset in node.userdata if isinstance(node, Container) else ():
+    for path, container in context.containers if found else ():
+        for preset in container.userdata:
             if isinstance(preset.value.data, Expression):
-                yield from _wrong_calls(path, node, preset.value.data, found)
+                yield from _wrong_calls(path, container, preset.value.data, found)
     yield from faults_in_classes(context, found, missing)
 
 

@@ -128,8 +128,8 @@ def _fits_item(data: Data, wanted: FieldType) -> bool:
         least, most = _bounds(name)
         return isinstance(data, int) and not isinstance(data, bool) and least <= data <= most
     if name in FLOATS:
-        most = LARGEST_FLOATS[name]
-        return is_number(data) and (abs(data) <= most or not math.isfinite(data))
+        is_infinity_or_nan = isinstance(data, float) and not math.isfinite(data)
+        return is_number(data) and (abs(data) <= LARGEST_FLOATS[name] or is_infinity_or_nan)
     if name in TEXTS:
         return isinstance(data, str) and (wanted.longest is None or len(data) <= wanted.longest)
     if "/" not in name or name.endswith(_SECONDS):

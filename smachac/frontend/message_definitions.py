@@ -15,7 +15,11 @@ from typing import NamedTuple
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
-from smachac.frontend.standard_messages import packages_with, standard_package
+from smachac.frontend.standard_messages import (
+    packages_by_message,
+    packages_with,
+    standard_package,
+)
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.leaf import given_fields, type_text
 from smachac.ir.message_types import (
@@ -222,22 +226,24 @@ def _called_messages(base: State, library: Library) -> dict[str, str]:
     """The names of the messages whose classes the code of a script calls, by the words of the call:
     `std_msgs.msg.Bool(data=True)`, or `Bool(data=True)`, which a program imports from the only
     common package that has it, unless a type of the script or a base of the user has its name."""
-    named = {re.split(r"[/.]", text)[-1] for _, text in _named_types(base)}
-    code = base.type.code.get("python", f"{base.type.name}.tpl.py")
-    found: dict[str, str] = {}
+    words: dict[str, None] = {}
     todo = [base]
     while todo:
         state = todo.pop()
         todo += state.states
-        data = [held.value.data for held in (*state.variables, *state.userdata)]
+        data = [held.value.data for held in state.variables]
+        data += [preset.value.data for preset in state.userdata]
         codes = [each.text if isinstance(each, Expression) else each for each in data]
         texts = [each for each in codes if isinstance(each, str) and len(each) <= MOST_CODE]
-        for word in [each for text in texts for each in _CALLED.findall(text)]:
-            if "." in word:
-                found[word] = word
-            elif word not in named and word not in found and library.own_template(code) is None:
-                packages = packages_with(word, "msg", library.ros)
-                found |= {word: f"{packages[0]}/{word}"} if len(packages) == 1 else {}
+        words |= dict.fromkeys(word for text in texts for word in _CALLED.findall(text))
+    found = {word: word for word in words if "." in word}
+    code = base.type.code.get("python", f"{base.type.name}.tpl.py")
+    if len(found) < len(words) and library.own_template(code) is None:
+        named = {re.split(r"[/.]", text)[-1] for _, text in _named_types(base)}
+        packages = packages_by_message(library.ros)
+        for word in words:
+            if word not in named and len(packages.get(word, ())) == 1:
+                found[word] = f"{packages[word][0]}/{word}"
     return found
 
 

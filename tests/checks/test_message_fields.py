@@ -443,6 +443,11 @@ BOUNDED = {
         ("{tags: [ab, abc]}", "[ab, abc]", "write a value of the type `string<=2[]`"),
         ("{few: [1, 2, 3]}", "[1, 2, 3]", "shorten the list: it has 3 values, the limit is 2"),
         ("{speed: 1.0e+39}", "1.0e+39", "write a value of the type `float32`, such as `1.5`"),
+        (
+            f"{{force: 1{'0' * 400}}}",
+            f"1{'0' * 400}",
+            "write a value of the type `float64`, such as `1.5`",
+        ),
         ("Pick.Goal(note='abcd')", "note", "shorten the text: it has 4 characters, the limit is 3"),
         ("Pick.Goal(few=[1, 2.5])", "few", "write a value of the type `int32[<=2]`"),
         ("PickGoal(speed=-1e39)", "speed", "write a value of the type `float32`, such as `1.5`"),

@@ -161,10 +161,9 @@ def _by_name(message: Any, values: Any) -> Iterable[tuple[str, Any]]:
         return values.items()
     if is_message(values):
         raise _misfit(_type_name(type(message)), values)
-    if names == ["sec", "nanosec"] and isinstance(values, Real) and not isinstance(values, bool):
-        if not math.isfinite(values):
-            raise _misfit(_type_name(type(message)), values)
-        return zip(names, divmod(ros.nanoseconds(float(values)), ros.NANOSECONDS), strict=True)
+    seconds = _float(values, FLOATS["double"]) if names == ["sec", "nanosec"] else None
+    if seconds is not None and math.isfinite(seconds):
+        return zip(names, divmod(ros.nanoseconds(seconds), ros.NANOSECONDS), strict=True)
     is_list = isinstance(values, Sequence) and not isinstance(values, str | bytes)
     if not (is_list or _is_array(values)) or len(values) != len(names):
         made_of = f"a mapping or a list of {', '.join(names) or 'nothing'}"
@@ -230,8 +229,8 @@ def _float(value: Any, most: float) -> float | None:
 def _is_in_range(name: str, number: int) -> bool:
     """Whether a number is one of a type of integers."""
     bits = int(name.removeprefix("u").removeprefix("int"))
-    least, most = (0, 2**bits) if name.startswith("u") else (-(2 ** (bits - 1)), 2 ** (bits - 1))
-    return least <= number < most
+    least = 0 if name.startswith("u") else -1 << (bits - 1)
+    return least <= number < least + (1 << bits)
 
 
 def _is_bool(value: Any) -> bool:

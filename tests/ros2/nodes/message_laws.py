@@ -108,10 +108,8 @@ def message(kind: Any) -> tuple[Any, dict[str, Any]]:
     pairs = [valid(field) for field in kind.SLOT_TYPES]
     values = dict(zip(names, [value for value, _ in pairs], strict=True))
     wanted = dict(zip(names, [want for _, want in pairs], strict=True))
-    form = chosen.choice(
-        [lambda: values, lambda: list(values.values()), lambda: filled(kind(), values)]
-    )
-    return form(), wanted
+    forms = [values, list(values.values()), filled(kind(), values)]
+    return chosen.choice(forms), wanted
 
 
 def plain(value: Any) -> Any:
