@@ -11,7 +11,8 @@ import random
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from smachac.diagnostics.diagnostic import Diagnostic, Edit, Severity
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
+from smachac.diagnostics.repair import Edit, Repair, edited_texts
 from tests.trust.kept_mutations import KEPT_MUTATIONS
 from tests.trust.project_text import analysed
 from tests.trust.text_mutations import TEXT_MUTATIONS, TextMutant, TextMutation
@@ -24,12 +25,18 @@ Files = Mapping[str, str]
 @dataclass(frozen=True, slots=True)
 class JudgedRepair:
     """A mutant of a project with its findings, errors and warnings, in the order in which they are
-    printed. `original` are the files before the mutation."""
+    printed. `original` are the files before the mutation, `files` those after it."""
 
     original: Files
     file: str
+    files: Files
     mutant: TextMutant
     findings: tuple[Diagnostic, ...]
+
+    def after(self, repair: Repair) -> tuple[Diagnostic, ...]:
+        """The findings after a repair."""
+        new = {source.name: text for source, text in edited_texts(repair.edits).items()}
+        return findings({**self.files, **new})
 
     @property
     def named(self) -> bool:
@@ -38,14 +45,16 @@ class JudgedRepair:
 
     @property
     def edits(self) -> tuple[Edit, ...]:
-        """The edits of the first finding that has some."""
-        return next((item.finding.edits for item in self.findings if item.finding.edits), ())
+        """The edits of the best repair of the first finding that has one."""
+        repairs = (item.finding.all_repairs for item in self.findings)
+        return next((found[0].edits for found in repairs if found), ())
 
     @property
     def restored(self) -> bool:
         """Whether the edits restore the original text of every file that they change, exactly."""
         return bool(self.edits) and all(
-            text == self.original.get(name) for name, text in applied(self.edits).items()
+            text == self.original.get(source.name)
+            for source, text in edited_texts(self.edits).items()
         )
 
 
@@ -55,15 +64,6 @@ def names_all(item: Diagnostic, lost: tuple[str, ...]) -> bool:
     return all(piece in words for piece in lost)
 
 
-def applied(edits: tuple[Edit, ...]) -> dict[str, str]:
-    """The texts of the files after some edits, by name."""
-    texts = {edit.span.source.name: edit.span.source.text for edit in edits}
-    for edit in sorted(edits, key=lambda edit: edit.span.start, reverse=True):
-        name = edit.span.source.name
-        texts[name] = texts[name][: edit.span.start] + edit.text + texts[name][edit.span.end :]
-    return texts
-
-
 def judged(files: Files, kind: str, seed: str) -> JudgedRepair | None:
     """One mutant of a project, judged; None if the mutation does not fit its file."""
     draw = random.Random(seed)
@@ -71,7 +71,8 @@ def judged(files: Files, kind: str, seed: str) -> JudgedRepair | None:
     mutant = ALL_MUTATIONS[kind](files[file], draw)
     if mutant is None:
         return None
-    return JudgedRepair(files, file, mutant, findings({**files, file: mutant.text}))
+    changed = {**files, file: mutant.text}
+    return JudgedRepair(files, file, changed, mutant, findings(changed))
 
 
 def scripts(files: Files) -> list[str]:

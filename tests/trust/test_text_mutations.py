@@ -5,8 +5,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import pytest
 
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from tests.trust.judged_repairs import JudgedRepair, judged
 from tests.trust.text_mutations import TEXT_MUTATIONS
 from tests.trust.unusual_projects import unusual_projects
@@ -44,3 +47,25 @@ def test_most_damage_gives_one_finding_that_names_what_was_lost() -> None:
     named = sum(each.named for each in reported)
     assert single >= LEAST_SINGLE * len(reported)
     assert named >= LEAST_NAMED * len(reported)
+
+
+@pytest.mark.parametrize("kind", TEXT_MUTATIONS)
+def test_a_repair_removes_its_finding_and_adds_no_error(kind: str) -> None:
+    """The best repair of each finding; those of syntax errors may uncover other faults."""
+    for judged_repair in found(kind, EACH):
+        for item in judged_repair.findings:
+            for repair in item.finding.all_repairs[:1]:
+                after = judged_repair.after(repair)
+                before = equal_to(item, judged_repair.findings)
+                assert equal_to(item, after) < before, (judged_repair.mutant, item.message)
+                assert errors(after) <= errors(judged_repair.findings), judged_repair.mutant
+
+
+def errors(report: Iterable[Diagnostic]) -> int:
+    return sum(item.severity is Severity.ERROR for item in report)
+
+
+def equal_to(item: Diagnostic, report: Iterable[Diagnostic]) -> int:
+    """The number of findings with the code and the arguments of one."""
+    key = (item.code, item.finding.arguments)
+    return sum((other.code, other.finding.arguments) == key for other in report)
