@@ -1,0 +1,184 @@
+"""The search for what was meant: repairs of rules and of operators, each tried by a new check.
+
+A repair is proven if the script with it has fewer findings, none that is new, and if no less of it
+is understood: a state of an unknown type silences rules and corrects nothing. Literature: Lerner
+et al., Searching for type-error messages, PLDI 2007; Chen and Erwig, Counter-factual typing for
+debugging type errors, POPL 2014.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple, TypeAlias
+
+from smachac.batch import Batch, analyse_alone
+from smachac.diagnostics.clusters import Cluster
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, identity
+from smachac.diagnostics.repair import edited_texts
+from smachac.diagnostics.source import Source
+from smachac.driver import Analysis, MachineCheck, analyse
+from smachac.frontend.loader import Library
+from smachac.frontend.yaml_mends import parse_mended
+from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.traversal import walk
+from smachac.repair.operators import Candidate, Text, candidates, text_of
+
+MOST_CLUSTERS = 10
+"""The most findings of a report for which a repair is searched."""
+
+LONGEST_TEXT = 200_000
+"""In characters. In a longer text nothing is searched: each trial is a check."""
+
+Again: TypeAlias = "Callable[[Mapping[Source, str]], Analysis]"
+"""A function that analyses a script again after changes of its texts."""
+
+Mark: TypeAlias = "tuple[object, ...]"
+"""What stays of a finding when other text moves."""
+
+
+class Unknown(NamedTuple):
+    """How much of a script is not understood, in the order of the phases: texts that could not be
+    read, and states of an unknown type."""
+
+    unread: int
+    unresolved: int
+
+
+def clusters_of(
+    batch: Batch, shown: Report, extra: MachineCheck | None = None
+) -> tuple[Cluster, ...]:
+    """The clusters of the findings that are shown, of all scripts of a batch. They are disjoint.
+
+    `extra`: see `analyse`.
+    """
+    found: list[Cluster] = []
+    wanted = {identity(item) for item in shown}
+    for analysis in batch.analyses.values():
+        mine = [item for item in analysis.report if identity(item) in wanted]
+        if not mine:
+            continue
+        most = MOST_CLUSTERS - len(found)
+        for cluster in clusters(analysis, mine, again(analysis, extra), most):
+            found.append(cluster)
+            wanted -= {identity(item) for item in (cluster.finding, *cluster.explained)}
+    return (*found,)
+
+
+def again(analysis: Analysis, extra: MachineCheck | None = None) -> Again:
+    """The function that analyses the script of an analysis after changes of its texts."""
+    source, library = analysis.source, analysis.library
+
+    def analysed(texts: Mapping[Source, str]) -> Analysis:
+        assert source is not None
+        assert library is not None
+        changed = {old.name: Source(old.name, text) for old, text in texts.items()}
+        own = _with_texts(library, changed)
+        new = changed.get(source.name, source)
+        if analysis.alone:
+            return analyse_alone(new, own, [])
+        return analyse(new, own, [], extra, render=True)
+
+    return analysed
+
+
+def _with_texts(library: Library, changed: Mapping[str, Source]) -> Library:
+    """A library with other texts for some files. It keeps no trees of them."""
+    new = {*changed.values()}
+
+    def now(found: Source | None) -> Source | None:
+        return found if found is None else changed.get(found.name, found)
+
+    return replace(
+        library,
+        script=lambda name, caller: now(library.script(name, caller)),
+        template=lambda file: now(library.template(file)),
+        own_template=lambda file: now(library.own_template(file)),
+        parse=lambda source, report: (parse_mended if source in new else library.parse)(
+            source, report
+        ),
+    )
+
+
+def clusters(
+    analysis: Analysis, shown: Report, analysed: Again, most: int = MOST_CLUSTERS
+) -> list[Cluster]:
+    """The clusters of the errors and warnings that are shown, in their order; at most `most`."""
+    if analysis.source is None or analysis.library is None:
+        return []
+    types = analysis.library.template_names()
+    texts: dict[Source, Text] = {}
+    found: list[Cluster] = []
+    covered: set[Mark] = set()
+    for item in [item for item in shown if item.severity is not Severity.INFO][: 3 * most]:
+        source = item.span.source
+        if _mark(item) in covered or len(found) == most or len(source.text) > LONGEST_TEXT:
+            continue
+        if source not in texts:
+            texts[source] = text_of(source, analysis.machine, types)
+        cluster = _cluster(item, analysis, shown, analysed, texts[source])
+        if cluster is not None:
+            found.append(cluster)
+            covered.update(map(_mark, (item, *cluster.explained)))
+    return found
+
+
+def _cluster(
+    item: Diagnostic, analysis: Analysis, shown: Report, analysed: Again, text: Text
+) -> Cluster | None:
+    """The cluster of a finding: that of the repair after which the fewest findings are left."""
+    best: tuple[Mark, Candidate, Report] | None = None
+    before, marks = unknown(analysis), _marks(analysis.report)
+    for candidate in _proposals(item, text):
+        after = analysed(edited_texts(candidate.repair.edits))
+        left = _marks(after.report)
+        if unknown(after) > before or left - marks or left[_mark(item)] >= marks[_mark(item)]:
+            continue
+        rank = (sum(left.values()), *candidate.order)
+        if best is None or rank < best[0]:
+            best = (rank, candidate, after.report)
+        if not left:
+            break
+    if best is None:
+        return None
+    _, candidate, report = best
+    return Cluster(finding=item, repair=candidate.repair, explained=_gone(item, shown, report))
+
+
+def _proposals(item: Diagnostic, text: Text) -> Sequence[Candidate]:
+    """The repairs of the finding, then those of the operators."""
+    own = enumerate(item.finding.all_repairs)
+    return [*(Candidate(0.1 * number, repair) for number, repair in own), *candidates(item, text)]
+
+
+def unknown(analysis: Analysis) -> Unknown:
+    """What an analysis has not understood."""
+    unread = sum(item.code in ("SM001", "SM006") for item in analysis.report)
+    if analysis.machine is None:
+        return Unknown(unread + 1, 0)
+    return Unknown(unread, _unresolved(analysis.machine))
+
+
+def _unresolved(machine: Machine) -> int:
+    return sum(isinstance(node, Leaf) and node.open for _, node in walk(machine.root))
+
+
+def _marks(report: Iterable[Diagnostic]) -> Counter[Mark]:
+    return Counter(_mark(item) for item in report if item.severity is not Severity.INFO)
+
+
+def _mark(item: Diagnostic) -> Mark:
+    return (item.code, item.severity, item.span.source.name, item.finding.arguments)
+
+
+def _gone(item: Diagnostic, before: Report, after: Report) -> tuple[Diagnostic, ...]:
+    """The errors and warnings beside one that are not in the later report."""
+    left = _marks(after)
+    gone = []
+    for other in before:
+        if left[_mark(other)]:
+            left[_mark(other)] -= 1
+        elif other is not item and other.severity is not Severity.INFO:
+            gone.append(other)
+    return (*gone,)
