@@ -202,14 +202,14 @@ def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
 
 
 def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
-    """The value of the innermost entry, exchanged with each other value of its mapping."""
+    """The single value of the innermost entry, exchanged with the others of its mapping."""
     for around, entry in reversed([*pairwise(path)]):
         if not isinstance(around, Map) or not isinstance(entry, Entry):
             continue
         own = entry.value.span
-        for other in around.entries:
+        for other in around.entries if isinstance(entry.value, Scalar) and own.text else ():
             value = other.value.span
-            if other is not entry and value.text and own.text and value.text != own.text:
+            if isinstance(other.value, Scalar) and value.text and value.text != own.text:
                 edits = (Edit(span=own, text=value.text), Edit(span=value, text=own.text))
                 yield candidate(1.8, "exchange two values", *edits)
         return

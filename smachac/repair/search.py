@@ -26,7 +26,7 @@ from smachac.ir.traversal import walk
 from smachac.repair.operators import Candidate, Text, candidates, text_of
 
 MOST_CLUSTERS = 10
-"""The most findings of a report for which a repair is searched."""
+"""The most findings of a script for which a repair is searched."""
 
 LONGEST_TEXT = 200_000
 """In characters. In a longer text nothing is searched: each trial is a check."""
@@ -104,46 +104,57 @@ def _with_texts(library: Library, changed: Mapping[str, Source]) -> Library:
 def clusters(
     analysis: Analysis, shown: Report, analysed: Again, most: int = MOST_CLUSTERS
 ) -> list[Cluster]:
-    """The clusters of the errors and warnings that are shown, in their order; at most `most`."""
+    """The clusters of the errors and warnings that are shown, in order; at most `most`. Of two
+    repairs that correct the same finding, the one after which fewer are left is taken."""
     if analysis.source is None or analysis.library is None:
         return []
     types = analysis.library.template_names()
     texts: dict[Source, Text] = {}
-    found: list[Cluster] = []
-    covered: set[Mark] = set()
-    for item in [item for item in shown if item.severity is not Severity.INFO][: 3 * most]:
+    proven: list[Proof] = []
+    serious = [item for item in shown if item.severity is not Severity.INFO]
+    for item in serious[:MOST_CLUSTERS]:
         source = item.span.source
-        if _mark(item) in covered or len(found) == most or len(source.text) > LONGEST_TEXT:
+        if len(source.text) > LONGEST_TEXT:
             continue
         if source not in texts:
             texts[source] = text_of(source, analysis.machine, types)
-        cluster = _cluster(item, analysis, shown, analysed, texts[source])
-        if cluster is not None:
-            found.append(cluster)
-            covered.update(map(_mark, (item, *cluster.explained)))
-    return found
+        proof = _proof(item, analysis, analysed, texts[source])
+        if proof is not None:
+            proven.append(proof)
+    found: dict[int, Cluster] = {}
+    covered: set[int] = set()
+    for proof in sorted(proven, key=lambda proof: proof.left.total()):
+        members = [item for item in _gone(proof, serious) if id(item) not in covered]
+        if id(proof.item) not in covered and len(found) < most:
+            others = tuple(item for item in members if item is not proof.item)
+            repair = proof.candidate.repair
+            found[id(proof.item)] = Cluster(finding=proof.item, repair=repair, explained=others)
+            covered.update(map(id, (proof.item, *others)))
+    return [found[id(item)] for item in serious if id(item) in found]
 
 
-def _cluster(
-    item: Diagnostic, analysis: Analysis, shown: Report, analysed: Again, text: Text
-) -> Cluster | None:
-    """The cluster of a finding: that of the repair after which the fewest findings are left."""
-    best: tuple[Mark, Candidate, Report] | None = None
+class Proof(NamedTuple):
+    """A candidate that corrects a finding, and the findings that are left then."""
+
+    item: Diagnostic
+    candidate: Candidate
+    left: Counter[Mark]
+
+
+def _proof(item: Diagnostic, analysis: Analysis, analysed: Again, text: Text) -> Proof | None:
+    """The candidate after which the fewest findings are left; None if none corrects the finding."""
+    best: Proof | None = None
     before, marks = unknown(analysis), _marks(analysis.report)
     for candidate in _proposals(item, text):
         after = analysed(edited_texts(candidate.repair.edits))
         left = _marks(after.report)
         if unknown(after) > before or left - marks or left[_mark(item)] >= marks[_mark(item)]:
             continue
-        rank = (sum(left.values()), *candidate.order)
-        if best is None or rank < best[0]:
-            best = (rank, candidate, after.report)
+        if best is None or left.total() < best.left.total():
+            best = Proof(item, candidate, left)
         if not left:
             break
-    if best is None:
-        return None
-    _, candidate, report = best
-    return Cluster(finding=item, repair=candidate.repair, explained=_gone(item, shown, report))
+    return best
 
 
 def _proposals(item: Diagnostic, text: Text) -> Sequence[Candidate]:
@@ -172,13 +183,13 @@ def _mark(item: Diagnostic) -> Mark:
     return (item.code, item.severity, item.span.source.name, item.finding.arguments)
 
 
-def _gone(item: Diagnostic, before: Report, after: Report) -> tuple[Diagnostic, ...]:
-    """The errors and warnings beside one that are not in the later report."""
-    left = _marks(after)
+def _gone(proof: Proof, shown: Report) -> list[Diagnostic]:
+    """The findings that a proven candidate corrects."""
+    left = proof.left.copy()
     gone = []
-    for other in before:
-        if left[_mark(other)]:
-            left[_mark(other)] -= 1
-        elif other is not item and other.severity is not Severity.INFO:
-            gone.append(other)
-    return (*gone,)
+    for item in shown:
+        if left[_mark(item)]:
+            left[_mark(item)] -= 1
+        else:
+            gone.append(item)
+    return gone

@@ -6,7 +6,7 @@ from smachac.diagnostics.repair import Repair, edited_texts
 from smachac.diagnostics.source import Span
 
 LONGEST = 100
-"""In characters. A longer line is not shown as the text to write."""
+"""In characters. A longer piece is not shown as the text to write."""
 
 
 def in_words(repair: Repair, finding: Span) -> str:
@@ -22,10 +22,12 @@ def in_words(repair: Repair, finding: Span) -> str:
     lines = _lines(changed)
     if all(not edit.text for edit in repair.edits) and "\n" in changed.text:
         return f"delete {lines}"
-    line = text.split("\n")[changed.line - 1].strip()
-    if rest or "\n" in changed.text or len(line) > LONGEST:
+    piece = text[start : end + len(text) - len(source.text)]
+    if rest or "\n" in changed.text + piece or len(piece) > LONGEST:
         return f"change {lines}: {repair.operator}"
-    return f"write `{line}`" + ("" if _here(changed, finding) else f" in {lines}")
+    if not old and not others:
+        piece = text.split("\n")[changed.line - 1].strip()
+    return f"write `{piece}`" + ("" if _here(changed, finding) else f" in {lines}")
 
 
 def _here(one: Span, other: Span) -> bool:
