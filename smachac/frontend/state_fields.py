@@ -29,7 +29,6 @@ from smachac.frontend.missing_outcomes import outcomes_used
 from smachac.frontend.paired_fields import (
     ends_with_any,
     fitting_fields,
-    paired_fields,
     paired_help,
 )
 from smachac.frontend.params import Scope
@@ -236,8 +235,7 @@ def with_meant_fields(
     if "child_termination_cb" in unknown and ends_with_any(entries, owner):
         given = entries["child_termination_cb"]  # the help of its finding is `join: any`
         found["join"] = Entry(given.key, Scalar("any", True, given.key.span.source, 0, 0))
-    left = [key for key in unknown if all(entries[key] is not each for each in found.values())]
-    return found | paired_fields(left, {*entries, *found}, entries, owner, type_) | entries
+    return found | entries
 
 
 def params_meant(entries: Entries) -> Entry | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -87,15 +87,16 @@ def _names_in(machine: Machine) -> Iterator[str]:
         yield from (outcome.name for outcome in node.outcomes)
 
 
-def candidates(item: Diagnostic, text: Text) -> list[Candidate]:
-    """The candidates for a finding in a text, the best first; at most MOST_CANDIDATES."""
+def candidates(item: Diagnostic, text: Text, others: Sequence[str]) -> list[Candidate]:
+    """The candidates for a finding in a text, the best first; at most MOST_CANDIDATES. `others` are
+    the names that the other findings are about."""
     span = item.span
     if span.source is NOWHERE.source:
         return []
     path = list(_path_to(text.tree, span.start, span.end)) if text.tree is not None else []
     found = [
         *_near_names(item, text),
-        *_mentioned_names(item),
+        *_mentioned_names(item, others),
         *_turned_pairs(path),
         *_exchanged_values(path),
         *_repeated_parts(path, text.source),
@@ -152,16 +153,17 @@ def _near_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
                     yield candidate(cost + 0.5, RENAME, Edit(span=span, text=word))
 
 
-def _mentioned_names(item: Diagnostic) -> Iterator[Candidate]:
-    """Another name that the finding is about, or that is at its other places, in place of the one
-    at its place."""
+def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candidate]:
+    """Another name that this or another finding is about, or that is at its other places, in place
+    of the one at its place."""
     word = item.span.text
     if not _NAME.fullmatch(word):
         return
-    others = [related.span.text for related in item.finding.related]
-    for name in dict.fromkeys((*item.finding.arguments, *others)):
-        if name != word and _NAME.fullmatch(name):
-            yield candidate(1.6, RENAME, Edit(span=item.span, text=name))
+    near = [related.span.text for related in item.finding.related]
+    for cost, names in ((1.6, (*item.finding.arguments, *near)), (1.7, others)):
+        for name in dict.fromkeys(names):
+            if name != word and _NAME.fullmatch(name):
+                yield candidate(cost, RENAME, Edit(span=item.span, text=name))
 
 
 def _places(word: str, span: Span) -> Iterator[Span]:

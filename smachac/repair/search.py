@@ -118,7 +118,11 @@ def clusters(
             continue
         if source not in texts:
             texts[source] = text_of(source, analysis.machine, types)
-        proof = _proof(item, analysis, analysed, texts[source])
+        others = [
+            name for other in serious for name in other.finding.arguments if other is not item
+        ]
+        proposed = _proposals(item, texts[source], others)
+        proof = _proof(item, analysis, analysed, proposed)
         if proof is not None:
             proven.append(proof)
     found: dict[int, Cluster] = {}
@@ -141,11 +145,13 @@ class Proof(NamedTuple):
     left: Counter[Mark]
 
 
-def _proof(item: Diagnostic, analysis: Analysis, analysed: Again, text: Text) -> Proof | None:
+def _proof(
+    item: Diagnostic, analysis: Analysis, analysed: Again, proposed: Sequence[Candidate]
+) -> Proof | None:
     """The candidate after which the fewest findings are left; None if none corrects the finding."""
     best: Proof | None = None
     before, marks = unknown(analysis), _marks(analysis.report)
-    for candidate in _proposals(item, text):
+    for candidate in proposed:
         after = analysed(edited_texts(candidate.repair.edits))
         left = _marks(after.report)
         if unknown(after) > before or left - marks or left[_mark(item)] >= marks[_mark(item)]:
@@ -157,10 +163,13 @@ def _proof(item: Diagnostic, analysis: Analysis, analysed: Again, text: Text) ->
     return best
 
 
-def _proposals(item: Diagnostic, text: Text) -> Sequence[Candidate]:
+def _proposals(item: Diagnostic, text: Text, others: Sequence[str]) -> Sequence[Candidate]:
     """The repairs of the finding, then those of the operators."""
     own = enumerate(item.finding.all_repairs)
-    return [*(Candidate(0.1 * number, repair) for number, repair in own), *candidates(item, text)]
+    return [
+        *(Candidate(0.1 * number, repair) for number, repair in own),
+        *candidates(item, text, others),
+    ]
 
 
 def unknown(analysis: Analysis) -> Unknown:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from tests.checks.test_first_scripts import reported
 
 WAIT = """\
@@ -16,14 +14,6 @@ states:
       time: 2
       transitions: {succeeded: done}
 """
-
-
-@pytest.mark.parametrize(
-    ("right", "wrong"), [("outcomes", "ends"), ("states", "tasks"), ("name", "title")]
-)
-def test_an_unknown_field_means_the_one_that_is_missing(right: str, wrong: str) -> None:
-    text = WAIT.replace(f"{right}:", f"{wrong}:", 1)
-    assert reported({"main.yml": text}) == [("SM003", wrong, f"did you mean `{right}`?")]
 
 
 def test_an_unknown_field_that_has_another_shape_than_the_missing_one() -> None:
