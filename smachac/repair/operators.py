@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -87,20 +87,26 @@ def _names_in(machine: Machine) -> Iterator[str]:
         yield from (outcome.name for outcome in node.outcomes)
 
 
-def candidates(item: Diagnostic, text: Text, others: Sequence[str]) -> list[Candidate]:
-    """The candidates for a finding in a text, the best first; at most MOST_CANDIDATES. `others` are
-    the names that the other findings are about."""
-    span = item.span
-    if span.source is NOWHERE.source:
+MOST_PLACES = 4
+"""The most places of a finding at which the structure of the text is changed."""
+
+
+def candidates(
+    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
+) -> list[Candidate]:
+    """The candidates for a finding, the best first; at most MOST_CANDIDATES. `read` returns what
+    operators read of a source; `others` are the names that the other findings are about."""
+    places = [item.span, *(related.span for related in item.finding.related)]
+    places = [span for span in places if span.source is not NOWHERE.source]
+    if not places or places[0] is not item.span:
         return []
-    path = list(_path_to(text.tree, span.start, span.end)) if text.tree is not None else []
-    found = [
-        *_near_names(item, text),
-        *_mentioned_names(item, others),
-        *_turned_pairs(path),
-        *_exchanged_values(path),
-        *_repeated_parts(path, text.source),
-    ]
+    found = [*_near_names(item, read(item.span.source)), *_mentioned_names(item, others)]
+    for span in dict.fromkeys(places[:MOST_PLACES]):
+        tree = read(span.source).tree
+        path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
+        found += _turned_pairs(path)
+        found += _exchanged_values(path)
+        found += _repeated_parts(path, span.source)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
     return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
 

@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
+from itertools import chain
 from typing import NamedTuple, TypeAlias
 
 from smachac.batch import Batch, analyse_alone
@@ -109,19 +111,14 @@ def clusters(
     if analysis.source is None or analysis.library is None:
         return []
     types = analysis.library.template_names()
-    texts: dict[Source, Text] = {}
-    proven: list[Proof] = []
+    read = cache(lambda source: text_of(source, analysis.machine, types))
     serious = [item for item in shown if item.severity is not Severity.INFO]
+    proven: list[Proof] = []
     for item in serious[:MOST_CLUSTERS]:
-        source = item.span.source
-        if len(source.text) > LONGEST_TEXT:
+        if len(item.span.source.text) > LONGEST_TEXT:
             continue
-        if source not in texts:
-            texts[source] = text_of(source, analysis.machine, types)
-        others = [
-            name for other in serious for name in other.finding.arguments if other is not item
-        ]
-        proposed = _proposals(item, texts[source], others)
+        named = (other.finding.arguments for other in serious if other is not item)
+        proposed = _proposals(item, read, [*chain.from_iterable(named)])
         proof = _proof(item, analysis, analysed, proposed)
         if proof is not None:
             proven.append(proof)
@@ -163,12 +160,14 @@ def _proof(
     return best
 
 
-def _proposals(item: Diagnostic, text: Text, others: Sequence[str]) -> Sequence[Candidate]:
+def _proposals(
+    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
+) -> Sequence[Candidate]:
     """The repairs of the finding, then those of the operators."""
     own = enumerate(item.finding.all_repairs)
     return [
         *(Candidate(0.1 * number, repair) for number, repair in own),
-        *candidates(item, text, others),
+        *candidates(item, read, others),
     ]
 
 

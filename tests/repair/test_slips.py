@@ -73,6 +73,28 @@ states:
 """
 }
 
+PRESS = {
+    MAIN: """\
+name: sm
+outcomes: [done]
+userdata: {label: abc, number: 3}
+states:
+  - PRESS:
+      template: Press
+      side: left
+      limit: 4
+      remapping: {text: label, count: number}
+      transitions: {pressed: done}
+""",
+    "templates/Press.yml": """\
+name: Press
+variables: {side: str, limit: int}
+input_keys: {text: str, count: int}
+outcomes: [pressed]
+code: {cpp: {header: press.hpp, class: Press}}
+""",
+}
+
 ROWS = [
     (FIELDS, MAIN, "command: close", "close: command"),
     (FIELDS, MAIN, "in: parts", "parts: in"),
@@ -80,6 +102,7 @@ ROWS = [
     (INTERFACE, "templates/Find.yml", "failure: true", "true: failure"),
     (INTERFACE, "templates/Find.yml", "place: str", "str: place"),
     (INTERFACE, "templates/Find.yml", "count: int", "int: count"),
+    (PRESS, MAIN, "side: left\n      limit: 4", "side: 4\n      limit: left"),
     (KIT, MAIN, "outcomes: [kitted", "ends: [kitted"),
     (KIT, MAIN, "states:", "tasks:"),
     (KIT, MAIN, "name: kit", "title: kit"),
