@@ -95,7 +95,28 @@ code: {cpp: {header: press.hpp, class: Press}}
 """,
 }
 
+RULES = {
+    MAIN: """\
+name: sm
+template: Base
+outcomes: [polished, failed]
+states:
+  - G:
+      template: Concurrence
+      outcomes: [polished, hot, failed]
+      default_outcome: failed
+      join: any
+      outcome_map: {polished: {POLISH: done}, hot: {DOOR: invalid}}
+      transitions: {polished: polished, hot: failed, failed: failed}
+      states:
+        - POLISH: {template: ScriptedState, outcomes: [done, slipped, preempted]}
+        - DOOR: {template: ScriptedState, outcomes: [invalid, valid, preempted]}
+"""
+}
+
 ROWS = [
+    (RULES, MAIN, "POLISH: done", "done: POLISH"),
+    (RULES, MAIN, "DOOR: invalid", "invalid: DOOR"),
     (FIELDS, MAIN, "command: close", "close: command"),
     (FIELDS, MAIN, "in: parts", "parts: in"),
     (INTERFACE, "templates/Find.yml", "exclusive: true", "true: exclusive"),
