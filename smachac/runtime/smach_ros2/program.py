@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from smachac.runtime.smach_ros2 import ros
+from smachac.runtime.smach_ros2 import delivery, ros
 from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
@@ -105,11 +105,14 @@ def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
 def stop_node(node: Any) -> None:
     """Stop the thread of a node of `start_node`, destroy the node and shut rclpy down.
 
-    Signals are ignored meanwhile; after that the former handlers are in place again.
+    Messages that are under way get up to a second to arrive. Signals are ignored meanwhile; after
+    that the former handlers are in place again.
     """
     handler: PreemptHandler | None = node.signal_handler
     if handler is not None:
         handler.ignore()
+    if node.context.ok():
+        delivery.finish(node)
     node.stop()
     node.destroy_node()
     node.context.try_shutdown()
