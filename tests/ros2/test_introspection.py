@@ -90,5 +90,4 @@ report("set", done, outer.get_initial_states(), "key" in outer.userdata)
 server.stop()
 """
     )
-    assert "set: True ['LAST'] False" in output
-    assert "the userdata that came with it is dropped" in output
+    assert "set: True ['LAST'] True" in output

@@ -15,17 +15,11 @@ from typing import Any
 from smachac.runtime.smach_ros2 import ros
 from smachac.runtime.smach_ros2.waits import DISCOVERY_INTERVAL, Wait
 
-MATCH_LIMIT = 2.0
+MATCH_LIMIT = 3.0
 """Seconds that the first message of a publisher waits for a subscription."""
 
 END_LIMIT = 1.0
 """Seconds that the end of a program waits until messages have arrived."""
-
-
-def is_latched(publisher: Any) -> bool:
-    """Whether later subscriptions get the last messages of a publisher."""
-    known = ros.load("rclpy.qos").DurabilityPolicy
-    return bool(publisher.qos_profile.durability == known.TRANSIENT_LOCAL)
 
 
 def await_subscription(
@@ -37,12 +31,10 @@ def await_subscription(
 ) -> None:
     """Wait up to `limit` seconds of real time until a publisher has a subscription.
 
-    A publisher that is transient local does not wait. If there is no subscription, a warning names
-    those with another type or quality of service.
+    If there is none, a warning names those with another type or quality of service; not for a
+    publisher that is transient local, whose messages later subscriptions may get.
     """
     end = time.monotonic() + limit
-    if is_latched(publisher) or not limit:
-        return
 
     def is_over() -> bool:
         return stopped() or time.monotonic() >= end
@@ -51,7 +43,9 @@ def await_subscription(
         return bool(publisher.get_subscription_count())
 
     matched = (wait or Wait(node)).until(is_matched, is_over, interval=DISCOVERY_INTERVAL)
-    if matched or stopped() or not node.context.ok():
+    durability = ros.load("rclpy.qos").DurabilityPolicy
+    is_latched = publisher.qos_profile.durability == durability.TRANSIENT_LOCAL
+    if matched or is_latched or not limit or stopped() or not node.context.ok():
         return
     others = [
         f"{each.node_name} ({each.topic_type}, {each.qos_profile.reliability.name.lower()}, "
@@ -74,15 +68,3 @@ def await_acknowledgements(publishers: Iterable[Any], limit: float = END_LIMIT) 
             publisher.wait_for_all_acked(duration(seconds=max(0.0, end - time.monotonic())))
         except (ros.invalid_handle(), errors.RCLError):  # destroyed; not every middleware can
             continue
-
-
-def finish(node: Any) -> None:
-    """Wait up to END_LIMIT seconds until the messages of a node have arrived: transient local ones
-    at one subscription at least."""
-    end = time.monotonic() + END_LIMIT
-    publishers = list(node.publishers)
-    latched = [each for each in publishers if is_latched(each)]
-    while latched and time.monotonic() < end and node.context.ok():
-        latched = [each for each in latched if not each.get_subscription_count()]
-        time.sleep(DISCOVERY_INTERVAL if latched else 0)
-    await_acknowledgements(publishers, max(0.0, end - time.monotonic()))

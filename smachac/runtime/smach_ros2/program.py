@@ -112,7 +112,7 @@ def stop_node(node: Any) -> None:
     if handler is not None:
         handler.ignore()
     if node.context.ok():
-        delivery.finish(node)
+        delivery.await_acknowledgements(node.publishers)
     node.stop()
     node.destroy_node()
     node.context.try_shutdown()
