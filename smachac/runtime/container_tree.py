@@ -92,8 +92,7 @@ def received_userdata(path: str, data: bytes, unpickle: bool) -> UserData:
         if not isinstance(held, dict):
             raise TypeError("it is no dictionary")
     except Exception as error:  # a pickle raises what it likes
-        why = "" if unpickle else "; IntrospectionServer(..., unpickle=True) unpickles it"
-        smach.logwarn(f"the userdata of a command to container '{path}' is dropped: {error}{why}")
+        smach.logwarn(f"the userdata of a command to container '{path}' is dropped: {error}")
         return userdata
     store(userdata).update({str(key): value for key, value in held.items()})
     return userdata

@@ -12,6 +12,7 @@ import json
 import threading
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
@@ -106,7 +107,7 @@ class Format:
             data = base64.b64decode(fields["local_data"])
             return Initial(path=str(fields["path"]), states=states, data=data)
         except (TypeError, KeyError, RecursionError) as error:
-            raise ValueError(f"it lacks a field: {error!r}") from None
+            raise ValueError(f"it has not the fields of a command: {error!r}") from None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -347,9 +348,10 @@ class IntrospectionClient(ros.Node):
             return None
 
         def on_status(message: Any) -> None:
-            status = self._format.decode(message)
-            if (status.path, status.states) == (path, list(initial_states)):
-                confirmed.set()
+            with suppress(ValueError):  # it is of no server
+                status = self._format.decode(message)
+                if (status.path, status.states) == (path, list(initial_states)):
+                    confirmed.set()
 
         statuses = self.create_subscription(
             self._format.message_type(STATUS_TOPIC),

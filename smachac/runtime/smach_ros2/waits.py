@@ -70,7 +70,7 @@ class TimeLimit:
         if not self._begin and time.monotonic() > self._report_at:
             self._report_at = math.inf
             self._node.get_logger().warning(
-                f"use_sim_time is set, and no message came on /clock for {SILENCE_LIMIT:g} s: "
+                f"use_sim_time is set, and no time came on /clock for {SILENCE_LIMIT:g} s: "
                 "time limits begin with the first one"
             )
         return self._length - (now - self._begin)
