@@ -286,4 +286,3 @@ report("outcome", state.execute(smach.UserData()))
     program.say("stop")
     assert program.end() == 0, program.output
     assert "outcome: preempted" in program.output
-    assert program.output.count("/clock") == 1
