@@ -106,7 +106,7 @@ def test_broken_pickles_are_refused_with_one_exception(data: bytes) -> None:
      b"K\x01}s.", b"](K\x01u.", b"}(K\x01u.", b"}]K\x01s.", b"q\x01.", b"r\xff\xff\xff\xff."],
 )  # fmt: skip
 def test_opcodes_out_of_order(text: bytes) -> None:
-    with pytest.raises(ValueError, match="."):
+    with pytest.raises(ValueError, match=r"."):
         plain_value(text)
 
 
