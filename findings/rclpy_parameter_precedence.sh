@@ -22,7 +22,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 "${PYTHON:-python3}" -m venv venv
 venv/bin/pip install -q ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3
-export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST ROS_LOG_DIR=$folder/log
+export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST ROS_DOMAIN_ID=$((RANDOM % 100 + 1)) ROS_LOG_DIR=$folder/log
 
 own=$'machine:\n  ros__parameters: {limit: 2.0}\n'
 all=$'/**:\n  ros__parameters: {limit: 1.0}\n'

@@ -18,7 +18,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 "${PYTHON:-python3}" -m venv venv
 venv/bin/pip install -q ros-rclpy==9.1.2 ros-rmw-fastrtps-cpp==9.3.3 ros-test-msgs==2.3.0
-export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST ROS_LOG_DIR=$folder/log
+export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST ROS_DOMAIN_ID=$((RANDOM % 100 + 1)) ROS_LOG_DIR=$folder/log
 cat >node.py <<'PYTHON'
 import threading
 
@@ -72,7 +72,7 @@ for order, when in (1, "before"), (2, "after"):
 executor.shutdown()
 rclpy.shutdown()
 PYTHON
-timeout 60 venv/bin/python node.py 2>log | tee seen
+timeout 120 venv/bin/python node.py 2>log | tee seen || cat log
 diff - seen <<'EXPECTED'
 rejected cancel: return_code 0, goals_canceling 0
 raised before succeed(): status 6 []

@@ -160,9 +160,9 @@ def test_an_argument_that_a_file_of_parameters_hides(graph2: Graph, tmp_path: Pa
     for program, (_, shown, _, value) in zip(programs, HIDDEN, strict=True):
         assert program.end() == 1, program.output
         assert (
-            f"ParameterError: parameter 'limit': the argument {shown} has no effect, because a file "
-            f"of parameters gives {value} in a section after `/**` or as another type; write "
-            "`-p machine:limit:=...` after the file\n"
+            f"ParameterError: parameter 'limit': the argument {shown} has no effect, because a "
+            f"file of parameters gives {value} in a section after `/**` or as another type; "
+            "write `-p machine:limit:=...` after the file\n"
         ) in program.output
 
 
