@@ -43,7 +43,7 @@ def _interpreted(data: bytes) -> Any:
     """The value that the opcodes build; the limits on its size are not checked."""
     stack: list[Any] = []
     marks: list[int] = []
-    memo: dict[int, Any] = {}
+    memo: dict[Any, Any] = {}
 
     def since_mark() -> list[Any]:
         start = marks.pop()

@@ -204,7 +204,7 @@ class Publications:
         create = message if callable(message) else lambda: message
         self._stop_timer(topic)
         with self._changing:
-            publisher = self._publishers.get(topic)
+            publisher: Any = self._publishers.get(topic)
             is_first = publisher is None
             if is_first:
                 profile = qos_profiles.profile(qos)
