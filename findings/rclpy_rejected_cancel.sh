@@ -72,7 +72,7 @@ for order, when in (1, "before"), (2, "after"):
 executor.shutdown()
 rclpy.shutdown()
 PYTHON
-timeout 120 venv/bin/python node.py 2>log | tee seen || cat log
+timeout 120 venv/bin/python node.py 2>errors | tee seen || cat errors
 diff - seen <<'EXPECTED'
 rejected cancel: return_code 0, goals_canceling 0
 raised before succeed(): status 6 []
