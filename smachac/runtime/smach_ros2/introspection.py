@@ -29,6 +29,7 @@ from smachac.runtime.container_tree import (
 from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach_ros2 import delivery, ros, spinning
+from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 
 STATUS_TOPIC = "/smach/container_status"
 INIT_TOPIC = "/smach/container_init"
@@ -91,7 +92,7 @@ class Format:
             setattr(message, field, value)
         if name == STATUS_TOPIC:
             message.local_data = readable_twice(fields["local_data"])
-        return message
+        return checked(message, type(message), name)
 
     def decode(self, message: Any) -> Initial:
         """The path, initial states and userdata in a command or a status.
@@ -214,6 +215,8 @@ class ContainerProxy:
             self._publishers[name].publish(self._format.encode(self._node, name, fields))
         except (ros.invalid_handle(), ros.rclpy.exceptions.ROSInterruptException) as error:
             smach.logdebug(f"nothing is reported: {error}")
+        except FieldError as error:
+            smach.logerr(f"nothing is reported: {error}")
 
     def _on_init_command(self, message: Any) -> None:
         """Set the initial state of the container for all later runs."""

@@ -10,6 +10,7 @@ from typing import Any
 from smachac.runtime import smach
 from smachac.runtime.smach_ros2 import delivery, interfaces, ros
 from smachac.runtime.smach_ros2 import qos as qos_profiles
+from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 from smachac.runtime.smach_ros2.ros_state import RosState
 from smachac.runtime.smach_ros2.subscriptions import Subscription
 from smachac.runtime.smach_ros2.waits import CHECK_INTERVAL, DISCOVERY_INTERVAL, Wait
@@ -199,9 +200,22 @@ class Publications:
     ) -> None:
         """Publish a message, or the result of a function: once, or `rate` times a second.
 
-        `before_first(publisher)` replaces the wait for a subscription.
+        Raises FieldError for a value that does not fit its field. If a later message has one, the
+        log contains it, and the publication ends. `before_first(publisher)` replaces the
+        wait for a subscription.
         """
         create = message if callable(message) else lambda: message
+
+        def checked_message() -> Any:
+            return checked(create(), msg_type, "msg")
+
+        def publish_next() -> None:
+            try:
+                publisher.publish(checked_message())
+            except FieldError as error:
+                smach.logerr(f"the publication on '{topic}' ends: {error}")
+                self._stop_timer(topic)
+
         self._stop_timer(topic)
         with self._changing:
             publisher: Any = self._publishers.get(topic)
@@ -214,13 +228,17 @@ class Publications:
             before_first(publisher)
         elif is_first:
             delivery.await_subscription(self._node, publisher)
+        try:
+            first = checked_message()
+        except FieldError:
+            if is_first:
+                self.stop(topic)
+            raise
         with self._changing:
-            publisher.publish(create())
+            publisher.publish(first)
             if rate is not None:
                 self._timers[topic] = self._node.create_timer(
-                    1 / rate,
-                    lambda: publisher.publish(create()),
-                    callback_group=ros.own_group(),
+                    1 / rate, publish_next, callback_group=ros.own_group()
                 )
 
     def stop(self, topic: str) -> bool:
