@@ -18,8 +18,8 @@ examples:
   smachac doctor                 what is installed, and what is missing for which use
   smachac doctor --format json   for programs
 
-exit codes: 0 everything that smachac requires is installed, 1 a required package is missing,
-2 wrong usage, 70 a bug in smachac
+exit codes: 0 everything that smachac requires is installed, 1 a required package is missing, or
+packages of two distributions of ROS 2 are installed, 2 wrong usage, 70 a bug in smachac
 """
 
 MODULES = (
@@ -59,17 +59,20 @@ def doctor_arguments(parser: argparse.ArgumentParser) -> None:
 
 def doctor_command(arguments: Namespace) -> int:
     """Print what is installed; the exit code."""
+    from smachac.commands.ros2_distributions import installed_distributions
     from smachac.version import __version__
 
     python = ".".join(map(str, sys.version_info[:3]))
     rows = [*_modules(), *_programs()]
     missing = [row for row in rows if row["required"] and row["found"] is None]
+    ros2 = installed_distributions()
+    code = FINDINGS if missing or len(ros2) > 1 else OK
     if arguments.format == "json":
         from smachac.report.json import json_text
 
         found = {"smachac": __version__, "python": python, "platform": sys.platform}
-        sys.stdout.write(json_text({**found, "parts": rows}))
-        return FINDINGS if missing else OK
+        sys.stdout.write(json_text({**found, "parts": rows, "ros2_distributions": ros2}))
+        return code
     print(f"smachac {__version__}, Python {python} ({sys.executable})\n")
     width = max(len(str(row["name"])) for row in rows)
     for row in rows:
@@ -81,8 +84,20 @@ def doctor_command(arguments: Namespace) -> int:
     if missing:
         names = ", ".join(str(row["name"]) for row in missing)
         print(f"\nsmachac cannot work without {names}", file=sys.stderr)
-        return FINDINGS
-    return OK
+    if len(ros2) > 1:
+        print(f"\n{_mixture(ros2)}", file=sys.stderr)
+    return code
+
+
+def _mixture(ros2: dict[str, list[str]]) -> str:
+    """The sentences on packages of several distributions of ROS 2."""
+    parts = [f"{name} ({', '.join(packages)})" for name, packages in ros2.items()]
+    last = parts.pop()
+    return (
+        f"packages of {', '.join(parts)} and {last} are installed, and nodes of ROS 2 cannot start "
+        "with both; install all of one distribution in a new environment, for example with "
+        "`pip install ros-kilted-rclpy ros-kilted-rmw-fastrtps-cpp ros-kilted-std-msgs`"
+    )
 
 
 def _modules() -> Iterator[dict[str, object]]:

@@ -45,6 +45,66 @@ def test_the_required_packages_are_those_of_the_project() -> None:
     assert required == names - {"tomli"}
 
 
+def installed(folder: Path, *packages: str) -> None:
+    """Write the metadata of installed packages such as `ros-rclpy 9.1.2`."""
+    for package in packages:
+        name, version = package.split()
+        metadata = folder / f"{name.replace('-', '_')}-{version}.dist-info" / "METADATA"
+        metadata.parent.mkdir()
+        text = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+        metadata.write_text(text, "utf-8")
+
+
+MIXTURES = [
+    (["ros-rclpy 7.1.6", "ros-std-srvs 5.5.1"],
+     "Jazzy (ros-rclpy 7.1.6) and Kilted (ros-std-srvs 5.5.1)"),
+    (["ros-rclpy 9.1.2", "ros-std-msgs 5.5.1", "ros-test-msgs 2.0.3", "ros-std-srvs 5.3.6"],
+     "Jazzy (ros-std-srvs 5.3.6, ros-test-msgs 2.0.3) and "
+     "Kilted (ros-rclpy 9.1.2, ros-std-msgs 5.5.1)"),
+    (["ros-rclpy 3.3.16", "ros-rmw-fastrtps-cpp 8.4.3", "ros-rosidl-parser 4.9.5"],
+     "Humble (ros-rclpy 3.3.16), Jazzy (ros-rmw-fastrtps-cpp 8.4.3) and "
+     "Kilted (ros-rosidl-parser 4.9.5)"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("packages", "named"), MIXTURES)
+def test_packages_of_two_distributions_of_ros_2_are_named(
+    packages: list[str],
+    named: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    installed(tmp_path, *packages)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert main(["doctor"]) == 1
+    assert capsys.readouterr().err.startswith(f"\npackages of {named} are installed, and nodes of")
+    assert main(["doctor", "--format", "json"]) == 1
+    found = json.loads(capsys.readouterr().out)["ros2_distributions"]
+    assert sorted(package for names in found.values() for package in names) == sorted(packages)
+
+
+@pytest.mark.parametrize(
+    "packages",
+    [
+        ["ros-rclpy 9.1.2", "ros-std-msgs 5.5.9", "ros-kilted-rclpy 9.1.2"],
+        ["ros-rclpy 7.1.6", "ros-std-msgs 5.3.0", "ros-other 5.5.1", "ros-wheels-bootstrapper 0.1"],
+        ["ros-rclpy 11.0.0", "ros-std-msgs 6.0"],
+        ["roslibpy 9.1", "rclpy 9.1.2"],
+    ],
+)
+def test_packages_of_one_distribution_of_ros_2(
+    packages: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    installed(tmp_path, *packages)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert main(["doctor"]) == 0
+    assert capsys.readouterr().err == ""
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completions_have_every_command_and_its_options(
     shell: str, capsys: pytest.CaptureFixture[str]
