@@ -655,7 +655,10 @@ def _spaces(stop: _Stop) -> str:
     beside = f", below `{word[0]}`" if word is not None else ""
     if not due:
         return f"remove the tab: begin the line in the first column{beside}"
-    return f"write spaces in place of the tab: begin the line with {due} spaces{beside}"
+    return f"{_NO_TAB} {due} spaces{beside}"
+
+
+_NO_TAB = "write spaces in place of the tab: begin the line with"
 
 
 _NAME_BEFORE = "write the name before the `:`, or put text that begins with `:` in quotes"
@@ -681,7 +684,9 @@ def _value(stop: _Stop) -> _Fault | None:
     here = stop.text[stop.at : stop.at + 1]
     if stop.problem in (_NOT_A_START, *_TABS):
         if here == "\t":
-            return _Fault("YAML does not allow a tab in the indentation", _spaces(stop), stop.at)
+            due = lost_of_block_text(stop.text, stop.at)
+            help = f"{_NO_TAB} {_of_spaces(due)}" if due is not None else _spaces(stop)
+            return _Fault("YAML does not allow a tab in the indentation", help, stop.at)
         message = f"a value cannot begin with `{here}`"
         return _Fault(message, _in_quotes(stop, stop.at), stop.at)
     in_brackets = stop.context == "while parsing a flow node"
