@@ -15,7 +15,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
-from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
 from smachac.frontend.yaml_errors import (
