@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.diagnostic import Finding
 
 SIZES = (1_000, 10_000, 100_000)
-DEPTH = 1_000
+DEPTH = 290
 
 HEAD = """name: sm
 template: Base

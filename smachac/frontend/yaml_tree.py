@@ -224,7 +224,7 @@ def syntax_error_line(text: str) -> int | None:
         context = getattr(error, "context", None) or ""
         named = context.startswith(_WITHOUT_END) and error.context_mark is not None
         mark = error.context_mark if named else error.problem_mark
-        return min(mark.line, last)
+        return min(int(mark.line), last)
     return None
 
 

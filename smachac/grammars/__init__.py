@@ -22,6 +22,6 @@ def load(name: str, *, builder: Any = None) -> Lark:
     from smachac.grammars.standalone.lalr import Lark
 
     tables = import_module(f"{__name__}.standalone.{name}")
-    return Lark._load_from_dict(
-        tables.DATA, tables.MEMO, transformer=builder, propagate_positions=builder is None
-    )
+    options = {"transformer": builder, "propagate_positions": builder is None}
+    parser: Lark = Lark._load_from_dict(tables.DATA, tables.MEMO, **options)  # type: ignore[no-untyped-call]
+    return parser
