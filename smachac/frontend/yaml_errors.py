@@ -70,9 +70,12 @@ class _Fault(NamedTuple):
     part: str = ""
 
 
-def is_too_deep(error: Any) -> bool:
-    """Whether libyaml, since version 0.2.6, reads no more because of the nesting."""
-    return getattr(error, "problem", None) == "exceeded maximum nesting depth"
+def too_deep_at(error: Any) -> int | None:
+    """The index at which libyaml, since version 0.2.6, reads no more because of the nesting."""
+    if error.problem != "exceeded maximum nesting depth":
+        return None
+    found: int = error.problem_mark.index
+    return found
 
 
 _ANCHOR = re.compile(r"(?:!\S*\s+)?([&*])([^\s\[\]{},]+)")

@@ -23,10 +23,10 @@ from smachac.frontend.yaml_errors import (
     JOINED,
     SPACE_MISSING,
     anchor_fault,
-    is_too_deep,
     spaced,
     stopped_at,
     syntax_error,
+    too_deep_at,
 )
 from smachac.robots.core_schema import WORDS, value_of
 
@@ -191,8 +191,8 @@ def _unprintable(text: str) -> re.Match[str] | None:
 
 
 def events(text: str) -> Iterator[Any]:
-    """The events of a text. Raises yaml.YAMLError."""
-    from yaml.cyaml import CParser
+    """The events of a text. Raises yaml.MarkedYAMLError."""
+    from yaml._yaml import CParser
 
     return iter(CParser(text).get_event, None)
 
@@ -211,7 +211,7 @@ def syntax_error_line(text: str) -> int | None:
     It is the line of the part that has no end, if the parser names it, else that at which the
     parser stops, else the last one.
     """
-    from yaml import YAMLError
+    from yaml import MarkedYAMLError
 
     last = text.count("\n")
     bad = _unprintable(text)
@@ -220,11 +220,10 @@ def syntax_error_line(text: str) -> int | None:
     try:
         for _ in events(text):
             pass
-    except YAMLError as error:
-        context = getattr(error, "context", None) or ""
-        named = context.startswith(_WITHOUT_END) and error.context_mark is not None
+    except MarkedYAMLError as error:
+        named = (error.context or "").startswith(_WITHOUT_END)
         mark = error.context_mark if named else error.problem_mark
-        return min(int(mark.line), last)
+        return last if mark is None else min(int(mark.line), last)
     return None
 
 
@@ -246,7 +245,7 @@ def _moved_back(events: Iterator[Any], mended: Mended) -> Iterator[Any]:
 def _build(
     source: Source, report: Report, doubts: Doubts | None = None, mended: Mended | None = None
 ) -> Tree | None:
-    from yaml import YAMLError
+    from yaml import MarkedYAMLError
 
     builder = _Builder(source, report)
     found = events(source.text if mended is None else mended.text)
@@ -254,10 +253,11 @@ def _build(
     gc.disable()  # or it runs many times over the growing tree
     try:
         builder.drive(found if mended is None else _moved_back(found, mended))
-    except YAMLError as error:
+    except MarkedYAMLError as error:
         builder.items = []
-        if is_too_deep(error):
-            report.append(_too_deep(source, error.problem_mark.index))
+        deep = too_deep_at(error)
+        if deep is not None:
+            report.append(_too_deep(source, deep))
         else:
             report.append(syntax_error(source, error))
             if doubts is not None:

@@ -36,7 +36,7 @@ def _documents(text: str) -> list[Any]:
     """The data of each document of a YAML text. Raises YAMLError, and LookupError, TypeError or
     ValueError for a wrong alias or key."""
     from yaml import events as kinds
-    from yaml.cyaml import CParser
+    from yaml._yaml import CParser
 
     stack: list[tuple[list[Any], str | None]] = [([], None)]
     anchors: dict[str, Any] = {}
