@@ -139,12 +139,7 @@ set_up() {
   prepare_pybullet
   prepare_optional
   say "installing what is missing in .venv: a minute or two"
-  if [[ $level == sim ]]; then
-    pip install -q -e '.[sim]'
-  elif ! pip install -q -e '.[sim,dev,fast]' &>.venv/fast.log; then
-    say "note: going on without the fast YAML parser (the reason is in .venv/fast.log); the other reads the same"
-    pip install -q -e '.[sim,dev]'
-  fi
+  if [[ $level == sim ]]; then pip install -q -e '.[sim]'; else pip install -q -e '.[sim,dev]'; fi
   key >.venv/ready-sim
   [[ $level == sim ]] || key >.venv/ready-dev
   rm .venv/unfinished

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from smachac.robots.core_schema import value_of
 from smachac.robots.description import Description, Station, read
 from smachac.robots.fields import DataError
 
@@ -19,14 +20,65 @@ FOLDER = Path(__file__).parent
 
 def plain(text: str) -> Any:
     """The data of a YAML text. Raises DataError."""
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
+    from yaml import YAMLError
 
     try:
-        return YAML(typ="safe").load(text)
-    except YAMLError as error:
+        documents = _documents(text)
+    except (YAMLError, LookupError, TypeError, ValueError) as error:
         help = "correct the file; `smachac check FILE` shows the place"
         raise DataError(f"not YAML: {str(error).splitlines()[0]}", (), help) from None
+    if len(documents) > 1:
+        raise DataError("it has more than one YAML document", (), "remove the `---`")
+    return documents[0] if documents else None
+
+
+def _documents(text: str) -> list[Any]:
+    """The data of each document of a YAML text. Raises YAMLError, and LookupError, TypeError or
+    ValueError for a wrong alias or key."""
+    from yaml import events as kinds
+    from yaml._yaml import CParser
+
+    stack: list[tuple[list[Any], str | None]] = [([], None)]
+    anchors: dict[str, Any] = {}
+    for event in iter(CParser(text).get_event, None):
+        match event:
+            case kinds.SequenceStartEvent() | kinds.MappingStartEvent():
+                stack.append(([], event.anchor))
+                continue
+            case kinds.ScalarEvent():
+                is_text = event.style or event.tag is not None
+                value: Any = event.value if is_text else value_of(event.value)
+                anchor = event.anchor
+            case kinds.SequenceEndEvent():
+                value, anchor = stack.pop()
+            case kinds.MappingEndEvent():
+                items, anchor = stack.pop()
+                value = _mapping(items)
+            case kinds.AliasEvent():
+                value, anchor = anchors[event.anchor], None
+            case _:
+                continue
+        stack[-1][0].append(value)
+        if anchor is not None:
+            anchors[anchor] = value
+    return stack[0][0]
+
+
+def _mapping(items: list[Any]) -> dict[Any, Any]:
+    """A mapping of its keys and values in turn; `<<` adds the entries of mappings. Raises
+    TypeError and ValueError."""
+    found: dict[Any, Any] = {}
+    merged: list[dict[Any, Any]] = []
+    for key, value in zip(items[::2], items[1::2], strict=True):
+        if key == "<<":
+            merged += value if isinstance(value, list) else [value]
+        elif key in found:
+            raise ValueError(f"the key {key} is there twice")
+        else:
+            found[key] = value
+    for value in merged:
+        found = {**found, **{key: item for key, item in dict(value).items() if key not in found}}
+    return found
 
 
 def read_file(path: Path) -> Any:

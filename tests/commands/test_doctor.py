@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 import re
 import subprocess
+import sys
+from base64 import urlsafe_b64encode
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -21,8 +26,62 @@ def test_what_is_installed(capsys: pytest.CaptureFixture[str]) -> None:
     assert re.search(r"^  networkx +\d+\.\d+", shown, re.MULTILINE)
     assert main(["doctor", "--format", "json"]) == 0
     parts = {part["name"]: part for part in json.loads(capsys.readouterr().out)["parts"]}
-    assert parts["lark"]["found"]
+    assert parts["PyYAML"]["found"] == version("PyYAML")
+    assert Path(parts["PyYAML"]["file"]).is_file()
+    assert all(part["mixed"] == [] for part in parts.values())
     assert parts["g++"]["found"] in ("g++", "clang++", "c++")
+
+
+def write_package(folder: Path, name: str, release: str, text: str) -> None:
+    """Install a distribution that consists of jinja2/__init__.py, as pip does."""
+    module = folder / "jinja2" / "__init__.py"
+    module.parent.mkdir(exist_ok=True)
+    module.write_text(text)
+    digest = urlsafe_b64encode(hashlib.sha256(text.encode()).digest()).decode().rstrip("=")
+    notes = folder / f"{name}-{release}.dist-info"
+    notes.mkdir()
+    (notes / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {release}\n")
+    (notes / "RECORD").write_text(f"jinja2/__init__.py,sha256={digest},{len(text)}\n")
+
+
+@pytest.mark.parametrize("order", [("first", "second"), ("second", "first")])
+def test_a_mixture_is_named_with_the_version_that_is_imported(
+    order: tuple[str, str], tmp_path: Path
+) -> None:
+    """Two distributions write the same file: the last one counts."""
+    for name in order:
+        write_package(tmp_path, name, {"first": "1.0", "second": "2.0"}[name], f"name = {name!r}\n")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
+    command = [sys.executable, "-m", "smachac", "doctor"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
+    used = {"first": "1.0", "second": "2.0"}[order[1]]
+    other = {"first": "1.0", "second": "2.0"}[order[0]]
+    assert re.search(rf"^  Jinja2 +{used} ", done.stdout, re.MULTILINE)
+    place = tmp_path / "jinja2" / "__init__.py"
+    written = f"{place} is of {order[1]} {used}, and also written by {order[0]} {other}:"
+    assert written in done.stderr
+    assert done.returncode == 1
+
+
+@pytest.mark.parametrize(
+    "text", ["from_source = True\n", "class YAMLError(Exception): pass\n", "import yaml._yaml\n"]
+)
+def test_a_package_yaml_without_its_parser_is_named(text: str, tmp_path: Path) -> None:
+    """PyYAML built from its source without libyaml, or a module `yaml` of the project."""
+    (tmp_path / "yaml").mkdir()
+    (tmp_path / "yaml" / "__init__.py").write_text(text)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
+    results = [
+        subprocess.run(
+            [sys.executable, "-m", "smachac", *command],
+            cwd=ROOT, env=environment, capture_output=True, text=True, timeout=120,
+        )
+        for command in (["check", "examples/01_sequence/main.yml"], ["doctor"])
+    ]  # fmt: skip
+    assert [done.returncode for done in results] == [1, 1]
+    assert results[0].stderr.startswith("a package that smachac requires is missing or broken: ")
+    assert results[0].stderr.count("\n") == 1
+    assert results[1].stderr == "\nsmachac cannot work without PyYAML\n"
 
 
 def test_a_missing_package_is_named_with_its_remedy(

@@ -10,7 +10,6 @@ from typing import get_args
 
 import jsonschema
 import pytest
-from ruamel.yaml import YAML
 
 import smachac
 from smachac.commands.cli import COMMANDS, command_line, main
@@ -19,6 +18,7 @@ from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
 from smachac.frontend.robots import DataKind, check_data_file
 from smachac.report.json_schema import scenario_schema
+from smachac.robots.files import plain
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
@@ -153,7 +153,7 @@ def faults_of_data(text: str, kind: DataKind, folder: Path) -> list[str]:
 
 def faults_of_scenario(text: str) -> list[str]:
     """What the schema of scenarios says against a scenario."""
-    data = YAML(typ="safe", pure=True).load(text)
+    data = plain(text)
     validator = jsonschema.Draft7Validator(scenario_schema())
     return [error.message for error in validator.iter_errors(data)]
 

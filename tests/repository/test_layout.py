@@ -51,8 +51,10 @@ ABSOLUTE = re.compile(r"(?<![\w.<])/(?:home|mnt|root|tmp|work|Users)/\w")
 
 
 def modules() -> list[Path]:
-    """The modules of the package: a name with a dot in it, as `Name.tpl.py`, is a template."""
-    return [path for path in sorted((ROOT / "smachac").rglob("*.py")) if "." not in path.stem]
+    """The modules of the package: a name with a dot in it, as `Name.tpl.py`, is a template. The
+    parsers that scripts/parsers.py writes are not among them."""
+    found = [path for path in sorted((ROOT / "smachac").rglob("*.py")) if "." not in path.stem]
+    return [path for path in found if path.parent.name != "standalone"]
 
 
 parsed = functools.cache(ast.parse)
