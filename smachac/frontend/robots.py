@@ -15,18 +15,20 @@ from smachac.frontend.data_files import plain, span_at
 from smachac.frontend.errors.references import bad_robot, package_help
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
-from smachac.frontend.urdf import XACRO, UrdfError, joints_to, read_joints, read_urdf
+from smachac.frontend.urdf import checked_joint, robot_of_urdf
 from smachac.frontend.yaml_tree import Map, Scalar, Tree
 from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
-from smachac.robots import description
+from smachac.robots import description, urdf
 from smachac.robots.description import NO_PARTS, Description, Part, Station, limb_names
 from smachac.robots.faults import read_file as read_faults
-from smachac.robots.fields import DataError, guess, listed
+from smachac.robots.fields import DataError, guess
 from smachac.robots.files import BUILT_IN
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
 from smachac.robots.scene import Body
 from smachac.robots.scene import read as read_scene
+from smachac.robots.urdf import XACRO
+from smachac.robots.xml_tree import XmlError
 
 T = TypeVar("T")
 
@@ -174,12 +176,16 @@ class _Reader:
         if text is None:
             return None
         try:
-            return self.simulated(read_urdf(text))
-        except UrdfError as error:
-            message = f"the robot file `{word.text}` has a mistake: {error.message}"
-            arguments = ("urdf", word.text, error.span.text)
-            self.wrong(word, message, error.help, arguments, error.span)
+            return self.simulated(robot_of_urdf(urdf.read(text.text), text))
+        except XmlError as error:
+            self.bad_urdf(word, word.text, text, error)
             return None
+
+    def bad_urdf(self, word: Word, name: str, source: Source, error: XmlError) -> None:
+        """Report the mistake in a URDF file."""
+        span = Span(source, *error.place)
+        message = f"the robot file `{name}` has a mistake: {error.message}"
+        self.wrong(word, message, error.help, ("urdf", name, span.text), span)
 
     def simulated(self, robot: Robot) -> Robot:
         """A robot of a URDF file; one with all joints of a built-in robot is simulated as that."""
@@ -277,14 +283,16 @@ class _Reader:
 
     def missing_joint(self, data: Any, limb: Any, source: Source) -> str | None:
         """The help for an arm that has an angle for the only joint of its tool that it lacks."""
-        urdf, tool = data.get("urdf"), limb.get("tool")
+        name, tool = data.get("urdf"), limb.get("tool")
         link = tool.get("link") if isinstance(tool, dict) else tool
-        if not isinstance(urdf, str) or not isinstance(link, str):
+        if not isinstance(name, str) or not isinstance(link, str):
             return None
-        text = self.library.script(urdf, source.name) or self.library.robot(urdf)
+        text = self.library.script(name, source.name) or self.library.robot(name)
+        if text is None:
+            return None
         try:
-            chain = joints_to(text, link) if text is not None else ()
-        except UrdfError:
+            chain = [joint.name for joint in urdf.read(text.text).chain(link) if joint.is_moved]
+        except XmlError:
             return None
         missing = [name for name in chain if name not in limb["joints"]]
         if len(missing) != 1 or len(chain) != len(limb["home"]):
@@ -316,27 +324,23 @@ class _Reader:
             if text is None:
                 help = package_help(data.urdf) or "put it beside this file"
                 raise DataError(f"the file `{data.urdf}` was not found", ("urdf",), help)
-            known, turning, links = read_joints(text)
-            description.check(data, known, links)
-            for limb in data.limbs:
-                for k, name in enumerate(limb.joints):
-                    if name not in turning:
-                        raise DataError(
-                            f"the joint `{name}` does not turn",
-                            ("arms", limb.name, "joints", k),
-                            f"write a joint that turns: {listed(turning)}",
-                        )
-        except UrdfError as error:
-            message = f"the robot file `{data.urdf}` has a mistake: {error.message}"
-            arguments = ("urdf", data.urdf, error.span.text)
-            self.wrong(word, message, error.help, arguments, error.span)
+            robot = urdf.read(text.text)
+            description.check(data, robot)
+        except XmlError as error:
+            assert text is not None
+            self.bad_urdf(word, data.urdf, text, error)
             return None
         except DataError as error:
             self.mistake(word, tree, error, "robot")
             return None
+        moved = {
+            name: checked_joint(joint, text)
+            for name, joint in robot.joints.items()
+            if joint.is_moved
+        }
         # Files of one robot of the industry define different links: only those of a user count.
-        frames = frozenset(data.frames) if word.text in BUILT_IN else links
-        return turning, frames
+        frames = frozenset(data.frames if word.text in BUILT_IN else robot.links)
+        return moved, frames
 
     def station(self, word: Word, source: Source, data: Station, tree: Tree) -> Robot | None:
         """Several robots as one: the joints and limbs of all."""

@@ -23,6 +23,7 @@ from smachac.robots.fields import (
     guess,
     in_metres,
 )
+from smachac.robots.urdf import Urdf, UrdfJoint
 
 DOWN: Pose = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 """The pose of a tool in the frame of a body that it grasps from above."""
@@ -127,15 +128,6 @@ class Station:
 
 NO_PARTS = "name the robots of that file here, each as a part of its own"
 """The help for a station as a part of a station."""
-
-
-@dataclass(frozen=True, slots=True)
-class UrdfJoint:
-    """A joint of a URDF file: its limits (rad or m), and whether it turns."""
-
-    lower: float
-    upper: float
-    turns: bool
 
 
 def _centre(data: Any, place: Place) -> tuple[float, float]:
@@ -358,8 +350,8 @@ def _limb(given: Fields) -> Limb:
             message = f"`{key}` has {size} items, but the arm has {count} joints"
             raise DataError(message, (*given.place, key), _for_each_joint(limb.joints, size))
     for k, (low, high) in enumerate(limb.limits):
-        joint = UrdfJoint(low, high, turns=True)
-        _inside(limb.joints[k], limb.home[k], joint, (*given.place, "home", k))
+        joint = UrdfJoint(name=limb.joints[k], kind="revolute", lower=low, upper=high)
+        _inside(limb.home[k], joint, (*given.place, "home", k))
     for finger in limb.gripper.fingers if limb.gripper is not None else ():
         if finger.joint in limb.joints:
             spot = (*given.place, "gripper", "joints", finger.joint)
@@ -448,15 +440,16 @@ def read(data: Any) -> Description | Station:
     return _whole(data, ())
 
 
-def check(robot: Description, joints: Mapping[str, UrdfJoint], links: Collection[str]) -> None:
+def check(robot: Description, urdf: Urdf) -> None:
     """Compare a description with its URDF file. Raises DataError for a joint or link that the file
     does not have, and for a position outside the limits of its joint."""
+    joints, links = urdf.joints, urdf.links
     for limb in robot.limbs:
         place: Place = ("arms", limb.name)
         for k, name in enumerate(limb.joints):
             _known(name, joints, "joint", (*place, "joints", k))
         for k, (name, angle) in enumerate(zip(limb.joints, limb.home, strict=True)):
-            _inside(name, angle, joints[name], (*place, "home", k))
+            _inside(angle, joints[name], (*place, "home", k))
         for name, _ in limb.efforts:
             _known(name, joints, "joint", (*place, "efforts", name))
         _known(limb.tip, links, "link", (*place, "tool"))
@@ -467,7 +460,7 @@ def check(robot: Description, joints: Mapping[str, UrdfJoint], links: Collection
             at: Place = (*place, "joints", finger.joint)
             _known(finger.joint, joints, "joint", at)
             for key, position in (("open", finger.opened), ("closed", finger.closed)):
-                _inside(finger.joint, position, joints[finger.joint], (*at, key))
+                _inside(position, joints[finger.joint], (*at, key))
         for k, name in enumerate(limb.gripper.pads):
             _known(name, links, "link", (*place, "pads", k))
 
@@ -478,15 +471,13 @@ def _known(name: str, known: Collection[str], kind: str, place: Place) -> None:
         raise DataError(message, place, guess(name, sorted(known)))
 
 
-def _inside(name: str, position: float, joint: UrdfJoint, place: Place) -> None:
+def _inside(position: float, joint: UrdfJoint, place: Place) -> None:
     slack = 1e-4
     if joint.lower - slack <= position <= joint.upper + slack:
         return
-    unit = "rad" if joint.turns else "m"
-    message = (
-        f"`{name}` is {position:g} {unit}, outside its limits {joint.lower:g} to {joint.upper:g}"
-    )
-    help = f"write a position from {joint.lower:g} to {joint.upper:g}"
+    limits = f"{joint.lower:g} to {joint.upper:g}"
+    message = f"`{joint.name}` is {position:g} {joint.unit}, outside its limits {limits}"
+    help = f"write a position from {limits}"
     if joint.turns and abs(position) > 2 * math.pi:
         help = f"write `{math.radians(position):.4g}`: angles are in radians, not in degrees"
     if not joint.turns and joint.lower <= position / 1000 <= joint.upper:

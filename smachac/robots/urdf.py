@@ -1,0 +1,287 @@
+"""URDF, the robot description of ROS: its joints with their limits, and its links.
+
+The checker and the simulation read the same facts here. Lengths are in m, angles in rad. What a
+file leaves out has the default of the URDF specification.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from smachac.robots.fields import guess, listed
+from smachac.robots.xml_tree import FIRST_TAG, Element, TextPlace, XmlError, parse
+
+TURNING = frozenset(["revolute", "continuous"])
+"""The types of joints whose position is an angle."""
+MOVED = TURNING | {"prismatic"}
+"""The types of joints with one position: those that an arm or a gripper can have."""
+KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+"""The types of joints."""
+
+XACRO = "expand the macro file with `xacro`, and name the resulting file"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mimic:
+    """The joint that a joint follows: its position is `multiplier` times that of `joint`, plus
+    `offset`."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UrdfJoint:
+    """A joint of a URDF file.
+
+    `lower` and `upper` are its limits (rad, or m if it is prismatic); infinite for a joint without
+    limits (continuous, floating, planar, fixed). A `<limit>` without one of them has 0 for it.
+    `velocity` is its largest speed (rad/s or m/s); infinite where the file has no positive one.
+    `effort` is its largest torque or force (N m or N); infinite for a joint without `<limit>`, 0
+    for a `<limit>` without it. `place` is that of its name in the text.
+    """
+
+    name: str
+    kind: str
+    parent: str = ""
+    child: str = ""
+    lower: float = -math.inf
+    upper: float = math.inf
+    velocity: float = math.inf
+    effort: float = math.inf
+    mimic: Mimic | None = None
+    place: TextPlace = (0, 0)
+
+    @property
+    def turns(self) -> bool:
+        """Whether its position is an angle (rad)."""
+        return self.kind in TURNING
+
+    @property
+    def is_moved(self) -> bool:
+        """Whether it has one position, which a motor can change."""
+        return self.kind in MOVED
+
+    @property
+    def is_limited(self) -> bool:
+        """Whether it has limits."""
+        return math.isfinite(self.lower)
+
+    @property
+    def unit(self) -> str:
+        """The unit of its position."""
+        return "rad" if self.turns else "m"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Urdf:
+    """A robot: a tree of links; `joints` by name, in the order of the file."""
+
+    name: str
+    root: str
+    links: tuple[str, ...]
+    joints: Mapping[str, UrdfJoint]
+
+    def chain(self, link: str) -> tuple[UrdfJoint, ...]:
+        """The joints from the root to a link."""
+        above = {joint.child: joint for joint in self.joints.values()}
+        found: list[UrdfJoint] = []
+        while link in above:
+            found.append(above[link])
+            link = found[-1].parent
+        return tuple(reversed(found))
+
+
+def read(text: str) -> Urdf:
+    """The robot that a text describes. Raises XmlError."""
+    return read_tree(parse(text), text)
+
+
+def read_tree(robot: Element, text: str) -> Urdf:
+    """The robot that the outermost element of a text describes. Raises XmlError."""
+    if robot.tag != "robot":
+        message = f"the outermost element is `<{robot.tag}>`, not `<robot>`"
+        raise XmlError(message, robot.place(text), FIRST_TAG)
+    links: dict[str, Element] = {}
+    joints: dict[str, UrdfJoint] = {}
+    for element in robot.children:
+        if element.tag.startswith("xacro:"):
+            message = f"`<{element.tag}>` is not an element of URDF"
+            raise XmlError(message, element.place(text), XACRO)
+        if element.tag == "link":
+            links[_name(element, text, links)] = element
+        elif element.tag == "joint":
+            joint = _joint(element, text, _name(element, text, joints))
+            joints[joint.name] = joint
+    for joint in joints.values():
+        for link in (joint.parent, joint.child):
+            if link not in links:
+                message = f"joint `{joint.name}` names the link `{link}`, which does not exist"
+                help = f'add `<link name="{link}"/>` to the file, or correct the name'
+                raise XmlError(message, joint.place, help)
+    root = _root(links, joints, text)
+    name = robot.attributes.get("name", "")
+    return Urdf(name=name, root=root, links=tuple(links), joints=joints)
+
+
+def _name(element: Element, text: str, known: Mapping[str, object]) -> str:
+    """The name of a link or a joint, which is not among those `known`."""
+    name, tag = element.attributes.get("name", ""), element.tag
+    if not name:
+        help = f'write `<{tag} name="...">`'
+        raise XmlError(f"this {tag} has no name", element.place(text), help)
+    if name in known:
+        help = "give one of the two another name, or remove one of them"
+        raise XmlError(f"there are two {tag}s `{name}`", element.place(text, "name"), help)
+    return name
+
+
+def _joint(element: Element, text: str, name: str) -> UrdfJoint:
+    kind = element.attributes.get("type", "")
+    if kind not in KINDS:
+        known = f"joint `{name}` has "
+        known += f"the unknown type `{kind}`" if kind else "no type"
+        help = guess(kind, KINDS) if kind else f"the types are {listed(KINDS)}"
+        raise XmlError(known, element.place(text, "type" if kind else "name"), help)
+    place = element.place(text, "name")
+    parent, child = _end(element, text, "parent"), _end(element, text, "child")
+    limit = element.first("limit")
+    if limit is None:
+        if kind in ("revolute", "prismatic"):
+            help = "add its limits"
+            if kind == "revolute":
+                help += ", or use the type `continuous` for a joint without limits"
+            raise XmlError(f"the {kind} joint `{name}` has no `<limit>`", place, help)
+        low, high, speed, effort = -math.inf, math.inf, math.inf, math.inf
+    else:
+        low, high = _limits(limit, text, name) if kind in MOVED else (0.0, 0.0)
+        speed = abs(number(limit, text, "velocity", 0.0)) or math.inf
+        effort = abs(number(limit, text, "effort", 0.0))
+        if kind not in ("revolute", "prismatic"):
+            low, high = -math.inf, math.inf
+    return UrdfJoint(
+        name=name,
+        kind=kind,
+        parent=parent,
+        child=child,
+        lower=low,
+        upper=high,
+        velocity=speed,
+        effort=effort,
+        mimic=_mimic(element, text),
+        place=place,
+    )
+
+
+def _end(joint: Element, text: str, tag: str) -> str:
+    """The link that `<parent>` or `<child>` of a joint names."""
+    found = joint.first(tag)
+    if found is None or not found.attributes.get("link"):
+        message = f"joint `{joint.attributes['name']}` has no {tag} link"
+        help = f'write `<{tag} link="..."/>` in it'
+        raise XmlError(message, (found or joint).place(text, "" if found else "name"), help)
+    return found.attributes["link"]
+
+
+def _limits(limit: Element, text: str, joint: str) -> tuple[float, float]:
+    low, high = number(limit, text, "lower", 0.0), number(limit, text, "upper", 0.0)
+    if low > high:
+        message = f"the lower limit {low} of joint `{joint}` is above its upper limit {high}"
+        given = limit.attributes.get("upper", "0"), limit.attributes.get("lower", "0")
+        help = f'write `lower="{given[0]}" upper="{given[1]}"`: are the two swapped?'
+        raise XmlError(message, limit.place(text, "lower", whole=True), help)
+    return low, high
+
+
+def _mimic(joint: Element, text: str) -> Mimic | None:
+    found = joint.first("mimic")
+    if found is None:
+        return None
+    if not found.attributes.get("joint"):
+        message = f"`<mimic>` of joint `{joint.attributes['name']}` names no joint"
+        raise XmlError(message, found.place(text), 'write `<mimic joint="..."/>`')
+    return Mimic(
+        joint=found.attributes["joint"],
+        multiplier=number(found, text, "multiplier", 1.0),
+        offset=number(found, text, "offset", 0.0),
+    )
+
+
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+
+
+def numbers(element: Element, text: str, attribute: str, count: int) -> tuple[float, ...]:
+    """The numbers of an attribute, with spaces between them. Raises XmlError."""
+    words = element.attributes[attribute].split()
+    found = tuple(float(word) for word in words if _NUMBER.fullmatch(word))
+    if len(words) == len(found) == count and all(map(math.isfinite, found)):
+        return found
+    value = element.attributes[attribute]
+    message = f"`{attribute}` of `<{element.tag}>` is `{value}`, not "
+    message += "a number" if count == 1 else f"{count} numbers with spaces between them"
+    example = " ".join(["0.5", "0", "0", "1"][:count])
+    help = XACRO if "${" in value else f'write it as `{attribute}="{example}"`'
+    raise XmlError(message, element.place(text, attribute), help)
+
+
+def number(element: Element, text: str, attribute: str, default: float) -> float:
+    """The number of an attribute; the default without it. Raises XmlError."""
+    if attribute not in element.attributes:
+        return default
+    return numbers(element, text, attribute, 1)[0]
+
+
+def _root(links: Mapping[str, Element], joints: Mapping[str, UrdfJoint], text: str) -> str:
+    """The only link that is the child of no joint, from which all links are reached."""
+    above: dict[str, UrdfJoint] = {}
+    for joint in joints.values():
+        first = above.setdefault(joint.child, joint)
+        if first is not joint:
+            line = text.count("\n", 0, first.place[0]) + 1
+            message = f"the link `{joint.child}` is the child of two joints, `{first.name}` (line"
+            message += f" {line}) and `{joint.name}`"
+            help = "a link has one parent: remove one of the joints, or name another child link"
+            raise XmlError(message, joint.place, help)
+    roots = [link for link in links if link not in above]
+    if not links:
+        raise XmlError("the robot has no link", (0, 0), 'write a `<link name="..."/>`')
+    reached = _below(roots, joints)
+    for link in links:
+        if link not in reached:
+            raise _circle(link, above)
+    if len(roots) > 1:
+        first, second = roots[:2]
+        message = (
+            f"the robot has {len(roots)} roots: no joint leads to `{first}`, nor to `{second}`"
+        )
+        help = f"add a joint whose child link is `{second}`, or remove that link"
+        raise XmlError(message, links[second].place(text, "name"), help)
+    return roots[0]
+
+
+def _below(roots: list[str], joints: Mapping[str, UrdfJoint]) -> set[str]:
+    """The links that joints lead to from the roots, and the roots."""
+    children: dict[str, list[str]] = {}
+    for joint in joints.values():
+        children.setdefault(joint.parent, []).append(joint.child)
+    todo, found = list(roots), set(roots)
+    while todo:
+        todo += (below := children.get(todo.pop(), []))
+        found |= set(below)
+    return found
+
+
+def _circle(link: str, above: Mapping[str, UrdfJoint]) -> XmlError:
+    """The mistake that the joints above a link lead to no root."""
+    seen: dict[str, None] = {}
+    while link not in seen:
+        seen[link] = None
+        link = above[link].parent
+    circle = list(seen)[list(seen).index(link) :]
+    message = f"the links {listed(reversed(circle))} are a circle of joints"
+    help = "a robot is a tree of links: remove one of the joints of the circle"
+    return XmlError(message, above[link].place, help)
