@@ -27,7 +27,7 @@ from smachac.robots.files import BUILT_IN
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
 from smachac.robots.scene import Body
 from smachac.robots.scene import read as read_scene
-from smachac.robots.urdf import XACRO
+from smachac.robots.urdf_format import XACRO
 from smachac.robots.xml_tree import XmlError
 
 T = TypeVar("T")
