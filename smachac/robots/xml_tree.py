@@ -57,7 +57,7 @@ class Element:
             pattern = rf"""\s{re.escape(attribute)}\s*=\s*(?:"([^"]*)"|'([^']*)')"""
             found = re.compile(pattern).search(text, self.start, self.end)
             if found is not None:
-                return (found.start() + 1, found.end()) if whole else found.span(found.lastindex)
+                return (found.start() + 1, found.end()) if whole else found.span(found.lastindex or 0)
         return self.start, self.end
 
 
