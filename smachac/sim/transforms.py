@@ -142,3 +142,8 @@ def grasp_pose(block_pose: Any, grasp: Pose = DOWN) -> list[list[float]]:
     yaw = yaw_of(rotation)
     folded = yaw - math.pi / 2 * round(yaw / (math.pi / 2))
     return as_lists(compose((position, about_z(folded)), grasp))
+
+
+def nearest_turn(angle: float, other: float) -> float:
+    """The angle (rad) plus whole turns that is nearest to `other`: at most half a turn from it."""
+    return other + math.remainder(angle - other, 2.0 * math.pi)
