@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from smachac.robots.fields import guess, listed
 from smachac.robots.urdf_format import check_format, number, numbers
@@ -77,12 +77,15 @@ class UrdfJoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Urdf:
-    """A robot: a tree of links; `joints` by name, in the order of the file."""
+    """A robot: a tree of links; `joints` by name, in the order of the file. `tree` is the outermost
+    element of its `text`."""
 
     name: str
     root: str
     links: tuple[str, ...]
     joints: Mapping[str, UrdfJoint]
+    text: str = field(repr=False)
+    tree: Element = field(repr=False)
 
     def chain(self, link: str) -> tuple[UrdfJoint, ...]:
         """The joints from the root to a link."""
@@ -96,11 +99,7 @@ class Urdf:
 
 def read(text: str) -> Urdf:
     """The robot that a text describes. Raises XmlError."""
-    return read_tree(parse(text), text)
-
-
-def read_tree(robot: Element, text: str) -> Urdf:
-    """The robot that the outermost element of a text describes. Raises XmlError."""
+    robot = parse(text)
     check_format(robot, text)
     links: dict[str, Element] = {}
     joints: dict[str, UrdfJoint] = {}
@@ -118,7 +117,7 @@ def read_tree(robot: Element, text: str) -> Urdf:
                 raise XmlError(message, joint.place, help)
     root = _root(links, joints, text)
     name = robot.attributes.get("name", "")
-    return Urdf(name=name, root=root, links=tuple(links), joints=joints)
+    return Urdf(name=name, root=root, links=tuple(links), joints=joints, text=text, tree=robot)
 
 
 def _name(element: Element, text: str, known: Mapping[str, object]) -> str:
@@ -145,10 +144,10 @@ def _joint(element: Element, text: str, name: str) -> UrdfJoint:
         end.attributes["link"] for tag in ("parent", "child") for end in element.all(tag)
     )
     axis = element.first("axis")
-    if kind in MOVED and axis is not None and "xyz" in axis.attributes:
-        if math.hypot(*numbers(axis, text, "xyz", 3)) < 1e-6:
-            message = f"the axis of joint `{name}` is zero: it has no direction"
-            raise XmlError(message, axis.place(text, "xyz"), 'write an axis such as `xyz="0 0 1"`')
+    given = kind in MOVED and axis is not None and "xyz" in axis.attributes
+    if given and math.hypot(*numbers(axis, text, "xyz", 3)) < 1e-6:
+        message = f"the axis of joint `{name}` is zero: it has no direction"
+        raise XmlError(message, axis.place(text, "xyz"), 'write an axis such as `xyz="0 0 1"`')
     limit = element.first("limit")
     if limit is None:
         if kind in ("revolute", "prismatic"):

@@ -22,8 +22,8 @@ TEXT = 0
 
 class Tag(NamedTuple):
     """An element: its attributes with the count of their numbers (TEXT for a text), those it needs,
-    its child elements, those it needs, and those that it may have several times (of a
-    `<material>` in a `<visual>` the first counts). `choice`: it has exactly one child element. `lengths`: attributes with numbers that are not negative."""
+    its child elements, those it needs, and those that it may have several times. `choice`: it has
+    exactly one child element. `lengths`: attributes with numbers that are not negative."""
 
     attributes: Mapping[str, int] = {}
     required: tuple[str, ...] = ()
@@ -86,7 +86,6 @@ LINK = Tag(
             {"name": TEXT},
             children={"origin": ORIGIN, "geometry": GEOMETRY, "material": MATERIAL},
             needed=("geometry",),
-            several=("material",),
         ),
         "collision": Tag(
             {"name": TEXT, "concave": TEXT, "group": TEXT, "mask": TEXT},
@@ -127,6 +126,8 @@ ROBOT = Tag(
     },
     several=("link", "joint", "material", *HARMLESS),
 )
+FIRST_COUNTS = ("material",)
+"""Elements of which the first one counts, where one is expected."""
 NOWHERE_ELSE = ("link", "joint")
 """Elements that may stand in `<robot>` alone: elsewhere they would be left out in silence."""
 
@@ -182,7 +183,7 @@ def _check_element(element: Element, tag: Tag, text: str, version: str) -> None:
             present = [other.tag for other in element.children]
             _no_slip(child, "", [*tag.children], present, text, child.tag)
             continue
-        if child.tag in seen and child.tag not in tag.several:
+        if child.tag in seen and child.tag not in (*tag.several, *FIRST_COUNTS):
             message = f"`<{element.tag}>` has two elements `<{child.tag}>`"
             message += f", in line {seen[child.tag].line} and here"
             raise XmlError(message, child.place(text), "remove one of them")
