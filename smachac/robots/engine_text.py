@@ -52,7 +52,9 @@ def engine_text(
     printer = _Printer(robot, find, _left_out(robot, used))
     printer.print(robot.tree, ROBOT)
     meshes = tuple(dict.fromkeys(printer.meshes))
-    return EngineText(text="\n".join(printer.text) + "\n", lines=tuple(printer.lines), meshes=meshes)
+    return EngineText(
+        text="\n".join(printer.text) + "\n", lines=tuple(printer.lines), meshes=meshes
+    )
 
 
 def _left_out(robot: Urdf, used: Collection[str]) -> set[str]:
@@ -100,7 +102,9 @@ class _Printer:
 
     def _attributes(self, element: Element, tag: Tag) -> dict[str, str]:
         text = self.robot.text
-        given = {key: element.attributes[key] for key in tag.attributes if key in element.attributes}
+        given = {
+            key: element.attributes[key] for key in tag.attributes if key in element.attributes
+        }
         match element.tag:
             case "robot":
                 return {"name": element.attributes.get("name") or "robot"}

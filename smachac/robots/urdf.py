@@ -115,6 +115,7 @@ def read(text: str) -> Urdf:
                 message = f"joint `{joint.name}` names the link `{link}`, which does not exist"
                 help = f'add `<link name="{link}"/>` to the file, or correct the name'
                 raise XmlError(message, joint.place, help)
+    _check_leaders(joints)
     root = _root(links, joints, text)
     name = robot.attributes.get("name", "")
     return Urdf(name=name, root=root, links=tuple(links), joints=joints, text=text, tree=robot)
@@ -195,6 +196,23 @@ def _mimic(joint: Element, text: str) -> Mimic | None:
         multiplier=number(found, text, "multiplier", 1.0),
         offset=number(found, text, "offset", 0.0),
     )
+
+
+def _check_leaders(joints: Mapping[str, UrdfJoint]) -> None:
+    """Raise XmlError unless each joint that follows another leads to one that follows none."""
+    for joint in joints.values():
+        seen, leader = {joint.name}, joint
+        while leader.mimic is not None:
+            name = leader.mimic.joint
+            if name not in joints:
+                message = f"joint `{leader.name}` follows the joint `{name}`, which does not exist"
+                raise XmlError(message, leader.place, guess(name, joints))
+            if name in seen:
+                message = f"joint `{leader.name}` follows `{name}`, which follows it"
+                help = "remove `<mimic>` from one of them"
+                raise XmlError(message, leader.place, help)
+            seen.add(name)
+            leader = joints[name]
 
 
 def _root(links: Mapping[str, Element], joints: Mapping[str, UrdfJoint], text: str) -> str:
