@@ -8,6 +8,7 @@ joints break its solvers, a line is cut after 1,023 characters, and packages are
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Collection, Iterator
@@ -16,9 +17,11 @@ from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 from smachac.robots.files import SEARCHED, find_mesh
-from smachac.robots.urdf import Urdf, UrdfJoint, read_tree
+from smachac.robots.urdf import Mimic, Urdf, UrdfJoint, numbers, read_tree
 from smachac.robots.xml_tree import Element, XmlError, parse
+from smachac.sim import transforms
 from smachac.sim.physics import data_folder
+from smachac.sim.transforms import Pose, Vector
 
 MAX_LINKS = 128
 """The most links of one body in PyBullet 3.2.7; the states of more joints cannot be read."""
@@ -41,6 +44,53 @@ class RobotFile:
     root: Element = field(repr=False)
     text: str = field(repr=False)
     urdf: Urdf = field(repr=False)
+
+    def frames(self) -> dict[str, tuple[Pose, Vector]]:
+        """The frame of each joint in that of its parent link, and its axis (unit vector)."""
+        return {
+            joint.attributes["name"]: (self._origin(joint), self._axis(joint))
+            for joint in self.root.all("joint")
+        }
+
+    def _origin(self, joint: Element) -> Pose:
+        origin = joint.first("origin")
+        if origin is None:
+            return transforms.IDENTITY
+        x, y, z = self._row(origin, "xyz", (0.0, 0.0, 0.0))
+        if "quat_xyzw" in origin.attributes:
+            return transforms.as_pose([[x, y, z], numbers(origin, self.text, "quat_xyzw", 4)])
+        return (x, y, z), transforms.from_rpy(*self._row(origin, "rpy", (0.0, 0.0, 0.0)))
+
+    def _axis(self, joint: Element) -> Vector:
+        axis = joint.first("axis")
+        x, y, z = self._row(axis, "xyz", (1.0, 0.0, 0.0)) if axis is not None else (1.0, 0.0, 0.0)
+        length = math.hypot(x, y, z) or 1.0
+        return x / length, y / length, z / length
+
+    def _row(self, element: Element, attribute: str, default: Vector) -> Vector:
+        if attribute not in element.attributes:
+            return default
+        x, y, z = numbers(element, self.text, attribute, 3)
+        return x, y, z
+
+    def leader(self, name: str) -> Mimic:
+        """The joint that a joint follows (`<mimic>`), over all joints between the two; itself for
+        one that follows none. Raises LoadError where there is no such joint."""
+        joints, found = self.urdf.joints, Mimic(joint=name)
+        seen: set[str] = set()
+        while (mimic := joints[found.joint].mimic) is not None:
+            seen.add(found.joint)
+            if mimic.joint not in joints or mimic.joint in seen:
+                message = f"the joint `{name}` follows `{mimic.joint}`, "
+                message += "which follows it" if mimic.joint in seen else "which does not exist"
+                line = self.text.count("\n", 0, joints[name].place[0]) + 1
+                raise self.error(line, message)
+            found = Mimic(
+                joint=mimic.joint,
+                multiplier=found.multiplier * mimic.multiplier,
+                offset=found.multiplier * mimic.offset + found.offset,
+            )
+        return found
 
     def error(self, line: int, message: str) -> LoadError:
         """The error for a line of the file."""
@@ -163,6 +213,11 @@ class _Printer:
                 return {"name": element.attributes.get("name") or "robot"}
             case "mesh":
                 return {**element.attributes, "filename": self._mesh(element)}
+            case "origin" if "quat_xyzw" in element.attributes:
+                quaternion = numbers(element, self.robot.text, "quat_xyzw", 4)
+                angles = transforms.rpy(transforms.as_pose([[0, 0, 0], quaternion])[1])
+                rest = {key: element.attributes[key] for key in ("xyz",) if key in element.attributes}
+                return {**rest, "rpy": " ".join(map(repr, angles))}
             case "texture":
                 found = find_mesh(element.attributes.get("filename", ""), self.robot.path)
                 return {"filename": os.path.abspath(found)} if found is not None else {}
