@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import glob
 import os
 import stat
-import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +24,7 @@ from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import SUFFIXES, Library, Ros
 from smachac.frontend.yaml_mends import parse_mended
 from smachac.frontend.yaml_tree import Tree
+from smachac.robots.files import find_mesh, installed_packages
 
 PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
@@ -405,6 +404,7 @@ def disk_library(
         policy=project.policy,
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
+        mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
     )
 
 
@@ -444,23 +444,6 @@ def _definition_places(path: str, folders: Sequence[Path]) -> list[Path]:
     ]
     installed = [file / inner for file in installed_packages(package, os.environ)]
     return [*own, *installed]
-
-
-def installed_packages(name: str, environment: Mapping[str, str]) -> Iterator[Path]:
-    """The folders that an installed package of ROS can have: in the workspaces of ROS 2
-    (AMENT_PREFIX_PATH), in those of ROS 1 (ROS_PACKAGE_PATH), and beside this Python."""
-    for prefix in _paths(environment, "AMENT_PREFIX_PATH"):
-        yield prefix / "share" / name
-    for folder in _paths(environment, "ROS_PACKAGE_PATH"):
-        if folder.name == name:
-            yield folder
-        yield folder / name
-        yield from sorted(folder.glob(f"*/{glob.escape(name)}"))  # a repository in a workspace
-    yield Path(sys.prefix) / "share" / name
-
-
-def _paths(environment: Mapping[str, str], name: str) -> list[Path]:
-    return [Path(each) for each in environment.get(name, "").split(os.pathsep) if each]
 
 
 def _package_folders(main: Path) -> list[Path]:

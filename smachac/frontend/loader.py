@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 from smachac.diagnostics.diagnostic import (
@@ -12,6 +13,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import Tree, parse
+from smachac.robots.files import Packages
 
 Ros = Literal[1, 2]
 """A major version of ROS, for which programs are generated."""
@@ -37,7 +39,9 @@ class Library:
     folders below that of the main script that have one of these files. The lists of folders and
     names are for messages. `ros` and `policy` are the version of ROS and the severities of the
     project. `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
-    description or URDF file of a built-in robot, or a file of PyBullet's data. `settings_read` is
+    description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
+    packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
+    `settings_read` is
     False if the project file or its search folders could not be read.
     """
 
@@ -57,6 +61,7 @@ class Library:
     ros: Ros = DEFAULT_ROS
     policy: Policy = field(default_factory=Policy)
     robot: Callable[[str], Source | None] = lambda file: None
+    mesh: Callable[[str, str, Packages], Path | None] = lambda name, urdf, packages: Path(name)
     settings_read: bool = True
 
     def folder_with(self, name: str, suffixes: Iterable[str], searched: Collection[str]) -> str:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import Any, Literal, TypeAlias, TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
@@ -21,13 +21,15 @@ from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
 from smachac.robots import description, urdf
 from smachac.robots.description import NO_PARTS, Description, Part, Station, limb_names
+from smachac.robots.engine_text import engine_text
 from smachac.robots.faults import read_file as read_faults
 from smachac.robots.fields import DataError, guess
 from smachac.robots.files import BUILT_IN
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
 from smachac.robots.scene import Body
 from smachac.robots.scene import read as read_scene
-from smachac.robots.urdf import XACRO
+from smachac.robots.urdf import Urdf
+from smachac.robots.urdf_format import XACRO
 from smachac.robots.xml_tree import XmlError
 
 T = TypeVar("T")
@@ -305,27 +307,27 @@ class _Reader:
     ) -> tuple[dict[str, Joint], frozenset[str]] | None:
         """The joints of a description by name, and its frames.
 
-        The URDF file is not read where the description has the limits of all joints.
+        Where the description has the limits of all joints, they hold, and the URDF file need not be
+        there.
         """
-        if all(limb.limits for limb in data.limbs):
-            rows = [
-                Joint(name=name, lower=low, upper=high, velocity=speed)
-                for limb in data.limbs
-                for name, (low, high), speed in zip(
-                    limb.joints,
-                    limb.limits,
-                    limb.speeds or (math.inf,) * len(limb.joints),
-                    strict=True,
-                )
-            ]
-            return {joint.name: joint for joint in rows}, frozenset(data.frames)
-        text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)
+        text = None
+        if word.text not in BUILT_IN or not data.has_limits:
+            text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)
+        moved: dict[str, Joint] = {}
+        frames = data.frames
         try:
-            if text is None:
+            if text is None and not data.has_limits:
                 help = package_help(data.urdf) or "put it beside this file"
                 raise DataError(f"the file `{data.urdf}` was not found", ("urdf",), help)
-            robot = urdf.read(text.text)
-            description.check(data, robot)
+            if text is not None:
+                robot = urdf.read(text.text)
+                description.check(data, robot)
+                self.simulated_text(data, robot, text, source)
+                rows = robot.joints.values()
+                moved = {joint.name: checked_joint(joint, text) for joint in rows if joint.is_moved}
+                # Files of one robot of the industry define different links: only those of a user
+                # count.
+                frames = data.frames if word.text in BUILT_IN else robot.links
         except XmlError as error:
             assert text is not None
             self.bad_urdf(word, data.urdf, text, error)
@@ -333,14 +335,14 @@ class _Reader:
         except DataError as error:
             self.mistake(word, tree, error, "robot")
             return None
-        moved = {
-            name: checked_joint(joint, text)
-            for name, joint in robot.joints.items()
-            if joint.is_moved
-        }
-        # Files of one robot of the industry define different links: only those of a user count.
-        frames = frozenset(data.frames if word.text in BUILT_IN else robot.links)
-        return moved, frames
+        return moved | _described_joints(data, moved), frozenset(frames)
+
+    def simulated_text(self, data: Description, robot: Urdf, text: Source, source: Source) -> None:
+        """Print the text for the simulation, as it does itself. Raises XmlError."""
+        folder = Path(source.name).parent
+        packages = {name: folder / path for name, path in data.packages}
+        used = [name for limb in data.limbs for name in limb.links]
+        engine_text(robot, lambda name: self.library.mesh(name, text.name, packages), used)
 
     def station(self, word: Word, source: Source, data: Station, tree: Tree) -> Robot | None:
         """Several robots as one: the joints and limbs of all."""
@@ -380,6 +382,21 @@ class _Reader:
             description=word.text,
             scene=frozenset(part.name for part, _ in found),
         )
+
+
+def _described_joints(data: Description, known: Mapping[str, Joint]) -> dict[str, Joint]:
+    """The joints of arms whose limits are in the description, by name; `known`: those of the URDF
+    file."""
+    return {
+        name: replace(known.get(name, Joint(name=name)), lower=low, upper=high, velocity=speed)
+        for limb in data.limbs
+        for name, (low, high), speed in zip(
+            limb.joints if limb.limits else (),
+            limb.limits,
+            limb.speeds or (math.inf,) * len(limb.limits),
+            strict=True,
+        )
+    }
 
 
 def _arms(part: Part, robot: Robot, station: Station) -> Iterator[Arm]:

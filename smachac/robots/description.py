@@ -22,6 +22,7 @@ from smachac.robots.fields import (
     Table,
     guess,
     in_metres,
+    listed,
 )
 from smachac.robots.urdf import Urdf, UrdfJoint
 
@@ -78,6 +79,11 @@ class Limb:
     limits: tuple[tuple[float, float], ...] = ()
     speeds: tuple[float, ...] = ()
 
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The links that the description names."""
+        return (self.tip, *(self.gripper.pads if self.gripper is not None else ()))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stand:
@@ -94,8 +100,9 @@ class Stand:
 class Description:
     """A robot that stands with its base at `base` (world frame); `urdf` is its file, as written.
 
-    `frames` are the names of its links, where the checker has no URDF file. `folder` is where its
-    file was read, empty for text without a file.
+    `frames` are the names of its links, where the checker has no URDF file. `packages` are names of
+    ROS packages and their folders, as written. `folder` is where its file was read, empty for text
+    without a file.
     """
 
     name: str
@@ -104,7 +111,13 @@ class Description:
     base: Pose = IDENTITY
     stand: Stand | None = None
     frames: tuple[str, ...] = ()
+    packages: tuple[tuple[str, str], ...] = ()
     folder: str = ""
+
+    @property
+    def has_limits(self) -> bool:
+        """Whether it has the limits of all its arms."""
+        return all(limb.limits for limb in self.limbs)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -410,6 +423,11 @@ _ROBOT: Table = {
     "frames": Field(
         fields.texts, "The names of the links, for a robot whose URDF file is not read.", ()
     ),
+    "packages": Field(
+        fields.named(fields.text),
+        "Folders of ROS packages, by name: those that `package://` in the URDF file names.",
+        (),
+    ),
 }
 
 
@@ -422,6 +440,7 @@ def _robot(given: Fields) -> Description:
         stand=given["stand"],
         limbs=given["arms"],
         frames=given["frames"],
+        packages=given["packages"],
     )
 
 
@@ -442,27 +461,82 @@ def read(data: Any) -> Description | Station:
 
 def check(robot: Description, urdf: Urdf) -> None:
     """Compare a description with its URDF file. Raises DataError for a joint or link that the file
-    does not have, and for a position outside the limits of its joint."""
-    joints, links = urdf.joints, urdf.links
+    does not have, for joints that are not those from the base to the tool, for a joint without
+    effort, and for a position outside the limits of its joint."""
     for limb in robot.limbs:
         place: Place = ("arms", limb.name)
         for k, name in enumerate(limb.joints):
-            _known(name, joints, "joint", (*place, "joints", k))
+            _moved(name, urdf, (*place, "joints", k))
         for k, (name, angle) in enumerate(zip(limb.joints, limb.home, strict=True)):
-            _inside(angle, joints[name], (*place, "home", k))
+            _inside(angle, urdf.joints[name], (*place, "home", k))
         for name, _ in limb.efforts:
-            _known(name, joints, "joint", (*place, "efforts", name))
-        _known(limb.tip, links, "link", (*place, "tool"))
-        if limb.gripper is None:
+            _known(name, urdf.joints, "joint", (*place, "efforts", name))
+        _known(limb.tip, urdf.links, "link", (*place, "tool"))
+        _check_chain(limb, urdf, place)
+        _check_efforts(limb, urdf, place)
+        if limb.gripper is not None:
+            _check_gripper(limb.gripper, urdf, (*place, "gripper"))
+
+
+def _check_gripper(gripper: Gripper, urdf: Urdf, place: Place) -> None:
+    for finger in gripper.fingers:
+        at: Place = (*place, "joints", finger.joint)
+        _moved(finger.joint, urdf, at)
+        for key, position in (("open", finger.opened), ("closed", finger.closed)):
+            _inside(position, urdf.joints[finger.joint], (*at, key))
+    for k, name in enumerate(gripper.pads):
+        _known(name, urdf.links, "link", (*place, "pads", k))
+
+
+def _check_chain(limb: Limb, urdf: Urdf, place: Place) -> None:
+    """Raise DataError unless the joints of an arm are the last ones that move its tool, in their
+    order. Joints before them, such as those of a torso, stay at 0."""
+    chain = urdf.chain(limb.tip)
+    moving = [joint.name for joint in chain if joint.kind != "fixed" and joint.mimic is None]
+    wanted = f"write `joints: [{', '.join(moving)}]`" if moving else "name another link as `tool`"
+    for k, name in enumerate(limb.joints):
+        if name not in moving:
+            message = f"the joint `{name}` does not move the tool link `{limb.tip}`"
+            help = f"{wanted}: the joints from the root `{urdf.root}` to it" if moving else wanted
+            raise DataError(message, (*place, "joints", k), help)
+    start = min(moving.index(name) for name in limb.joints)
+    order = [name for name in moving if name in limb.joints]
+    if [*limb.joints] != order:
+        message = "the joints are not in the order from the base to the tool"
+        help = f"write `joints: [{', '.join(order)}]`, and `home` in the same order"
+        raise DataError(message, (*place, "joints"), help)
+    for name in moving[start:]:
+        if name in limb.joints:
             continue
-        place = (*place, "gripper")
-        for finger in limb.gripper.fingers:
-            at: Place = (*place, "joints", finger.joint)
-            _known(finger.joint, joints, "joint", at)
-            for key, position in (("open", finger.opened), ("closed", finger.closed)):
-                _inside(position, joints[finger.joint], (*at, key))
-        for k, name in enumerate(limb.gripper.pads):
-            _known(name, links, "link", (*place, "pads", k))
+        joint = urdf.joints[name]
+        message = f"the joint `{name}` also moves the tool link `{limb.tip}`"
+        help = f"write `joints: [{', '.join(moving[start:])}]`, with its position in `home`"
+        if not joint.is_moved:
+            message += f", but an arm has no joint of the type {joint.kind}"
+            help = "name the joints and the link of an arm without this joint"
+        raise DataError(message, (*place, "joints"), help)
+
+
+def _check_efforts(limb: Limb, urdf: Urdf, place: Place) -> None:
+    for k, name in enumerate(limb.joints):
+        joint = urdf.joints[name]
+        if joint.effort == 0.0 and name not in dict(limb.efforts):
+            message = (
+                f"the joint `{name}` has the effort 0 in the URDF file: its motor cannot move it"
+            )
+            quantity = "torque (N m)" if joint.turns else "force (N)"
+            help = f"add `efforts: {{{name}: 100}}` to the arm, with the largest {quantity}"
+            raise DataError(message, (*place, "joints", k), help)
+
+
+def _moved(name: str, urdf: Urdf, place: Place) -> None:
+    """Raise DataError unless a joint is there and has a motor of its own."""
+    _known(name, urdf.joints, "joint", place)
+    joint = urdf.joints[name]
+    if not joint.is_moved:
+        moved = [other.name for other in urdf.joints.values() if other.is_moved]
+        message = f"the joint `{name}` has the type {joint.kind}: no motor moves it"
+        raise DataError(message, place, f"write a joint that moves: {listed(moved)}")
 
 
 def _known(name: str, known: Collection[str], kind: str, place: Place) -> None:

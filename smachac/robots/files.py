@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import glob
 import os
 import re
-from collections.abc import Iterable, Iterator
+import sys
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from smachac.robots.description import Description, Station, read
 from smachac.robots.fields import DataError
@@ -58,40 +61,61 @@ def built_in(name: str) -> Description | Station:
 _PACKAGE = re.compile(r"(?:package|model)://([^/]+)/?(.*)")
 _PACKAGE_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
-
 SEARCHED = (
-    "a path is searched in the folder of the URDF file and the folders above it; a package is a"
-    " folder of its name in one of them, in ROS_PACKAGE_PATH, or in `share` of AMENT_PREFIX_PATH"
+    "a path is searched in the folder of the URDF file and the folders above it; a package is named"
+    " in `packages` of the description, or is a folder of its name in one of these folders, in"
+    " ROS_PACKAGE_PATH, or in `share` of AMENT_PREFIX_PATH"
 )
 """Where `find_mesh` searches."""
 
+Packages: TypeAlias = Mapping[str, Path]
+"""The folders of packages by name, as a description of a robot gives them."""
 
-def find_mesh(name: str, urdf: Path) -> Path | None:
+
+def find_mesh(name: str, urdf: Path, packages: Packages | None = None) -> Path | None:
     """The mesh or texture file that a URDF file names; None if there is none.
 
     `name` is a path relative to the folder of the URDF file or to a folder above it, an absolute
-    path, `file://PATH`, or `package://PACKAGE/PATH`. A package is a folder PACKAGE in a folder
-    above the URDF file, a folder above it with a `package.xml` of that name, a folder in
-    ROS_PACKAGE_PATH, or `share/PACKAGE` in a folder of AMENT_PREFIX_PATH.
+    path, `file://PATH`, or `package://PACKAGE/PATH`, whose package `package_folders` finds.
     """
-    above = urdf.absolute().parents
     found = _PACKAGE.fullmatch(name)
     path = found[2] if found is not None else name.removeprefix("file://")
-    for folder in above if found is None else _package_folders(found[1], above):
-        if path and (folder / path).is_file():
-            return folder / path
+    above = urdf.absolute().parents
+    for folder in above if found is None else package_folders(found[1], urdf, packages):
+        with contextlib.suppress(OSError, ValueError):  # a name that the file system cannot have
+            if path and (folder / path).is_file():
+                return folder / path
     return None
 
 
-def _package_folders(package: str, above: Iterable[Path]) -> Iterator[Path]:
-    for folder in above:
+def package_folders(package: str, file: Path, packages: Packages | None = None) -> Iterator[Path]:
+    """The folders that a package can have: that in `packages`; PACKAGE in a folder above the file
+    that names it, or such a folder with a `package.xml` of that name; an installed package."""
+    if packages is not None and package in packages:
+        yield packages[package]
+        return
+    for folder in file.absolute().parents:
         yield folder / package
         if _package_name(folder) == package:
             yield folder
-    for entry in filter(None, os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)):
-        yield Path(entry) if Path(entry).name == package else Path(entry) / package
-    for entry in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
-        yield Path(entry) / "share" / package
+    yield from installed_packages(package, os.environ)
+
+
+def installed_packages(name: str, environment: Mapping[str, str]) -> Iterator[Path]:
+    """The folders that an installed package of ROS can have: in the workspaces of ROS 2
+    (AMENT_PREFIX_PATH), in those of ROS 1 (ROS_PACKAGE_PATH), and beside this Python."""
+    for prefix in _paths(environment, "AMENT_PREFIX_PATH"):
+        yield prefix / "share" / name
+    for folder in _paths(environment, "ROS_PACKAGE_PATH"):
+        if folder.name == name:
+            yield folder
+        yield folder / name
+        yield from sorted(folder.glob(f"*/{glob.escape(name)}"))  # a repository in a workspace
+    yield Path(sys.prefix) / "share" / name
+
+
+def _paths(environment: Mapping[str, str], name: str) -> list[Path]:
+    return [Path(folder) for folder in environment.get(name, "").split(os.pathsep) if folder]
 
 
 def _package_name(folder: Path) -> str:

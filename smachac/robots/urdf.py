@@ -7,12 +7,12 @@ file leaves out has the default of the URDF specification.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from smachac.robots.fields import guess, listed
-from smachac.robots.xml_tree import FIRST_TAG, Element, TextPlace, XmlError, parse
+from smachac.robots.urdf_format import check_format, number, numbers
+from smachac.robots.xml_tree import Element, TextPlace, XmlError, parse
 
 TURNING = frozenset(["revolute", "continuous"])
 """The types of joints whose position is an angle."""
@@ -20,8 +20,6 @@ MOVED = TURNING | {"prismatic"}
 """The types of joints with one position: those that an arm or a gripper can have."""
 KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 """The types of joints."""
-
-XACRO = "expand the macro file with `xacro`, and name the resulting file"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,12 +77,15 @@ class UrdfJoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Urdf:
-    """A robot: a tree of links; `joints` by name, in the order of the file."""
+    """A robot: a tree of links; `joints` by name, in the order of the file. `tree` is the outermost
+    element of its `text`."""
 
     name: str
     root: str
     links: tuple[str, ...]
     joints: Mapping[str, UrdfJoint]
+    text: str = field(repr=False)
+    tree: Element = field(repr=False)
 
     def chain(self, link: str) -> tuple[UrdfJoint, ...]:
         """The joints from the root to a link."""
@@ -95,23 +96,26 @@ class Urdf:
             link = found[-1].parent
         return tuple(reversed(found))
 
+    def leader(self, name: str) -> Mimic:
+        """The joint that a joint follows, over all joints between the two; itself if it follows
+        none."""
+        found = Mimic(joint=name)
+        while (mimic := self.joints[found.joint].mimic) is not None:
+            found = Mimic(
+                joint=mimic.joint,
+                multiplier=found.multiplier * mimic.multiplier,
+                offset=found.multiplier * mimic.offset + found.offset,
+            )
+        return found
+
 
 def read(text: str) -> Urdf:
     """The robot that a text describes. Raises XmlError."""
-    return read_tree(parse(text), text)
-
-
-def read_tree(robot: Element, text: str) -> Urdf:
-    """The robot that the outermost element of a text describes. Raises XmlError."""
-    if robot.tag != "robot":
-        message = f"the outermost element is `<{robot.tag}>`, not `<robot>`"
-        raise XmlError(message, robot.place(text), FIRST_TAG)
+    robot = parse(text)
+    check_format(robot, text)
     links: dict[str, Element] = {}
     joints: dict[str, UrdfJoint] = {}
     for element in robot.children:
-        if element.tag.startswith("xacro:"):
-            message = f"`<{element.tag}>` is not an element of URDF"
-            raise XmlError(message, element.place(text), XACRO)
         if element.tag == "link":
             links[_name(element, text, links)] = element
         elif element.tag == "joint":
@@ -123,9 +127,10 @@ def read_tree(robot: Element, text: str) -> Urdf:
                 message = f"joint `{joint.name}` names the link `{link}`, which does not exist"
                 help = f'add `<link name="{link}"/>` to the file, or correct the name'
                 raise XmlError(message, joint.place, help)
+    _check_leaders(joints)
     root = _root(links, joints, text)
     name = robot.attributes.get("name", "")
-    return Urdf(name=name, root=root, links=tuple(links), joints=joints)
+    return Urdf(name=name, root=root, links=tuple(links), joints=joints, text=text, tree=robot)
 
 
 def _name(element: Element, text: str, known: Mapping[str, object]) -> str:
@@ -148,7 +153,14 @@ def _joint(element: Element, text: str, name: str) -> UrdfJoint:
         help = guess(kind, KINDS) if kind else f"the types are {listed(KINDS)}"
         raise XmlError(known, element.place(text, "type" if kind else "name"), help)
     place = element.place(text, "name")
-    parent, child = _end(element, text, "parent"), _end(element, text, "child")
+    parent, child = (
+        end.attributes["link"] for tag in ("parent", "child") for end in element.all(tag)
+    )
+    axis = element.first("axis")
+    given = kind in MOVED and axis is not None and "xyz" in axis.attributes
+    if given and math.hypot(*numbers(axis, text, "xyz", 3)) < 1e-6:
+        message = f"the axis of joint `{name}` is zero: it has no direction"
+        raise XmlError(message, axis.place(text, "xyz"), 'write an axis such as `xyz="0 0 1"`')
     limit = element.first("limit")
     if limit is None:
         if kind in ("revolute", "prismatic"):
@@ -177,16 +189,6 @@ def _joint(element: Element, text: str, name: str) -> UrdfJoint:
     )
 
 
-def _end(joint: Element, text: str, tag: str) -> str:
-    """The link that `<parent>` or `<child>` of a joint names."""
-    found = joint.first(tag)
-    if found is None or not found.attributes.get("link"):
-        message = f"joint `{joint.attributes['name']}` has no {tag} link"
-        help = f'write `<{tag} link="..."/>` in it'
-        raise XmlError(message, (found or joint).place(text, "" if found else "name"), help)
-    return found.attributes["link"]
-
-
 def _limits(limit: Element, text: str, joint: str) -> tuple[float, float]:
     low, high = number(limit, text, "lower", 0.0), number(limit, text, "upper", 0.0)
     if low > high:
@@ -201,9 +203,6 @@ def _mimic(joint: Element, text: str) -> Mimic | None:
     found = joint.first("mimic")
     if found is None:
         return None
-    if not found.attributes.get("joint"):
-        message = f"`<mimic>` of joint `{joint.attributes['name']}` names no joint"
-        raise XmlError(message, found.place(text), 'write `<mimic joint="..."/>`')
     return Mimic(
         joint=found.attributes["joint"],
         multiplier=number(found, text, "multiplier", 1.0),
@@ -211,28 +210,21 @@ def _mimic(joint: Element, text: str) -> Mimic | None:
     )
 
 
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
-
-
-def numbers(element: Element, text: str, attribute: str, count: int) -> tuple[float, ...]:
-    """The numbers of an attribute, with spaces between them. Raises XmlError."""
-    words = element.attributes[attribute].split()
-    found = tuple(float(word) for word in words if _NUMBER.fullmatch(word))
-    if len(words) == len(found) == count and all(map(math.isfinite, found)):
-        return found
-    value = element.attributes[attribute]
-    message = f"`{attribute}` of `<{element.tag}>` is `{value}`, not "
-    message += "a number" if count == 1 else f"{count} numbers with spaces between them"
-    example = " ".join(["0.5", "0", "0", "1"][:count])
-    help = XACRO if "${" in value else f'write it as `{attribute}="{example}"`'
-    raise XmlError(message, element.place(text, attribute), help)
-
-
-def number(element: Element, text: str, attribute: str, default: float) -> float:
-    """The number of an attribute; the default without it. Raises XmlError."""
-    if attribute not in element.attributes:
-        return default
-    return numbers(element, text, attribute, 1)[0]
+def _check_leaders(joints: Mapping[str, UrdfJoint]) -> None:
+    """Raise XmlError unless each joint that follows another leads to one that follows none."""
+    for joint in joints.values():
+        seen, leader = {joint.name}, joint
+        while leader.mimic is not None:
+            name = leader.mimic.joint
+            if name not in joints:
+                message = f"joint `{leader.name}` follows the joint `{name}`, which does not exist"
+                raise XmlError(message, leader.place, guess(name, joints))
+            if name in seen:
+                message = f"joint `{leader.name}` follows `{name}`, which follows it"
+                help = "remove `<mimic>` from one of them"
+                raise XmlError(message, leader.place, help)
+            seen.add(name)
+            leader = joints[name]
 
 
 def _root(links: Mapping[str, Element], joints: Mapping[str, UrdfJoint], text: str) -> str:

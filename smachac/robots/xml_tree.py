@@ -56,8 +56,10 @@ class Element:
         if attribute in self.attributes:
             pattern = rf"""\s{re.escape(attribute)}\s*=\s*(?:"([^"]*)"|'([^']*)')"""
             found = re.compile(pattern).search(text, self.start, self.end)
+            if found is not None and whole:
+                return found.start() + 1, found.end()
             if found is not None:
-                return (found.start() + 1, found.end()) if whole else found.span(found.lastindex or 0)
+                return found.span(found.lastindex or 0)
         return self.start, self.end
 
 

@@ -21,7 +21,7 @@ from smachac.sim.outcome import Result
 from smachac.sim.physics import SimUnavailable, UnknownNameError
 from smachac.sim.scene import Event
 from smachac.sim.tasks import check_placed, scattered
-from smachac.sim.transforms import grasp_pose
+from smachac.sim.transforms import as_pose, grasp_pose
 from smachac.sim.world import World, close, configure, open_world, world
 
 __all__ = [
@@ -33,6 +33,7 @@ __all__ = [
     "SimUnavailable",
     "UnknownNameError",
     "World",
+    "as_pose",
     "check_placed",
     "close",
     "configure",

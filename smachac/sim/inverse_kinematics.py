@@ -188,7 +188,7 @@ def _chain(robot: RobotPart, limb: Limb) -> _Chain:
         origin = compose(origin, place)
         if not fact.is_moved:
             continue
-        leader = robot.file.leader(fact.name)
+        leader = robot.file.urdf.leader(fact.name)
         joints.append(
             _Joint(
                 origin=origin,

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from smachac.sim.physics import Engine, quiet
-from smachac.sim.robot_file import EngineFile, LoadError, explained
+from smachac.sim.robot_file import EngineFile, explained
 
 _LONGEST_TRIAL = 120.0
 """Time (s) in which the child process has to load its files."""

@@ -55,7 +55,7 @@ class RobotPart:
         home = {name: at for limb in self.limbs for name, at in zip(limb.joints, limb.home, strict=True)}
         found: dict[str, float] = {}
         for joint in self.file.urdf.joints.values():
-            leader = self.file.leader(joint.name)
+            leader = self.file.urdf.leader(joint.name)
             first = self.file.urdf.joints[leader.joint]
             at = home.get(leader.joint, min(max(0.0, first.lower), first.upper))
             found[joint.name] = leader.multiplier * at + leader.offset
@@ -290,7 +290,7 @@ def _mounted(
     own = {finger.joint for finger in fingers}
     followers, carriers = [], {}
     for joint in facts.values():
-        leader = part.file.leader(joint.name)
+        leader = part.file.urdf.leader(joint.name)
         if joint.is_moved and joint.mimic is not None and leader.joint in limb.joints:
             if joint.name not in own:
                 index = limb.joints.index(leader.joint)
@@ -305,7 +305,7 @@ def _mounted(
                     )
                 )
     for joint in part.file.urdf.chain(limb.tip):
-        leader = part.file.leader(joint.name)
+        leader = part.file.urdf.leader(joint.name)
         if joint.is_moved and leader.joint not in limb.joints:
             carriers[leader.joint] = joints[leader.joint]
     return MountedLimb(
@@ -335,7 +335,7 @@ def _with_followers(gripper: Gripper | None, file: RobotFile) -> Gripper | None:
         return None
     fingers = {finger.joint: finger for finger in gripper.fingers}
     for name, joint in file.urdf.joints.items():
-        leader = file.leader(name)
+        leader = file.urdf.leader(name)
         first = fingers.get(leader.joint)
         if joint.mimic is None or not joint.is_moved or first is None or name in fingers:
             continue

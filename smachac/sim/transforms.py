@@ -133,16 +133,6 @@ def from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
     return multiply(about_z(yaw), multiply(y, x))
 
 
-def rpy(q: Quaternion) -> Vector:
-    """The roll, pitch and yaw (rad) of a rotation, see `from_rpy`; pitch is within +-pi/2."""
-    x, y, z, w = q
-    sine = max(-1.0, min(1.0, 2.0 * (w * y - x * z)))
-    if abs(sine) > 1.0 - 1e-12:  # roll and yaw turn about one axis
-        return 0.0, math.copysign(math.pi / 2, sine), -2.0 * math.copysign(1.0, sine) * math.atan2(x, w)
-    roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    return roll, math.asin(sine), yaw_of(q)
-
-
 def about_z(yaw: float) -> Quaternion:
     """The rotation by `yaw` (rad) about the vertical axis."""
     return (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
