@@ -96,6 +96,18 @@ class Urdf:
             link = found[-1].parent
         return tuple(reversed(found))
 
+    def leader(self, name: str) -> Mimic:
+        """The joint that a joint follows, over all joints between the two; itself if it follows
+        none."""
+        found = Mimic(joint=name)
+        while (mimic := self.joints[found.joint].mimic) is not None:
+            found = Mimic(
+                joint=mimic.joint,
+                multiplier=found.multiplier * mimic.multiplier,
+                offset=found.multiplier * mimic.offset + found.offset,
+            )
+        return found
+
 
 def read(text: str) -> Urdf:
     """The robot that a text describes. Raises XmlError."""

@@ -80,7 +80,7 @@ class Kinematics:
 
     def __init__(self, robot: RobotPart) -> None:
         self._facts = robot.file.urdf.joints
-        self._rest = robot.rest
+        self._rest = robot.rest()
         self._chains = {limb.name: _chain(robot, limb) for limb in robot.limbs}
 
     def tip(
@@ -182,12 +182,13 @@ class Kinematics:
 def _chain(robot: RobotPart, limb: Limb) -> _Chain:
     """The chain of a limb; the origins of fixed joints are parts of those of moved ones."""
     origin, joints = IDENTITY, []
+    frames = robot.file.frames()
     for fact in robot.file.urdf.chain(limb.tip):
-        place, axis = robot.file.frame(fact.name)
+        place, axis = frames[fact.name]
         origin = compose(origin, place)
         if not fact.is_moved:
             continue
-        leader = robot.file.leader(fact.name)
+        leader = robot.file.urdf.leader(fact.name)
         joints.append(
             _Joint(
                 origin=origin,

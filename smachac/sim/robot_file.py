@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection
 from dataclasses import dataclass, field
@@ -10,8 +11,11 @@ from pathlib import Path
 from smachac.robots.engine_text import engine_text
 from smachac.robots.files import find_mesh
 from smachac.robots.urdf import Urdf, read
-from smachac.robots.xml_tree import XmlError
+from smachac.robots.urdf_format import numbers
+from smachac.robots.xml_tree import Element, XmlError
+from smachac.sim import transforms
 from smachac.sim.physics import data_folder
+from smachac.sim.transforms import Pose, Vector
 
 
 class LoadError(RuntimeError):
@@ -25,6 +29,35 @@ class RobotFile:
 
     path: Path
     urdf: Urdf = field(repr=False)
+
+    def frames(self) -> dict[str, tuple[Pose, Vector]]:
+        """The frame of each joint in that of its parent link, and its axis (unit vector)."""
+        return {
+            joint.attributes["name"]: (self._origin(joint), self._axis(joint))
+            for joint in self.urdf.tree.all("joint")
+        }
+
+    def _origin(self, joint: Element) -> Pose:
+        origin = joint.first("origin")
+        if origin is None:
+            return transforms.IDENTITY
+        place = self._row(origin, "xyz", (0.0, 0.0, 0.0))
+        if "quat_xyzw" in origin.attributes:
+            rotation = numbers(origin, self.urdf.text, "quat_xyzw", 4)
+            return transforms.as_pose([place, rotation])
+        return place, transforms.from_rpy(*self._row(origin, "rpy", (0.0, 0.0, 0.0)))
+
+    def _axis(self, joint: Element) -> Vector:
+        axis = joint.first("axis")
+        x, y, z = self._row(axis, "xyz", (1.0, 0.0, 0.0)) if axis is not None else (1.0, 0.0, 0.0)
+        length = math.hypot(x, y, z) or 1.0
+        return x / length, y / length, z / length
+
+    def _row(self, element: Element, attribute: str, default: Vector) -> Vector:
+        if attribute not in element.attributes:
+            return default
+        x, y, z = numbers(element, self.urdf.text, attribute, 3)
+        return x, y, z
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
