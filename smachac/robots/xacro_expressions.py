@@ -40,9 +40,21 @@ _COMPARE: Mapping[type[ast.cmpop], Callable[[Any, Any], bool]] = {
 }
 _METHODS: Mapping[type, frozenset[str]] = {
     str: frozenset(
-        "lower upper strip lstrip rstrip startswith endswith replace split join title".split()
+        [
+            "lower",
+            "upper",
+            "strip",
+            "lstrip",
+            "rstrip",
+            "startswith",
+            "endswith",
+            "replace",
+            "split",
+            "join",
+            "title",
+        ]
     ),
-    dict: frozenset("get keys values items".split()),
+    dict: frozenset(["get", "keys", "values", "items"]),
 }
 _REFUSED = (type, vars)
 """Functions of xacro that give access to the insides of Python objects."""
@@ -102,7 +114,9 @@ class Evaluator:
                 pairs = zip(keys, parts, strict=True)
                 return {self.value(k, names): self.value(v, names) for k, v in pairs if k}
             case ast.Subscript(value=of, slice=ast.Slice(lower=low, upper=high, step=step)):
-                edges = [None if edge is None else self.value(edge, names) for edge in (low, high, step)]
+                edges = [
+                    None if edge is None else self.value(edge, names) for edge in (low, high, step)
+                ]
                 return self.value(of, names)[slice(*edges)]
             case ast.Subscript(value=of, slice=index):
                 return self.value(of, names)[self.value(index, names)]
@@ -112,8 +126,9 @@ class Evaluator:
                 given = [self.value(arg, names) for arg in args]
                 named = {key.arg: self.value(key.value, names) for key in keywords if key.arg}
                 return self.value(func, names)(*given, **named)
-            case ast.ListComp(elt=item, generators=loops) | ast.GeneratorExp(
-                elt=item, generators=loops
+            case (
+                ast.ListComp(elt=item, generators=loops)
+                | ast.GeneratorExp(elt=item, generators=loops)
             ):
                 return [self.value(item, inner) for inner in self.loops(loops, names)]
         raise NotAllowedError(f"`{ast.unparse(node)}` is not an expression that is evaluated")
@@ -182,5 +197,7 @@ def _bound(target: ast.expr, value: Any) -> dict[str, Any]:
             return {name: value}
         case ast.Tuple(elts=parts):
             pairs = zip(parts, value, strict=True)
-            return {name: item for part, inner in pairs for name, item in _bound(part, inner).items()}
+            return {
+                name: item for part, inner in pairs for name, item in _bound(part, inner).items()
+            }
     raise NotAllowedError(f"`{ast.unparse(target)}` is not the name of a value")

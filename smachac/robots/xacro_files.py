@@ -18,7 +18,10 @@ from smachac.robots.xml_tree import TextPlace, XmlError
 
 SUFFIX = ".xacro"
 """The ending of macro files."""
-INSTALL = "run `pip install 'smachac[xacro]'`, or expand the file with `xacro` and name the result"
+EXPAND = "expand the file with `xacro`, and name the resulting file"
+INSTALL = f"run `pip install 'smachac[xacro]'`, or {EXPAND}"
+_LONGEST_PART = 120
+"""In characters: the length of a part of an expanded text in a message."""
 _LONGEST_RUN = 30.0
 """Time (s) in which the process has to end."""
 
@@ -77,7 +80,20 @@ def expand(path: Path, arguments: Mapping[str, str], packages: Packages) -> Expa
     )
 
 
+def located(error: XmlError, expanded: str, file: Path, text: str) -> XacroError:
+    """The mistake in an expanded text, at the same text in its macro file, if that has it once."""
+    if isinstance(error, XacroError):
+        return error
+    start, end = error.place
+    part = expanded[start:end]
+    place = (0, 0)
+    if part and text.count(part) == 1:
+        place = text.index(part), text.index(part) + len(part)
+    element = " ".join(expanded[expanded.rfind("<", 0, start + 1) : end].split())
+    message = f"{error.message} (in the expanded text: `{element[:_LONGEST_PART]}`)"
+    return XacroError(message, error.help, file, text, place)
+
+
 def _too_long(path: Path) -> XacroError:
     message = "the macro file takes more time or memory to expand than is allowed"
-    help = "look for a macro that calls itself, or expand the file with `xacro` and name the result"
-    return XacroError(message, help, path)
+    return XacroError(message, f"look for a macro that calls itself, or {EXPAND}", path)
