@@ -162,9 +162,7 @@ def test_a_joint_of_no_arm_stays_within_its_limits(tmp_path: Path) -> None:
         link("base"),
         link("body"),
         link("hand"),
-        joint(
-            "height", "prismatic", "base", "body", '<limit lower="0.2" upper="0.5" effort="99"/>'
-        ),
+        joint("height", "prismatic", "base", "body", limit),
         joint("j", "revolute", "body", "hand", xyz="0.1 0 0"),
     )
     limb = sim.robots.Limb(name="arm", joints=("j",), tip="hand", home=(0.0,))
