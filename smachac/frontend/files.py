@@ -24,7 +24,8 @@ from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import SUFFIXES, Library, Ros
 from smachac.frontend.yaml_mends import parse_mended
 from smachac.frontend.yaml_tree import Tree
-from smachac.robots.files import find_mesh, installed_packages
+from smachac.robots import xacro_files
+from smachac.robots.files import Packages, find_mesh, installed_packages
 
 PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
@@ -383,6 +384,11 @@ def disk_library(
         path = _found(name, folders, ("",), disk, refuse)
         return disk.read(path, report) if path else None
 
+    def expand(file: str, arguments: Mapping[str, str], packages: Packages) -> str:
+        expanded = xacro_files.expand(Path(file), arguments, packages)
+        disk.searched.update(map(str, expanded.files))
+        return expanded.text
+
     def message_folders() -> list[Path]:
         return [*project.code, *_package_folders(main)]
 
@@ -405,6 +411,7 @@ def disk_library(
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
         mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
+        expand=expand,
     )
 
 

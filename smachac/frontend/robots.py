@@ -29,7 +29,8 @@ from smachac.robots.files import SUFFIXES as DESCRIPTIONS
 from smachac.robots.scene import Body
 from smachac.robots.scene import read as read_scene
 from smachac.robots.urdf import Urdf
-from smachac.robots.urdf_format import XACRO
+from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
+from smachac.robots.xacro_files import XacroError, located
 from smachac.robots.xml_tree import XmlError
 
 T = TypeVar("T")
@@ -170,24 +171,34 @@ class _Reader:
 
     def urdf(self, word: Word) -> Robot | None:
         """The robot of a URDF file without a description: the simulation cannot move it."""
-        if word.text.lower().endswith(".xacro"):
-            message = f"`{word.text}` is a xacro file, not a URDF file"
-            self.wrong(word, message, XACRO, ("xacro", word.text))
-            return None
         text = self.file(word)
         if text is None:
             return None
         try:
-            return self.simulated(robot_of_urdf(urdf.read(text.text), text))
+            return self.simulated(robot_of_urdf(self.read_urdf(text, {}, {}), text))
         except XmlError as error:
             self.bad_urdf(word, word.text, text, error)
             return None
 
+    def read_urdf(
+        self, source: Source, arguments: Mapping[str, str], packages: Mapping[str, Path]
+    ) -> Urdf:
+        """The robot in a URDF or xacro file. Raises XmlError."""
+        if not source.name.lower().endswith(XACRO_SUFFIX):
+            return urdf.read(source.text)
+        text = self.library.expand(source.name, arguments, packages)
+        try:
+            return urdf.read(text)
+        except XmlError as error:
+            raise located(error, text, Path(source.name), source.text) from None
+
     def bad_urdf(self, word: Word, name: str, source: Source, error: XmlError) -> None:
-        """Report the mistake in a URDF file."""
+        """Report the mistake in a URDF or xacro file, or in a file that it includes."""
+        if isinstance(error, XacroError) and error.file.absolute() != Path(source.name).absolute():
+            source = Source(str(error.file), error.text)
         span = Span(source, *error.place)
         message = f"the robot file `{name}` has a mistake: {error.message}"
-        self.wrong(word, message, error.help, ("urdf", name, span.text), span)
+        self.wrong(word, message, error.help, ("urdf", name, error.message), span)
 
     def simulated(self, robot: Robot) -> Robot:
         """A robot of a URDF file; one with all joints of a built-in robot is simulated as that."""
@@ -294,7 +305,7 @@ class _Reader:
             return None
         try:
             chain = [joint.name for joint in urdf.read(text.text).chain(link) if joint.is_moved]
-        except XmlError:
+        except XmlError:  # also a xacro file, which is not expanded for a line of help
             return None
         missing = [name for name in chain if name not in limb["joints"]]
         if len(missing) != 1 or len(chain) != len(limb["home"]):
@@ -320,11 +331,9 @@ class _Reader:
                 help = package_help(data.urdf) or "put it beside this file"
                 raise DataError(f"the file `{data.urdf}` was not found", ("urdf",), help)
             if text is not None:
-                robot = urdf.read(text.text)
-                description.check(data, robot)
-                self.simulated_text(data, robot, text, source)
-                rows = robot.joints.values()
-                moved = {joint.name: checked_joint(joint, text) for joint in rows if joint.is_moved}
+                robot = self.loaded(data, text, source)
+                rows = [joint for joint in robot.joints.values() if joint.is_moved]
+                moved = {joint.name: checked_joint(joint, robot, text) for joint in rows}
                 # Files of one robot of the industry define different links: only those of a user
                 # count.
                 frames = data.frames if word.text in BUILT_IN else robot.links
@@ -337,12 +346,20 @@ class _Reader:
             return None
         return moved | _described_joints(data, moved), frozenset(frames)
 
-    def simulated_text(self, data: Description, robot: Urdf, text: Source, source: Source) -> None:
-        """Print the text for the simulation, as it does itself. Raises XmlError."""
-        folder = Path(source.name).parent
-        packages = {name: folder / path for name, path in data.packages}
+    def loaded(self, data: Description, text: Source, source: Source) -> Urdf:
+        """The URDF file of a description, after all checks that the simulation makes before it
+        loads the robot. Raises XmlError and DataError."""
+        packages = data.package_folders(Path(source.name).parent)
+        robot = self.read_urdf(text, dict(data.arguments), packages)
+        description.check(data, robot)
         used = [name for limb in data.limbs for name in limb.links]
-        engine_text(robot, lambda name: self.library.mesh(name, text.name, packages), used)
+        try:
+            engine_text(robot, lambda name: self.library.mesh(name, text.name, packages), used)
+        except XmlError as error:
+            if robot.text == text.text:
+                raise
+            raise located(error, robot.text, Path(text.name), text.text) from None
+        return robot
 
     def station(self, word: Word, source: Source, data: Station, tree: Tree) -> Robot | None:
         """Several robots as one: the joints and limbs of all."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from smachac.robots import fields
@@ -101,8 +102,8 @@ class Description:
     """A robot that stands with its base at `base` (world frame); `urdf` is its file, as written.
 
     `frames` are the names of its links, where the checker has no URDF file. `packages` are names of
-    ROS packages and their folders, as written. `folder` is where its file was read, empty for text
-    without a file.
+    ROS packages and their folders, as written. `arguments` are those of a xacro file. `folder` is
+    where its file was read, empty for text without a file.
     """
 
     name: str
@@ -112,12 +113,17 @@ class Description:
     stand: Stand | None = None
     frames: tuple[str, ...] = ()
     packages: tuple[tuple[str, str], ...] = ()
+    arguments: tuple[tuple[str, str], ...] = ()
     folder: str = ""
 
     @property
     def has_limits(self) -> bool:
         """Whether it has the limits of all its arms."""
         return all(limb.limits for limb in self.limbs)
+
+    def package_folders(self, folder: Path) -> dict[str, Path]:
+        """The folders of the packages by name; `folder` is that of the description."""
+        return {name: folder / path for name, path in self.packages}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -414,9 +420,19 @@ def _station(given: Fields) -> Station:
     return Station(name=given["name"], base=given["base"], parts=given["parts"])
 
 
+@fields.shape({"type": ["string", "number", "boolean"]})
+def _argument(data: Any, place: Place) -> str:
+    if isinstance(data, bool):
+        return "true" if data else "false"
+    if not isinstance(data, str | int | float):
+        message = f"a text, a number or a truth value is expected, not {fields.shown(data)}"
+        raise DataError(message, place, "write the value as in `xacro FILE NAME:=VALUE`")
+    return str(data)
+
+
 _ROBOT: Table = {
     "name": _NAME,
-    "urdf": Field(fields.text, "The URDF file: beside this file, or in PyBullet's data."),
+    "urdf": Field(fields.text, "The URDF or xacro file: beside this file, or in PyBullet's data."),
     "base": _BASE,
     "stand": Field(_stand, "The box under the robot, from the floor to its base.", None),
     "arms": Field(fields.values(fields.named(_limb)), "The arms, by name."),
@@ -425,8 +441,11 @@ _ROBOT: Table = {
     ),
     "packages": Field(
         fields.named(fields.text),
-        "Folders of ROS packages, by name: those that `package://` in the URDF file names.",
+        "Folders of ROS packages, by name: those that the URDF file names.",
         (),
+    ),
+    "arguments": Field(
+        fields.named(_argument), "Values of `<xacro:arg>`, by name, for a xacro file.", ()
     ),
 }
 
@@ -441,6 +460,7 @@ def _robot(given: Fields) -> Description:
         limbs=given["arms"],
         frames=given["frames"],
         packages=given["packages"],
+        arguments=given["arguments"],
     )
 
 

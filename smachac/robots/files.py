@@ -61,11 +61,13 @@ def built_in(name: str) -> Description | Station:
 _PACKAGE = re.compile(r"(?:package|model)://([^/]+)/?(.*)")
 _PACKAGE_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
-SEARCHED = (
-    "a path is searched in the folder of the URDF file and the folders above it; a package is named"
-    " in `packages` of the description, or is a folder of its name in one of these folders, in"
-    " ROS_PACKAGE_PATH, or in `share` of AMENT_PREFIX_PATH"
+PACKAGES_SEARCHED = (
+    "name its folder in `packages` of the description; else a package is a folder of its name in a"
+    " folder above the file, in ROS_PACKAGE_PATH, or in `share` of AMENT_PREFIX_PATH"
 )
+"""Where `package_folders` searches."""
+SEARCHED = "a path is relative to the folder of the URDF file or to one above it; for a package, "
+SEARCHED += PACKAGES_SEARCHED
 """Where `find_mesh` searches."""
 
 Packages: TypeAlias = Mapping[str, Path]
@@ -99,6 +101,14 @@ def package_folders(package: str, file: Path, packages: Packages | None = None) 
         if _package_name(folder) == package:
             yield folder
     yield from installed_packages(package, os.environ)
+
+
+def project_folder(file: Path) -> Path:
+    """The project of a file: the nearest folder above it with a git repository, else the folder
+    above its own."""
+    above = file.absolute().parents
+    repository = next((folder for folder in above if (folder / ".git").exists()), None)
+    return repository or above[min(1, len(above) - 1)]
 
 
 def installed_packages(name: str, environment: Mapping[str, str]) -> Iterator[Path]:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from smachac.robots.engine_text import engine_text
-from smachac.robots.files import find_mesh
+from smachac.robots.files import Packages, find_mesh
 from smachac.robots.urdf import Urdf, read
 from smachac.robots.urdf_format import numbers
+from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
+from smachac.robots.xacro_files import XacroError, expand
 from smachac.robots.xml_tree import Element, XmlError
 from smachac.sim import transforms
 from smachac.sim.physics import data_folder
@@ -25,10 +27,11 @@ class LoadError(RuntimeError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotFile:
-    """A URDF file that was read."""
+    """A URDF or xacro file that was read; `packages` are folders of ROS packages by name."""
 
     path: Path
     urdf: Urdf = field(repr=False)
+    packages: Packages = field(default_factory=dict, repr=False)
 
     def frames(self) -> dict[str, tuple[Pose, Vector]]:
         """The frame of each joint in that of its parent link, and its axis (unit vector)."""
@@ -80,19 +83,29 @@ class EngineFile:
         return any(self.path.resolve().is_relative_to(folder.resolve()) for folder in known)
 
 
-def read_robot_file(path: Path) -> RobotFile:
-    """The robot in a URDF file. Raises LoadError and OSError."""
+def read_robot_file(
+    path: Path, arguments: Mapping[str, str] | None = None, packages: Packages | None = None
+) -> RobotFile:
+    """The robot in a URDF or xacro file; `arguments` are those of the macros. Raises LoadError and
+    OSError."""
     text = path.read_bytes().decode("utf-8", "replace")
+    packages = packages or {}
     try:
-        return RobotFile(path=path, urdf=read(text))
+        if path.name.lower().endswith(XACRO_SUFFIX):
+            text = expand(path, arguments or {}, packages).text
+        return RobotFile(path=path, urdf=read(text), packages=packages)
     except XmlError as error:
         raise _wrong(path, text, error) from None
 
 
 def engine_file(robot: RobotFile, used: Collection[str] = ()) -> EngineFile:
     """The file for PyBullet. `used` are the names of links that must be in it. Raises LoadError."""
+
+    def mesh(name: str) -> Path | None:
+        return find_mesh(name, robot.path, robot.packages)
+
     try:
-        printed = engine_text(robot.urdf, lambda name: find_mesh(name, robot.path), used)
+        printed = engine_text(robot.urdf, mesh, used)
     except XmlError as error:
         raise _wrong(robot.path, robot.urdf.text, error) from None
     return EngineFile(
@@ -101,6 +114,8 @@ def engine_file(robot: RobotFile, used: Collection[str] = ()) -> EngineFile:
 
 
 def _wrong(path: Path, text: str, error: XmlError) -> LoadError:
+    if isinstance(error, XacroError):
+        path, text = error.file, error.text
     line = text.count("\n", 0, error.place[0]) + 1
     return LoadError(f"the file `{path}`, line {line}: {error.message}; {error.help}")
 

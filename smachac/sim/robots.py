@@ -183,7 +183,8 @@ def _part(found: Description, name: str) -> RobotPart:
 
 def _checked(found: Description, name: str, path: Path) -> RobotPart:
     """The robot of a description whose names and positions fit its URDF file."""
-    file = read_robot_file(path)
+    packages = found.package_folders(Path(found.folder))
+    file = read_robot_file(path, dict(found.arguments), packages)
     check(found, file.urdf)
     return RobotPart(name=name, file=file, base=found.base, limbs=found.limbs, stand=found.stand)
 
