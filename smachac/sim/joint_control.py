@@ -79,9 +79,7 @@ class JointControl:
         states = self.engine.getJointStates(self._body, [*self._carriers.values()])
         return {name: state[0] for name, state in zip(self._carriers, states, strict=True)}
 
-    def unwound(
-        self, positions: Sequence[float], begun: Sequence[float]
-    ) -> tuple[float, ...]:
+    def unwound(self, positions: Sequence[float], begun: Sequence[float]) -> tuple[float, ...]:
         """`positions`, those of continuous joints in the turn that is nearest to `begun`."""
         return tuple(
             position if joint.is_limited else nearest_turn(position, start)
@@ -197,9 +195,7 @@ class JointControl:
     def stick(self, indices: Sequence[int]) -> None:
         """Lock these joints, and those that follow them, for the rest of the run."""
         locked = [*indices]
-        locked += [
-            each.joint for each in self._followers if self.indices[each.leader] in indices
-        ]
+        locked += [each.joint for each in self._followers if self.indices[each.leader] in indices]
         states = self.engine.getJointStates(self._body, locked)
         self.stuck.update(zip(locked, (each[0] for each in states), strict=True))
         self._hold_stuck_joints()

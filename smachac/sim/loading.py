@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -35,58 +34,69 @@ def load(engine: Engine, file: EngineFile, **options: Any) -> tuple[int, ...]:
     """
     with _on_disk([file]) as (name,), tempfile.TemporaryFile() as output:
         bodies: Sequence[int] = ()
-        # PyBullet raises its own class, pybullet.error
+        # PyBullet raises its own class, pybullet.error.
         with quiet(output), contextlib.suppress(Exception):
-            if _is_sdf(name):
-                bodies = engine.loadSDF(name)
-            else:
-                bodies = (engine.loadURDF(name, **options),)
+            is_sdf = name.lower().endswith(".sdf")
+            bodies = engine.loadSDF(name) if is_sdf else (engine.loadURDF(name, **options),)
         if bodies and bodies[0] >= 0:
             return tuple(bodies)
         output.seek(0)
         raise explained(file, output.read().decode("utf-8", "replace"), name)
 
 
-def try_out(files: Iterable[EngineFile]) -> None:
-    """Load files in a child process. Raises LoadError for the first that does not load there.
+@contextlib.contextmanager
+def tried(files: Iterable[EngineFile]) -> Iterator[None]:
+    """Load files in a child process while the block runs.
 
-    Files that were loaded before, and those of PyBullet and smachac, are not tried.
+    Files that were loaded before, and those of PyBullet and smachac, are not tried. Raises
+    LoadError at the end of the block for the first file that the child does not load.
     """
     new = {_digest(file): file for file in files if not file.is_shipped}
     wanted = {digest: file for digest, file in new.items() if digest not in _tried}
-    if wanted and sys.executable:
-        _try_out([*wanted.values()])
-        _tried.update(wanted)
-
-
-def _try_out(files: Sequence[EngineFile]) -> None:
-    with _on_disk(files) as names, tempfile.TemporaryDirectory() as folder:
+    if not wanted or not sys.executable:
+        yield
+        return
+    with _on_disk([*wanted.values()]) as names, tempfile.TemporaryDirectory() as folder:
         progress = Path(folder) / "progress"
-        task = {"path": sys.path, "files": names, "progress": str(progress)}
-        script = Path(__file__).with_name("trial.py")
+        with _child(names, progress) as child:
+            yield
+            output, ended = _result(child)
+        loaded = int(progress.read_text("utf-8")) if progress.exists() else None
+        # A child that could not start has no result: its files are loaded without it.
+        if loaded is not None and loaded < len(names):
+            file = [*wanted.values()][loaded]
+            raise explained(file, output, names[loaded], ended)
+    _tried.update(wanted)
+
+
+@contextlib.contextmanager
+def _child(names: Sequence[str], progress: Path) -> Iterator[subprocess.Popen[bytes]]:
+    task = json.dumps({"path": sys.path, "files": names, "progress": str(progress)})
+    script = Path(__file__).with_name("trial.py")
+    with subprocess.Popen(
+        [sys.executable, "-I", str(script), task],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    ) as child:
         try:
-            done = subprocess.run(
-                [sys.executable, "-I", str(script), json.dumps(task)],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                timeout=_LONGEST_TRIAL,
-                check=False,
-            )
-            output, ended = done.stdout, _end(done.returncode)
-        except subprocess.TimeoutExpired as error:
-            output, ended = error.stdout or b"", f"did not end within {_LONGEST_TRIAL:g} s"
-        loaded = int(progress.read_text()) if progress.exists() else None
-    if loaded is None or loaded == len(files):
-        return  # a child that cannot start has no result: the files are loaded without it
-    text = output.decode("utf-8", "replace")
-    if ended:
-        text += f"\nPyBullet {ended} while it loaded the file"
-    raise explained(files[loaded], text, names[loaded])
+            yield child
+        finally:
+            child.kill()
+
+
+def _result(child: subprocess.Popen[bytes]) -> tuple[str, str]:
+    """What a child printed, and how it ended if that was not its regular end."""
+    try:
+        output, _ = child.communicate(timeout=_LONGEST_TRIAL)
+        ended = _end(child.returncode)
+    except subprocess.TimeoutExpired as error:
+        output, ended = error.stdout or b"", f"did not end within {_LONGEST_TRIAL:g} s"
+    return output.decode("utf-8", "replace"), ended
 
 
 def _end(code: int) -> str:
-    """How a process ended that did not report a result; empty if it did."""
+    """How a process ended; empty for its regular end."""
     if code == 0:
         return ""
     with contextlib.suppress(ValueError):
@@ -100,20 +110,16 @@ def _on_disk(files: Sequence[EngineFile]) -> Iterator[list[str]]:
     with tempfile.TemporaryDirectory() as folder:
         names = []
         for number, file in enumerate(files):
-            name = os.path.abspath(file.path)
+            path = file.path.absolute()
             if file.text is not None:
-                name = os.path.join(folder, f"{number}.urdf")
-                Path(name).write_text(file.text, encoding="utf-8")
-            names.append(name)
+                path = Path(folder) / f"{number}.urdf"
+                path.write_text(file.text, encoding="utf-8")
+            names.append(str(path))
         yield names
 
 
 def _digest(file: EngineFile) -> str:
     """A digest of what PyBullet reads: the text, and the size and time of the other files."""
     read = file.meshes if file.text is not None else (file.path,)
-    states = [(str(path), os.stat(path).st_size, os.stat(path).st_mtime_ns) for path in read]
+    states = [(str(path), path.stat().st_size, path.stat().st_mtime_ns) for path in read]
     return hashlib.blake2b(repr((file.text, states)).encode()).hexdigest()
-
-
-def _is_sdf(name: str) -> bool:
-    return name.lower().endswith(".sdf")

@@ -120,12 +120,17 @@ def _wrong(path: Path, text: str, error: XmlError) -> LoadError:
     return LoadError(f"the file `{path}`, line {line}: {error.message}; {error.help}")
 
 
-def explained(file: EngineFile, output: str, name: str) -> LoadError:
-    """The error for a file that PyBullet does not load, made of the `output` of PyBullet, in which
-    the file has the name `name`."""
+def explained(file: EngineFile, output: str, name: str, ended: str = "") -> LoadError:
+    """The error for a file that PyBullet does not load.
+
+    `output` is what PyBullet printed; the file has the name `name` in it. `ended` is how its
+    process ended.
+    """
     words = [_plain(file, line, name) for line in output.splitlines()]
-    reasons = [word for word in dict.fromkeys(words) if word]
-    reason = "; ".join(reasons[-3:]) or "PyBullet prints no reason"
+    reasons = [word for word in dict.fromkeys(words) if word][-3:]
+    if ended:
+        reasons.append(f"PyBullet {ended}")
+    reason = "; ".join(reasons) or "PyBullet prints no reason"
     return LoadError(f"the file `{file.path}` cannot be loaded: {reason}")
 
 

@@ -7,7 +7,7 @@ Lengths in m, angles in rad.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,7 @@ from smachac.robots.description import (
 )
 from smachac.robots.fields import DataError
 from smachac.robots.files import BUILT_IN, FOLDER, SUFFIXES, built_in, find_file, read_file
-from smachac.robots.urdf import UrdfJoint
+from smachac.robots.urdf import Urdf, UrdfJoint
 from smachac.sim import models
 from smachac.sim.loading import load as load_file
 from smachac.sim.physics import Engine, UnknownNameError, data_file
@@ -49,17 +49,20 @@ class RobotPart:
     stand: Stand | None = None
 
     def rest(self) -> dict[str, float]:
-        """The position of each joint at the start (rad or m): the home of the limbs; 0, or the
-        nearest to it within the limits, for a joint of no limb; a joint that follows another one
-        is where it follows. Raises LoadError."""
-        home = {name: at for limb in self.limbs for name, at in zip(limb.joints, limb.home, strict=True)}
-        found: dict[str, float] = {}
-        for joint in self.file.urdf.joints.values():
-            leader = self.file.urdf.leader(joint.name)
-            first = self.file.urdf.joints[leader.joint]
-            at = home.get(leader.joint, min(max(0.0, first.lower), first.upper))
-            found[joint.name] = leader.multiplier * at + leader.offset
-        return found
+        """The position of each joint at the start (rad or m).
+
+        That is its home in a limb; 0, or the limit nearest to it, for a joint of no limb; and for
+        a joint that follows another one, the position in which it follows.
+        """
+        joints = self.file.urdf.joints
+        rest = {name: min(max(0.0, joint.lower), joint.upper) for name, joint in joints.items()}
+        for limb in self.limbs:
+            rest |= zip(limb.joints, limb.home, strict=True)
+        leaders = {name: self.file.urdf.leader(name) for name in joints}
+        return {
+            name: leader.multiplier * rest[leader.joint] + leader.offset
+            for name, leader in leaders.items()
+        }
 
     def engine_file(self) -> EngineFile:
         """The file for PyBullet. Raises LoadError."""
@@ -241,9 +244,7 @@ class MountedLimb:
     carriers: Mapping[str, int]
 
 
-def mount(
-    engine: Engine, part: RobotPart, file: EngineFile
-) -> tuple[int, tuple[MountedLimb, ...]]:
+def mount(engine: Engine, part: RobotPart, file: EngineFile) -> tuple[int, tuple[MountedLimb, ...]]:
     """Load a robot on its stand, every joint held at its rest: its body and its limbs.
 
     `file` is that of `part.engine_file()`. Raises LoadError.
@@ -270,7 +271,7 @@ def mount(
                 index,
                 engine.POSITION_CONTROL,
                 targetPosition=rest[name],
-                force=_force(facts[name].effort) or _NO_LIMIT,
+                force=_force(facts[name]) or _NO_LIMIT,
             )
     limbs = tuple(_mounted(limb, body, part, joints, links) for limb in part.limbs)
     for limb in limbs:
@@ -282,33 +283,12 @@ def _mounted(
     limb: Limb, body: int, part: RobotPart, joints: dict[str, int], links: dict[str, int]
 ) -> MountedLimb:
     """The limb with the numbers of its names."""
-    facts = part.file.urdf.joints
-    gripper = _with_followers(limb.gripper, part.file)
+    urdf, efforts = part.file.urdf, dict(limb.efforts)
+    gripper = _with_followers(limb.gripper, urdf)
     fingers = gripper.fingers if gripper is not None else ()
     pads = gripper.pads if gripper is not None else ()
-    efforts = dict(limb.efforts)
     driven = tuple(joints[finger.joint] for finger in fingers)
-    own = {finger.joint for finger in fingers}
-    followers, carriers = [], {}
-    for joint in facts.values():
-        leader = part.file.urdf.leader(joint.name)
-        if joint.is_moved and joint.mimic is not None and leader.joint in limb.joints:
-            if joint.name not in own:
-                index = limb.joints.index(leader.joint)
-                effort = _force(joint.effort) or _NO_LIMIT
-                followers.append(
-                    Follower(
-                        joint=joints[joint.name],
-                        leader=index,
-                        multiplier=leader.multiplier,
-                        offset=leader.offset,
-                        effort=effort,
-                    )
-                )
-    for joint in part.file.urdf.chain(limb.tip):
-        leader = part.file.urdf.leader(joint.name)
-        if joint.is_moved and leader.joint not in limb.joints:
-            carriers[leader.joint] = joints[leader.joint]
+    leaders = [urdf.leader(joint.name).joint for joint in urdf.chain(limb.tip) if joint.is_moved]
     return MountedLimb(
         limb=limb,
         gripper=gripper,
@@ -318,34 +298,51 @@ def _mounted(
         fingers=driven,
         pads=tuple(links[name] for name in pads) or driven,
         tip=links[limb.tip],
-        facts=tuple(facts[name] for name in limb.joints),
-        efforts=tuple(efforts.get(name, _force(facts[name].effort)) for name in limb.joints),
-        followers=tuple(followers),
-        carriers=carriers,
+        facts=tuple(urdf.joints[name] for name in limb.joints),
+        efforts=tuple(efforts.get(name, _force(urdf.joints[name])) for name in limb.joints),
+        followers=tuple(_followers(limb, urdf, joints, {finger.joint for finger in fingers})),
+        carriers={name: joints[name] for name in leaders if name not in limb.joints},
     )
 
 
-def _force(effort: float) -> float:
-    """The largest force of a motor for the effort in a file."""
-    return effort if math.isfinite(effort) else _NO_LIMIT
+def _followers(
+    limb: Limb, urdf: Urdf, joints: Mapping[str, int], fingers: Collection[str]
+) -> Iterable[Follower]:
+    """The joints that follow those of a limb, without its fingers."""
+    for name, joint in urdf.joints.items():
+        leader = urdf.leader(name)
+        if joint.mimic is None or name in fingers or leader.joint not in limb.joints:
+            continue
+        if joint.is_moved:
+            yield Follower(
+                joint=joints[name],
+                leader=limb.joints.index(leader.joint),
+                multiplier=leader.multiplier,
+                offset=leader.offset,
+                effort=_force(joint) or _NO_LIMIT,
+            )
 
 
-def _with_followers(gripper: Gripper | None, file: RobotFile) -> Gripper | None:
+def _force(joint: UrdfJoint) -> float:
+    """The largest force (N) or torque (N m) of the motor of a joint."""
+    return joint.effort if math.isfinite(joint.effort) else _NO_LIMIT
+
+
+def _with_followers(gripper: Gripper | None, urdf: Urdf) -> Gripper | None:
     """The gripper with the joints that follow its own (`<mimic>`) as further fingers."""
     if gripper is None:
         return None
     fingers = {finger.joint: finger for finger in gripper.fingers}
-    for name, joint in file.urdf.joints.items():
-        leader = file.urdf.leader(name)
+    for name, joint in urdf.joints.items():
+        leader = urdf.leader(name)
         first = fingers.get(leader.joint)
-        if joint.mimic is None or not joint.is_moved or first is None or name in fingers:
+        if name in fingers or first is None or not joint.is_moved or leader.multiplier == 0.0:
             continue
-        if leader.multiplier != 0.0:
-            fingers[name] = Finger(
-                joint=name,
-                opened=leader.multiplier * first.opened + leader.offset,
-                closed=leader.multiplier * first.closed + leader.offset,
-            )
+        fingers[name] = Finger(
+            joint=name,
+            opened=leader.multiplier * first.opened + leader.offset,
+            closed=leader.multiplier * first.closed + leader.offset,
+        )
     return replace(gripper, fingers=tuple(fingers.values()))
 
 

@@ -88,8 +88,12 @@ class Scene:
         self.limbs: tuple[MountedLimb, ...] = ()
         self.kinematics: dict[int, Kinematics] = {}
         parts = [(part, part.engine_file()) for part in robot.parts]
-        loading.try_out([*(file for _, file in parts), *files])
-        self.engine = Engine(gui=gui)
+        try:
+            with loading.tried([*(file for _, file in parts), *files]):
+                self.engine = Engine(gui=gui)
+        except LoadError:
+            self.engine.close()
+            raise
         try:
             self.engine.setGravity(0.0, 0.0, _GRAVITY)
             self.engine.setPhysicsEngineParameter(
@@ -184,7 +188,8 @@ class Scene:
         if path:
             try:
                 file = models.file_of(path)
-                loading.try_out([file])
+                with loading.tried([file]):
+                    pass
                 body = models.read(self.engine, file, place)
             except (LoadError, OSError) as error:
                 return Result("aborted", str(error))

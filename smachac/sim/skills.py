@@ -108,8 +108,7 @@ def move_along(
 def _ways(arm: JointControl, ends: Sequence[float], starts: Sequence[float]) -> list[float]:
     """The way of each joint between two positions (rad; of one that slides in SLIDE metres)."""
     return [
-        abs(end - start) / scale
-        for end, start, scale in zip(ends, starts, arm.scales, strict=True)
+        abs(end - start) / scale for end, start, scale in zip(ends, starts, arm.scales, strict=True)
     ]
 
 
@@ -172,7 +171,7 @@ def _duration(arm: JointControl, corners: list[tuple[float, ...]], speed: float)
 def _at(
     corners: list[tuple[float, ...]], t: float, duration: float
 ) -> tuple[list[float], list[float]]:
-    """Positions (rad or m) and velocities (rad/s or m/s) at the fraction `t` (0..1) of the duration.
+    """Positions (rad or m) and velocities (per s) at the fraction `t` (0..1) of the duration.
 
     The distance covered follows the minimum-jerk polynomial 10 t^3 - 15 t^4 + 6 t^5.
     """

@@ -6,6 +6,7 @@ file in which the number of files that are loaded is written. It ends at the fir
 
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 
@@ -17,8 +18,7 @@ def main(task: dict[str, Any]) -> None:
 
     pybullet.connect(pybullet.DIRECT)
     for number, name in enumerate([*task["files"], None]):
-        with open(task["progress"], "w", encoding="utf-8") as progress:
-            progress.write(str(number))
+        Path(task["progress"]).write_text(str(number), encoding="utf-8")
         if name is None:
             return
         try:
