@@ -247,7 +247,9 @@ class _Reader:
 
     def body_file(self, body: Body, word: Word, scene: Source, tree: Tree) -> None:
         """Check the URDF or SDF file of a body; a mistake is reported."""
-        source = self.library.script(body.path, scene.name) or self.library.robot(body.path)
+        source = self.library.script(body.path, scene.name)
+        if source is None and self.library.robot(body.path) is not None:
+            return  # shipped with PyBullet
         if source is None:
             place = ("bodies", body.name, "path")
             help = "give its path relative to the folder of the scene or of the script"

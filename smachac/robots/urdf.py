@@ -18,6 +18,8 @@ TURNING = frozenset(["revolute", "continuous"])
 """The types of joints whose position is an angle."""
 MOVED = TURNING | {"prismatic"}
 """The types of joints with one position: those that an arm or a gripper can have."""
+_MOST_LISTED = 8
+"""The most links that a message lists."""
 KINDS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 """The types of joints."""
 
@@ -164,11 +166,11 @@ def _joint(element: Element, text: str, name: str) -> UrdfJoint:
     parent, child = (
         end.attributes["link"] for tag in ("parent", "child") for end in element.all(tag)
     )
-    axis = element.first("axis")
-    given = kind in MOVED and axis is not None and "xyz" in axis.attributes
-    if given and math.hypot(*numbers(axis, text, "xyz", 3)) < 1e-6:
-        message = f"the axis of joint `{name}` is zero: it has no direction"
-        raise XmlError(message, axis.place(text, "xyz"), 'write an axis such as `xyz="0 0 1"`')
+    for axis in element.all("axis") if kind in MOVED else ():
+        if "xyz" in axis.attributes and math.hypot(*numbers(axis, text, "xyz", 3)) < 1e-6:
+            message = f"the axis of joint `{name}` is zero: it has no direction"
+            help = 'write an axis such as `xyz="0 0 1"`'
+            raise XmlError(message, axis.place(text, "xyz"), help)
     limit = element.first("limit")
     if limit is None:
         if kind in ("revolute", "prismatic"):
@@ -220,19 +222,20 @@ def _mimic(joint: Element, text: str) -> Mimic | None:
 
 def _check_leaders(joints: Mapping[str, UrdfJoint]) -> None:
     """Raise XmlError unless each joint that follows another leads to one that follows none."""
+    led: set[str] = set()
     for joint in joints.values():
         seen, leader = {joint.name}, joint
-        while leader.mimic is not None:
-            name = leader.mimic.joint
-            if name not in joints:
-                message = f"joint `{leader.name}` follows the joint `{name}`, which does not exist"
-                raise XmlError(message, leader.place, guess(name, joints))
-            if name in seen:
-                message = f"joint `{leader.name}` follows `{name}`, which follows it"
-                help = "remove `<mimic>` from one of them"
-                raise XmlError(message, leader.place, help)
-            seen.add(name)
-            leader = joints[name]
+        while leader.mimic is not None and leader.name not in led:
+            other = leader.mimic.joint
+            if other not in joints:
+                message = f"joint `{leader.name}` follows the joint `{other}`, which does not exist"
+                raise XmlError(message, leader.place, guess(other, joints))
+            if other in seen:
+                message = f"joint `{leader.name}` follows `{other}`, which follows it"
+                raise XmlError(message, leader.place, "remove `<mimic>` from one of them")
+            seen.add(other)
+            leader = joints[other]
+        led |= seen
 
 
 def _root(links: Mapping[str, Element], joints: Mapping[str, UrdfJoint], text: str) -> str:
@@ -254,12 +257,10 @@ def _root(links: Mapping[str, Element], joints: Mapping[str, UrdfJoint], text: s
         if link not in reached:
             raise _circle(link, above)
     if len(roots) > 1:
-        first, second = roots[:2]
-        message = (
-            f"the robot has {len(roots)} roots: no joint leads to `{first}`, nor to `{second}`"
-        )
-        help = f"add a joint whose child link is `{second}`, or remove that link"
-        raise XmlError(message, links[second].place(text, "name"), help)
+        names = f"`{roots[0]}`, nor to `{roots[1]}`"
+        message = f"the robot has {len(roots)} roots: no joint leads to {names}"
+        help = f"add a joint whose child link is `{roots[1]}`, or remove that link"
+        raise XmlError(message, links[roots[1]].place(text, "name"), help)
     return roots[0]
 
 
@@ -282,6 +283,7 @@ def _circle(link: str, above: Mapping[str, UrdfJoint]) -> XmlError:
         seen[link] = None
         link = above[link].parent
     circle = list(seen)[list(seen).index(link) :]
-    message = f"the links {listed(reversed(circle))} are a circle of joints"
+    names = listed(circle[::-1][:_MOST_LISTED]) + (", ..." if len(circle) > _MOST_LISTED else "")
+    message = f"the links {names} are a circle of joints"
     help = "a robot is a tree of links: remove one of the joints of the circle"
     return XmlError(message, above[link].place, help)

@@ -126,6 +126,8 @@ ROBOT = Tag(
     },
     several=("link", "joint", "material", *HARMLESS),
 )
+_SLIP = 2
+"""The most letters by which the length of a misspelt name differs."""
 FIRST_COUNTS = ("material",)
 """Elements of which the first one counts, where one is expected."""
 NOWHERE_ELSE = ("link", "joint")
@@ -236,7 +238,9 @@ def _no_slip(
     element: Element, attribute: str, known: list[str], present: Iterable[str], text: str, name: str
 ) -> None:
     """Raise XmlError if an unknown name is close to a known one that is absent."""
-    absent = [other for other in known if other not in present]
+    absent = [
+        other for other in known if other not in present and abs(len(other) - len(name)) <= _SLIP
+    ]
     near = get_close_matches(name, absent, n=1, cutoff=0.8)
     near += [other for other in absent if len(name) < 4 and sorted(other) == sorted(name)]
     if near:

@@ -56,8 +56,9 @@ _METHODS: Mapping[type, frozenset[str]] = {
     ),
     dict: frozenset(["get", "keys", "values", "items"]),
 }
-_REFUSED = (type, vars)
-"""Functions of xacro that give access to the insides of Python objects."""
+_REFUSED = (type, vars, hash, set, frozenset)
+"""Functions of xacro that give access to the insides of Python objects, or whose results differ
+from run to run."""
 
 
 class NotAllowedError(Exception):
@@ -73,7 +74,7 @@ class Evaluator:
         failed: the last expression that could not be evaluated, empty if there is none.
     """
 
-    def __init__(self, namespace: type, dictionary: type) -> None:
+    def __init__(self, namespace: type[Any], dictionary: type[Any]) -> None:
         self.namespace, self.dictionary = namespace, dictionary
         self.failed = ""
 
@@ -122,7 +123,7 @@ class Evaluator:
                 return self.value(of, names)[self.value(index, names)]
             case ast.Attribute(value=of, attr=name):
                 return self.attribute(self.value(of, names), name)
-            case ast.Call(func=func, args=args, keywords=keywords):
+            case ast.Call(func=func, args=args, keywords=keywords) if all(k.arg for k in keywords):
                 given = [self.value(arg, names) for arg in args]
                 named = {key.arg: self.value(key.value, names) for key in keywords if key.arg}
                 return self.value(func, names)(*given, **named)

@@ -71,7 +71,10 @@ def expand(path: Path, arguments: Mapping[str, str], packages: Packages) -> Expa
     try:
         answer = json.loads(done.stdout)
     except ValueError:
-        raise _too_long(path) from None
+        if done.returncode < 0:  # a signal: it has reached a limit
+            raise _too_long(path) from None
+        reason = (done.stderr.strip().splitlines() or ["it has no output"])[-1]
+        raise XacroError(f"xacro cannot run: {reason}", EXPAND, path) from None
     if "text" in answer:
         return Expanded(text=answer["text"], files=tuple(map(Path, answer["files"])))
     start, end = answer["place"]
