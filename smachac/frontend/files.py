@@ -384,11 +384,6 @@ def disk_library(
         path = _found(name, folders, ("",), disk, refuse)
         return disk.read(path, report) if path else None
 
-    def expand(file: str, arguments: Mapping[str, str], packages: Packages) -> str:
-        expanded = xacro_files.expand(Path(file), arguments, packages)
-        disk.searched.update(map(str, expanded.files))
-        return expanded.text
-
     def message_folders() -> list[Path]:
         return [*project.code, *_package_folders(main)]
 
@@ -411,7 +406,7 @@ def disk_library(
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
         mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
-        expand=expand,
+        expand=lambda *given: _expanded(disk, *given),
     )
 
 
@@ -463,6 +458,13 @@ def _package_folders(main: Path) -> list[Path]:
 
 def _real_name(folder: Path) -> str:
     return Path(os.path.realpath(folder)).name
+
+
+def _expanded(disk: Disk, file: str, arguments: Mapping[str, str], packages: Packages) -> str:
+    """The URDF text of a xacro file. Raises XacroError."""
+    expanded = xacro_files.expand(Path(file), arguments, packages)
+    disk.searched.update(map(str, expanded.files))
+    return expanded.text
 
 
 def _robot_file(name: str, disk: Disk, report: Report) -> Source | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any, Literal, TypeAlias, TypeVar
@@ -24,11 +24,11 @@ from smachac.robots.description import NO_PARTS, Description, Part, Station, lim
 from smachac.robots.engine_text import engine_text
 from smachac.robots.faults import read_file as read_faults
 from smachac.robots.fields import DataError, guess
-from smachac.robots.files import BUILT_IN
+from smachac.robots.files import BUILT_IN, Packages
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
 from smachac.robots.scene import Body
 from smachac.robots.scene import read as read_scene
-from smachac.robots.urdf import Urdf
+from smachac.robots.urdf import Urdf, check_sdf
 from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
 from smachac.robots.xacro_files import XacroError, located
 from smachac.robots.xml_tree import XmlError
@@ -180,9 +180,7 @@ class _Reader:
             self.bad_urdf(word, word.text, text, error)
             return None
 
-    def read_urdf(
-        self, source: Source, arguments: Mapping[str, str], packages: Mapping[str, Path]
-    ) -> Urdf:
+    def read_urdf(self, source: Source, arguments: Mapping[str, str], packages: Packages) -> Urdf:
         """The robot in a URDF or xacro file. Raises XmlError."""
         if not source.name.lower().endswith(XACRO_SUFFIX):
             return urdf.read(source.text)
@@ -239,7 +237,30 @@ class _Reader:
     def scene(self, word: Word) -> tuple[tuple[Body, ...], Tree] | None:
         """The bodies of a scene, with the tree of its file."""
         source = self.file(word)
-        return self.data(word, source, read_scene, "scene") if source is not None else None
+        found = self.data(word, source, read_scene, "scene") if source is not None else None
+        if found is None or source is None:
+            return None
+        for body in found[0]:
+            if body.path:
+                self.body_file(body, word, source, found[1])
+        return found
+
+    def body_file(self, body: Body, word: Word, scene: Source, tree: Tree) -> None:
+        """Check the URDF or SDF file of a body; a mistake is reported."""
+        source = self.library.script(body.path, scene.name) or self.library.robot(body.path)
+        if source is None:
+            place = ("bodies", body.name, "path")
+            help = "give its path relative to the folder of the scene or of the script"
+            error = DataError(f"the file `{body.path}` was not found", place, help)
+            self.mistake(word, tree, error, "scene")
+            return
+        try:
+            if body.path.lower().endswith(".sdf"):
+                check_sdf(source.text)
+            else:
+                self.engine_text(urdf.read(source.text), source, {})
+        except XmlError as error:
+            self.bad_urdf(word, body.path, source, error)
 
     # Descriptions
 
@@ -273,9 +294,10 @@ class _Reader:
             )
             for limb in data.limbs
         )
+        own = {name for limb in data.limbs for name in limb.joints}
         return Robot(
             name=data.name,
-            joints=tuple(joints.values()),
+            joints=tuple(joint for joint in joints.values() if joint.turns or joint.name in own),
             limbs=tuple(arm.joints for arm in arms),
             arms=arms,
             base=data.base,
@@ -353,13 +375,19 @@ class _Reader:
         robot = self.read_urdf(text, dict(data.arguments), packages)
         description.check(data, robot)
         used = [name for limb in data.limbs for name in limb.links]
-        try:
-            engine_text(robot, lambda name: self.library.mesh(name, text.name, packages), used)
-        except XmlError as error:
-            if robot.text == text.text:
-                raise
-            raise located(error, robot.text, Path(text.name), text.text) from None
+        self.engine_text(robot, text, packages, used)
         return robot
+
+    def engine_text(
+        self, robot: Urdf, source: Source, packages: Packages, used: Collection[str] = ()
+    ) -> None:
+        """Print the text for the simulation, as it does before it loads a file. Raises XmlError."""
+        try:
+            engine_text(robot, lambda name: self.library.mesh(name, source.name, packages), used)
+        except XmlError as error:
+            if robot.text == source.text:
+                raise
+            raise located(error, robot.text, Path(source.name), source.text) from None
 
     def station(self, word: Word, source: Source, data: Station, tree: Tree) -> Robot | None:
         """Several robots as one: the joints and limbs of all."""

@@ -26,6 +26,11 @@ class Joint:
     turns: bool = True
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
+    @property
+    def unit(self) -> str:
+        """The unit of its position."""
+        return "rad" if self.turns else "m"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Arm:

@@ -133,6 +133,14 @@ def read(text: str) -> Urdf:
     return Urdf(name=name, root=root, links=tuple(links), joints=joints, text=text, tree=robot)
 
 
+def check_sdf(text: str) -> None:
+    """Raise XmlError unless a text can be SDF, the format of Gazebo: nothing in it is read."""
+    root = parse(text)
+    if root.tag != "sdf":
+        message = f"the outermost element is `<{root.tag}>`, not `<sdf>`"
+        raise XmlError(message, root.place(text), "name an SDF file: its first tag is `<sdf ...>`")
+
+
 def _name(element: Element, text: str, known: Mapping[str, object]) -> str:
     """The name of a link or a joint, which is not among those `known`."""
     name, tag = element.attributes.get("name", ""), element.tag

@@ -33,6 +33,7 @@ TOUCHES = {
     "smachac/runtime/smach_ros2/program.py": "prints why ROS refuses to start",
     "smachac/__main__.py": "reports Ctrl-C before the command line is imported",
     "smachac/robots/files.py": "reads descriptions of robots and scenes",
+    "smachac/robots/xacro_process.py": "reads macro files of robots, as a program of its own",
     "smachac/sim/video.py": "writes films",
     "smachac/sweep/local.py": "drops what the runs print",
     "smachac/sim/physics.py": "keeps the physics engine's banner off the streams",
