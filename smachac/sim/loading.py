@@ -33,7 +33,7 @@ def load(engine: Engine, file: EngineFile, **options: Any) -> tuple[int, ...]:
     `options` are further arguments of PyBullet's loadURDF.
     """
     with _on_disk([file]) as (name,), tempfile.TemporaryFile() as output:
-        bodies: Sequence[int] = ()
+        bodies: Sequence[int] = (-1,)
         # PyBullet raises its own class, pybullet.error.
         with quiet(output), contextlib.suppress(Exception):
             is_sdf = name.lower().endswith(".sdf")
@@ -41,7 +41,8 @@ def load(engine: Engine, file: EngineFile, **options: Any) -> tuple[int, ...]:
         if bodies and bodies[0] >= 0:
             return tuple(bodies)
         output.seek(0)
-        raise explained(file, output.read().decode("utf-8", "replace"), name)
+        text = output.read().decode("utf-8", "replace")
+        raise explained(file, text, name, "" if bodies else "finds no body in it")
 
 
 @contextlib.contextmanager

@@ -134,9 +134,10 @@ def explained(file: EngineFile, output: str, name: str, ended: str = "") -> Load
     return LoadError(f"the file `{file.path}` cannot be loaded: {reason}")
 
 
-_SOURCE = re.compile(r"^b3\w+\[[^\]]*\]:?")
-"""The place in the source code of PyBullet at the start of its messages."""
-_NOISE = ("No inertial data for link", "No axis element for Joint", "pybullet build time")
+_SOURCE = re.compile(r"b3\w+\[[^\]]*\]:?")
+"""The place in the source code of PyBullet before its messages."""
+_NOISE = ("No inertial data for link", "pybullet build time", "InMemoryFile")
+"""Parts of lines that PyBullet prints for files that are right."""
 
 
 def _plain(file: EngineFile, line: str, name: str) -> str:

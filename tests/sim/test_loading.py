@@ -162,8 +162,9 @@ def scene(folder: Path, name: str) -> Path:
     [
         ("a.urdf", "<robot", "line 1: "),
         ("a.urdf", '<robot name="r">\n<link/>\n</robot>', "line 2: this link has no name"),
-        ("a.sdf", "no SDF", "cannot be loaded: "),
-        ("a.sdf", "", "cannot be loaded: "),
+        ("a.sdf", "no SDF", "cannot be loaded: Error=XML_ERROR_PARSING_TEXT"),
+        ("a.sdf", "", "cannot be loaded: PyBullet prints no reason"),
+        ("a.sdf", "<sdf/>", "cannot be loaded: expected a world element, continuing without it."),
     ],
 )
 def test_a_body_that_cannot_be_loaded(tmp_path: Path, name: str, text: str, reason: str) -> None:
