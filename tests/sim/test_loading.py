@@ -202,7 +202,7 @@ def test_each_file_is_tried_once_in_a_process(
         started.append(arguments)
         return start(*arguments, **options)
 
-    monkeypatch.setattr(loading.subprocess, "Popen", counted)
+    monkeypatch.setattr(subprocess, "Popen", counted)
     made = one_joint(tmp_path, "revolute")
     for _ in range(3):
         sim.World(robot=made).close()
