@@ -84,7 +84,11 @@ LINK = Tag(
         "inertial": INERTIAL,
         "visual": Tag(
             {"name": TEXT},
-            children={"origin": ORIGIN, "geometry": GEOMETRY, "material": MATERIAL},
+            children={
+                "origin": ORIGIN,
+                "geometry": GEOMETRY,
+                "material": MATERIAL._replace(required=("name",)),
+            },
             needed=("geometry",),
         ),
         "collision": Tag(
