@@ -26,8 +26,8 @@ MESHES = (".obj", ".stl", ".dae")
 """The endings of mesh files that PyBullet reads, in small letters."""
 _LONGEST_LINE = 1000
 """In characters: PyBullet cuts a line after 1,023."""
-_NOT_PRINTED = {*HARMLESS, "mimic", "calibration", "safety_controller", "limit", "verbose"}
-"""Elements that the engine does not use. `<limit>` is printed from what was read of it."""
+_NOT_PRINTED = {*HARMLESS, "mimic", "calibration", "safety_controller", "axis", "limit", "verbose"}
+"""Elements that the engine does not use. `<axis>` and `<limit>` are printed from what was read."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,11 +115,9 @@ class _Printer:
                 rotation = numbers(element, text, "quat_xyzw", 4)
                 del given["quat_xyzw"]
                 return {**given, "rpy": _row(roll_pitch_yaw(rotation))}
-            case "axis" if "xyz" in given:
-                axis = numbers(element, text, "xyz", 3)
-                length = math.hypot(*axis) or 1.0
-                return {"xyz": _row(part / length for part in axis)}
-            case "inertia":
+            case "axis" | "limit":
+                return element.attributes  # printed from what was read
+            case "inertia" | "dynamics":
                 return {key: _row([number(element, text, key, 0.0)]) for key in tag.attributes}
             case "mesh":
                 return {**given, "filename": str(self._mesh(element))}
@@ -139,7 +137,8 @@ class _Printer:
             if not self._is_left_out(child):
                 yield child
         if element.tag == "joint":
-            yield from _limit(element, self.robot.joints[element.attributes["name"]])
+            joint = self.robot.joints[element.attributes["name"]]
+            yield from _axis_and_limit(element, joint, self.robot.text)
 
     def _is_left_out(self, element: Element) -> bool:
         name = element.attributes.get("name", "")
@@ -160,10 +159,18 @@ class _Printer:
         return found
 
 
-def _limit(element: Element, joint: UrdfJoint) -> Iterator[Element]:
-    """The limits of a joint, as they were read."""
+def _axis_and_limit(element: Element, joint: UrdfJoint, text: str) -> Iterator[Element]:
+    """The axis of a joint, with the length 1, and its limits, as they were read."""
+    if not joint.is_moved:
+        return
+    axis = element.first("axis")
+    given = axis is not None and "xyz" in axis.attributes
+    vector = numbers(axis, text, "xyz", 3) if axis is not None and given else (1.0, 0.0, 0.0)
+    length = math.hypot(*vector)
+    xyz = {"xyz": _row(part / length for part in vector)}
+    yield Element("axis", xyz, element.start, (axis or element).line)
     found = element.first("limit")
-    if found is None or not joint.is_moved:
+    if found is None:
         return
     limits = {"effort": repr(joint.effort)}
     if math.isfinite(joint.velocity):

@@ -84,7 +84,11 @@ LINK = Tag(
         "inertial": INERTIAL,
         "visual": Tag(
             {"name": TEXT},
-            children={"origin": ORIGIN, "geometry": GEOMETRY, "material": MATERIAL},
+            children={
+                "origin": ORIGIN,
+                "geometry": GEOMETRY,
+                "material": MATERIAL._replace(required=("name",)),
+            },
             needed=("geometry",),
         ),
         "collision": Tag(
@@ -126,6 +130,10 @@ ROBOT = Tag(
     },
     several=("link", "joint", "material", *HARMLESS),
 )
+MEASURED = ("mass", "inertia", "origin", "box", "sphere", "cylinder", "capsule", "mesh")
+"""Elements whose numbers are lengths, angles, masses and inertias."""
+LARGEST = 1e6
+"""The largest number in them: with larger ones physics has no numbers as its result."""
 _SLIP = 2
 """The most letters by which the length of a misspelt name differs."""
 FIRST_COUNTS = ("material",)
@@ -214,6 +222,9 @@ def _check_attribute(element: Element, name: str, tag: Tag, text: str, version: 
         message = f"`{name}` of `<{element.tag}>` is `{element.attributes[name]}`: no length is"
         message += " negative"
         raise XmlError(message, element.place(text, name), "write the length in metres")
+    if element.tag in MEASURED and max(map(abs, found)) > LARGEST:
+        message = f"`{name}` of `<{element.tag}>` is `{element.attributes[name]}`: it is too large"
+        raise XmlError(message, element.place(text, name), "write it in metres and kilograms")
     if name == "quat_xyzw":
         if "rpy" in element.attributes:
             message = "`<origin>` has `rpy` and `quat_xyzw`"

@@ -98,6 +98,8 @@ AB = joint("j", "a", "b")
         (text(link('<inertial><mass value="1"/></inertial>')), "`<inertial>` has no `<inertia>`", "<inertial>"),
         (text(link('<inertial><mass/></inertial>')), "`<inertial>` has no `<inertia>`", "<inertial>"),
         (text(link('<inertial><mass value="-1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>')), "the mass is -1 kg", "-1"),
+        (text(link('<inertial><mass value="1e9"/><inertia ixx="1" iyy="1" izz="1"/></inertial>')), "`value` of `<mass>` is `1e9`: it is too large", "1e9"),
+        (text(link('<visual><geometry><box size="1 1 1"/></geometry><material/></visual>')), "`<material>` has no `name`", "<material/>"),
         (text(link("<visual/>")), "`<visual>` has no `<geometry>`", "<visual/>"),
         (shape(""), "`<geometry>` has no shape that is known", "<geometry>"),
         (shape("<cone/>"), "`<geometry>` has no shape that is known", "<geometry>"),
@@ -203,7 +205,8 @@ def test_the_text_for_the_engine_has_what_the_format_means() -> None:
     (angles,) = re.findall(r'<origin xyz="0 0 0.1" rpy="([^"]*)"/>', printed)
     assert [*map(float, angles.split())] == pytest.approx([0.0, 0.0, math.pi / 2])
     assert '<axis xyz="0.0 0.0 1.0"/>' in printed
-    assert '<limit lower="-2.0" upper="0.0" effort="10.0"/>' in printed
+    assert '<limit effort="10.0" lower="-2.0" upper="0.0"/>' in printed
+    assert printed.count('<axis xyz="1.0 0.0 0.0"/>') == 1
     assert printed.count('type="fixed"') == 2
     assert '<joint name="m" type="continuous">' in printed
     assert '<limit effort="3.0" velocity="4.0"/>' in printed

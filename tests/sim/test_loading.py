@@ -283,7 +283,8 @@ def test_an_error_inside_ends_the_child(tmp_path: Path, monkeypatch: pytest.Monk
 def test_the_lines_of_the_engine_become_those_of_the_file(tmp_path: Path) -> None:
     file = EngineFile(path=Path("arm.urdf"), text="", lines=(4, 9, 9))
     output = (
-        "b3Warning[x.cpp,3]:\nNo inertial data for link\ntemporary/0.urdf:2: bad\nLine number=3: x\n"
+        "b3Warning[x.cpp,3]:\nNo inertial data for link\n"
+        "temporary/0.urdf:2: bad\nLine number=3: x\n"
     )
     error = robot_file.explained(file, output, "temporary/0.urdf")
     reason = "arm.urdf:9: bad; Line number=9: x"
