@@ -146,7 +146,8 @@ _NOISE = ("No inertial data for link", "pybullet build time", "InMemoryFile")
 def _plain(file: EngineFile, line: str, name: str) -> str:
     """A line that PyBullet printed, with the names and lines of the user's file."""
     line = _SOURCE.sub("", line).strip()
-    if any(noise in line for noise in _NOISE):
+    # A warning about a link ends with its name on a line of its own.
+    if " " not in line or any(noise in line for noise in _NOISE):
         return ""
 
     def source_line(found: re.Match[str]) -> str:
