@@ -88,7 +88,10 @@ def read_robot_file(
 ) -> RobotFile:
     """The robot in a URDF or xacro file; `arguments` are those of the macros. Raises LoadError and
     OSError."""
-    text = path.read_bytes().decode("utf-8", "replace")
+    try:
+        text = path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise LoadError(f"the file `{path}` is not UTF-8: {error.reason}") from None
     packages = packages or {}
     try:
         if path.name.lower().endswith(XACRO_SUFFIX):

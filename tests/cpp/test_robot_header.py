@@ -184,7 +184,8 @@ int main() {
                     smachac::find_arm(robot::arms, std::nullopt) == nullptr &&
                     !smachac::within_limits(robot::left_arm, wrong) &&
                     is_way(0, 0.1, 7.1, 7.0) && is_way(2, 3.1, -3.1, -6.2) &&
-                    is_way(1, 3.1, -3.1, 0.08318530717958605) && is_way(1, 0.0, -13.0, -0.43362938564082735);
+                    is_way(1, 3.1, -3.1, 0.08318530717958605) &&
+                    is_way(1, 0.0, -13.0, -0.43362938564082735);
   return good ? 0 : 1;
 }
 """
