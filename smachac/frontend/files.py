@@ -169,6 +169,7 @@ class Disk:
         self._sources: dict[str, tuple[Source | None, Report]] = {}
         self._stamps: dict[str, Stamp] = {}
         self._trees: dict[Source, tuple[Tree | None, Report]] = {}
+        self._expanded: dict[object, str] = {}
 
     def read(self, path: Path, report: Report) -> Source | None:
         """As `read_source`."""
@@ -199,6 +200,16 @@ class Disk:
         report.extend(problems_found)
         return tree
 
+    def expand(self, file: str, arguments: Mapping[str, str], packages: Packages) -> str:
+        """The URDF text of a xacro file on disk. Raises XacroError."""
+        key = (file, *sorted(arguments.items()), *sorted(packages.items()))
+        if key not in self._expanded:
+            expanded = xacro_files.expand(Path(file), arguments, packages)
+            for path in expanded.files:
+                self.read(path, [])  # a change of one of them is noticed
+            self._expanded[key] = expanded.text
+        return self._expanded[key]
+
     def replace(self, path: Path, text: str | None) -> None:
         """Set the text of a file from now on; with None, its text is that on disk again."""
         key = os.path.realpath(path)
@@ -217,6 +228,9 @@ class Disk:
 
     def _forget(self, keys: Iterable[str]) -> None:
         """Forget some files, and the trees of all texts that are no file or none any more."""
+        keys = [*keys]
+        if keys:
+            self._expanded.clear()
         for key in keys:
             self._sources.pop(key, None)
         held = {source for source, _ in self._sources.values()}
@@ -406,7 +420,7 @@ def disk_library(
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
         mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
-        expand=lambda *given: _expanded(disk, *given),
+        expand=disk.expand,
     )
 
 
@@ -458,13 +472,6 @@ def _package_folders(main: Path) -> list[Path]:
 
 def _real_name(folder: Path) -> str:
     return Path(os.path.realpath(folder)).name
-
-
-def _expanded(disk: Disk, file: str, arguments: Mapping[str, str], packages: Packages) -> str:
-    """The URDF text of a xacro file. Raises XacroError."""
-    expanded = xacro_files.expand(Path(file), arguments, packages)
-    disk.searched.update(map(str, expanded.files))
-    return expanded.text
 
 
 def _robot_file(name: str, disk: Disk, report: Report) -> Source | None:

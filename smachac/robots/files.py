@@ -104,11 +104,14 @@ def package_folders(package: str, file: Path, packages: Packages | None = None) 
 
 
 def project_folder(file: Path) -> Path:
-    """The project of a file: the nearest folder above it with a git repository, else the folder
-    above its own."""
+    """The project of a file: the nearest folder above it with a git repository, else the nearest
+    with a ROS package, else its own folder."""
     above = file.absolute().parents
-    repository = next((folder for folder in above if (folder / ".git").exists()), None)
-    return repository or above[min(1, len(above) - 1)]
+    for mark in (".git", "package.xml"):
+        for folder in above:
+            if (folder / mark).exists():
+                return folder
+    return above[0]
 
 
 def installed_packages(name: str, environment: Mapping[str, str]) -> Iterator[Path]:

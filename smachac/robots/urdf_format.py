@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from difflib import get_close_matches
 from typing import NamedTuple
 
@@ -185,12 +185,12 @@ def _check_element(element: Element, tag: Tag, text: str, version: str) -> None:
             message = f"`<{element.tag}>` has no `{name}`"
             raise XmlError(message, element.place(text), f'write `<{element.tag} {name}="..."/>`')
     seen: dict[str, Element] = {}
+    present = {child.tag for child in element.children}
     for child in element.children:
         if child.tag.startswith("xacro:"):
             message = f"`<{child.tag}>` is not an element of URDF"
             raise XmlError(message, child.place(text), XACRO)
         if child.tag not in tag.children:
-            present = [other.tag for other in element.children]
             _no_slip(child, "", [*tag.children], present, text, child.tag)
             continue
         if child.tag in seen and child.tag not in (*tag.several, *FIRST_COUNTS):
@@ -246,7 +246,12 @@ def _check_version(element: Element, name: str, shown: str, text: str, version: 
 
 
 def _no_slip(
-    element: Element, attribute: str, known: list[str], present: Iterable[str], text: str, name: str
+    element: Element,
+    attribute: str,
+    known: list[str],
+    present: Collection[str],
+    text: str,
+    name: str,
 ) -> None:
     """Raise XmlError if an unknown name is close to a known one that is absent."""
     absent = [

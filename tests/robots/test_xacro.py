@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 import smachac
+from smachac.frontend.files import Disk
 from smachac.robots import urdf
-from smachac.robots.files import Packages
+from smachac.robots.files import Packages, project_folder
 from smachac.robots.xacro_files import XacroError, expand
 
 pytest.importorskip("xacro")
@@ -230,3 +231,23 @@ def test_a_macro_file_without_a_description(tmp_path: Path) -> None:
     assert codes == []
     ((code, _, _),) = findings(path, base="Base", robot="arm.urdf.xacro", angle="1.6")
     assert code == "SM502"
+
+
+def test_a_changed_file_is_expanded_again(tmp_path: Path) -> None:
+    path = project(tmp_path)
+    disk = Disk()
+    before = disk.expand(str(path), {}, {})
+    assert disk.expand(str(path), {}, {}) is before
+    macros = path.parent / "parts" / "macros.xacro"
+    macros.write_text(MACROS.replace('effort="10"', 'effort="10.5"'))
+    assert disk.refresh() == {str(macros.resolve())}
+    assert 'effort="10.5"' in disk.expand(str(path), {}, {})
+
+
+@pytest.mark.parametrize("mark", [".git", "package.xml", None])
+def test_the_project_of_a_file(tmp_path: Path, mark: str | None) -> None:
+    folder = tmp_path / "arm" / "urdf"
+    folder.mkdir(parents=True)
+    if mark is not None:
+        (tmp_path / mark).touch()
+    assert project_folder(folder / "arm.urdf.xacro") == (folder if mark is None else tmp_path)
