@@ -203,6 +203,7 @@ def test_each_file_is_tried_once_in_a_process(
         return start(*arguments, **options)
 
     monkeypatch.setattr(subprocess, "Popen", counted)
+    monkeypatch.setattr(loading, "_tried", set())
     made = one_joint(tmp_path, "revolute")
     for _ in range(3):
         sim.World(robot=made).close()
