@@ -16,6 +16,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import quoteattr
 
 from smachac.sim.physics import Engine, quiet
 from smachac.sim.robot_file import EngineFile, explained
@@ -66,8 +67,22 @@ def tried(files: Iterable[EngineFile]) -> Iterator[None]:
         # A child that could not start has no result: its files are loaded without it.
         if loaded is not None and loaded < len(names):
             file = [*wanted.values()][loaded]
+            try_out(map(_mesh_alone, file.meshes))  # the error of a mesh, if that is the reason
             raise explained(file, output, names[loaded], ended)
     _tried.update(wanted)
+
+
+def try_out(files: Iterable[EngineFile]) -> None:
+    """Load files in a child process, see `tried`. Raises LoadError."""
+    with tried(files):
+        pass
+
+
+def _mesh_alone(mesh: Path) -> EngineFile:
+    """The file of a body that consists of a mesh."""
+    shape = f"<geometry><mesh filename={quoteattr(str(mesh))}/></geometry>"
+    link = f'<link name="mesh">\n<visual>{shape}</visual>\n<collision>{shape}</collision>\n</link>'
+    return EngineFile(path=mesh, text=f'<robot name="mesh">\n{link}\n</robot>\n')
 
 
 @contextlib.contextmanager

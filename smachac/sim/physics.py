@@ -123,5 +123,6 @@ class Engine:
     def close(self) -> None:
         """Free the client; a second call has no effect."""
         if self.client >= 0:
-            self.disconnect()
+            with quiet():
+                self.disconnect()
             self.client = -1

@@ -14,7 +14,7 @@ from smachac.robots.urdf import Urdf, read
 from smachac.robots.urdf_format import numbers
 from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
 from smachac.robots.xacro_files import XacroError, expand
-from smachac.robots.xml_tree import Element, XmlError
+from smachac.robots.xml_tree import MAX_CHARACTERS, TOO_LARGE, Element, XmlError
 from smachac.sim import transforms
 from smachac.sim.physics import data_folder
 from smachac.sim.transforms import Pose, Vector
@@ -88,6 +88,8 @@ def read_robot_file(
 ) -> RobotFile:
     """The robot in a URDF or xacro file; `arguments` are those of the macros. Raises LoadError and
     OSError."""
+    if path.stat().st_size > 4 * MAX_CHARACTERS:
+        raise LoadError(f"the file `{path}` is too large for a robot: {TOO_LARGE}")
     try:
         text = path.read_bytes().decode("utf-8")
     except UnicodeDecodeError as error:
@@ -146,7 +148,8 @@ _NOISE = ("No inertial data for link", "pybullet build time", "InMemoryFile")
 def _plain(file: EngineFile, line: str, name: str) -> str:
     """A line that PyBullet printed, with the names and lines of the user's file."""
     line = _SOURCE.sub("", line).strip()
-    if any(noise in line for noise in _NOISE):
+    # A warning about a link ends with its name on a line of its own.
+    if " " not in line or any(noise in line for noise in _NOISE):
         return ""
 
     def source_line(found: re.Match[str]) -> str:

@@ -188,8 +188,7 @@ class Scene:
         if path:
             try:
                 file = models.file_of(path)
-                with loading.tried([file]):
-                    pass
+                loading.try_out([file])
                 body = models.read(self.engine, file, place)
             except (LoadError, OSError) as error:
                 return Result("aborted", str(error))

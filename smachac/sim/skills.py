@@ -17,7 +17,7 @@ from smachac.sim.outcome import Preempted, Result
 from smachac.sim.transforms import Pose
 
 _LONGEST_SKILL = 600.0
-"""Simulated time (s) after which a skill that never returns ends the run with an error."""
+"""Longest duration of a move (s). A skill that never returns ends the run with an error then."""
 _SHORTEST_MOVE = 0.5
 """Shortest duration of a move (s)."""
 _SETTLING_TIME = 2.0
@@ -123,7 +123,11 @@ def _follow(
     if speed <= 0.0:
         raise ValueError(f"the speed has to be above 0, not {speed}")
     corners = [arm.joints, *waypoints]
-    steps = max(1, round(_duration(arm, corners, speed) / TIME_STEP))
+    duration = _duration(arm, corners, speed)
+    if duration > _LONGEST_SKILL:
+        reason = f"the move takes longer than {_LONGEST_SKILL:g} s at the speed of the joints"
+        return Result("aborted", reason)
+    steps = max(1, round(duration / TIME_STEP))
     lagging = 0
     for k in range(1, steps + 1):
         if preempted is not None and preempted():

@@ -140,6 +140,14 @@ def test_the_speed_of_a_joint(
         assert max(seen) == pytest.approx(fastest, rel=0.02)
 
 
+def test_a_move_that_takes_too_long_is_refused(tmp_path: Path) -> None:
+    limit = '<limit lower="-2" upper="2" effort="100" velocity="1e-308"/>'
+    with sim.World(robot=one_joint(tmp_path, "revolute", limit)) as world:
+        result = world.arm().move_to_joints([1.0])
+        assert result.reason == "the move takes longer than 600 s at the speed of the joints"
+        assert world.steps == 0
+
+
 def test_the_effort_of_a_joint_without_limit_element_is_not_limited(tmp_path: Path) -> None:
     parts = (
         link("base"),

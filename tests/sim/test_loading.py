@@ -203,6 +203,7 @@ def test_each_file_is_tried_once_in_a_process(
         return start(*arguments, **options)
 
     monkeypatch.setattr(subprocess, "Popen", counted)
+    monkeypatch.setattr(loading, "_tried", set())
     made = one_joint(tmp_path, "revolute")
     for _ in range(3):
         sim.World(robot=made).close()
@@ -261,6 +262,27 @@ def test_a_child_that_does_not_end(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     file.path.write_text("x")
     with pytest.raises(LoadError, match="did not end within"), loading.tried([file]):
         pass
+
+
+def test_a_mesh_on_which_the_engine_ends_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good, bad = tmp_path / "good.obj", tmp_path / "bad.obj"
+    for path in (good, bad):
+        path.write_text(OBJ)
+    code = (
+        "for number, name in enumerate(task['files']):\n"
+        "    pathlib.Path(task['progress']).write_text(str(number))\n"
+        "    if 'bad.obj' in pathlib.Path(name).read_text(): os._exit(3)\n"
+        "pathlib.Path(task['progress']).write_text(str(len(task['files'])))"
+    )
+    file = ending(tmp_path, code, monkeypatch)
+    text = f"<robot>\n{good}\n{bad}\n</robot>\n"
+    file = EngineFile(path=file.path, text=text, meshes=(good, bad))
+    with pytest.raises(LoadError) as caught:
+        loading.try_out([file])
+    reason = "cannot be loaded: PyBullet ended with the exit code 3"
+    assert str(caught.value) == f"the file `{bad}` {reason}"
 
 
 def test_a_child_that_cannot_start_refuses_nothing(
