@@ -130,6 +130,8 @@ ROBOT = Tag(
     },
     several=("link", "joint", "material", *HARMLESS),
 )
+LONGEST_TEXT = 900
+"""In characters: a line of the text for the engine has at most 1,000."""
 MEASURED = ("mass", "inertia", "origin", "box", "sphere", "cylinder", "capsule", "mesh")
 """Elements whose numbers are lengths, angles, masses and inertias."""
 LARGEST = 1e6
@@ -215,6 +217,9 @@ def _check_element(element: Element, tag: Tag, text: str, version: str) -> None:
 def _check_attribute(element: Element, name: str, tag: Tag, text: str, version: str) -> None:
     _check_version(element, name, name, text, version)
     count = tag.attributes[name]
+    if count == TEXT and len(element.attributes[name]) > LONGEST_TEXT:
+        message = f"`{name}` of `<{element.tag}>` has more than {LONGEST_TEXT} characters"
+        raise XmlError(message, element.place(text, name), "write a shorter one")
     if count == TEXT:
         return
     found = numbers(element, text, name, count)

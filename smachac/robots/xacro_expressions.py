@@ -12,6 +12,14 @@ import operator
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+_LARGEST_EXPONENT = 64
+"""With a larger one the power of two integers is computed as a float, which has a limited size."""
+
+
+def _power(base: Any, exponent: Any) -> Any:
+    return (base if abs(exponent) <= _LARGEST_EXPONENT else float(base)) ** exponent
+
+
 _BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -19,7 +27,7 @@ _BINARY: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv,
     ast.Mod: operator.mod,
-    ast.Pow: operator.pow,
+    ast.Pow: _power,
 }
 _UNARY: Mapping[type[ast.unaryop], Callable[[Any], Any]] = {
     ast.UAdd: operator.pos,

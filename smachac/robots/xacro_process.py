@@ -17,7 +17,7 @@ from typing import Any
 
 _LONGEST_TEXT = 5_000_000
 """Largest size of a file, and of the expanded text, in bytes."""
-_LIMITS = {"RLIMIT_CPU": 20, "RLIMIT_AS": 2_000_000_000, "RLIMIT_FSIZE": 0}
+_LIMITS = {"RLIMIT_CPU": 10, "RLIMIT_AS": 2_000_000_000, "RLIMIT_FSIZE": 0}
 """Limits of the process: seconds of CPU, bytes of memory, bytes that are written to a file."""
 
 
@@ -127,6 +127,8 @@ def expand(task: Mapping[str, Any]) -> dict[str, Any]:
     except Exception as error:  # xacro raises many kinds
         cause = _cause(error)
         message = str(cause) or type(cause).__name__
+        if isinstance(cause, MemoryError):
+            message = "it takes more memory to expand than is allowed"
         help = getattr(cause, "help", "correct the macro file; `xacro FILE` prints the result")
         written = getattr(cause, "written", "") or evaluator.failed
         if isinstance(cause, substitution_args.ArgException):

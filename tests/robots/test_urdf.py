@@ -107,6 +107,7 @@ AB = joint("j", "a", "b")
         (shape('<cylinder radius="1"/>'), "`<cylinder>` has no `length`", '<cylinder radius="1"/>'),
         (shape('<sphere radius="-1"/>'), "`radius` of `<sphere>` is `-1`: no length is negative", "-1"),
         (shape('<capsule radius="1" length="1"/>'), "`<capsule>` needs URDF 1.1", None),
+        (text(links="x" * 901), "`name` of `<link>` has more than 900 characters", "x" * 901),
         (shape("<mesh/>"), "`<mesh>` has no `filename`", "<mesh/>"),
     ],
 )  # fmt: skip

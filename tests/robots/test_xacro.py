@@ -100,6 +100,7 @@ def test_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         ('<link name="$(arg side)"/>', "the argument `side` has no value", "$(arg side)"),
         ('<link name="${side}"/>', "the name `side` is not defined", "side"),
         ('<link name="${1 +}"/>', "invalid syntax", "1 +"),
+        ('<link name="${9 ** 9 ** 9}"/>', "Numerical result out of range", "9 ** 9 ** 9"),
         ('<link name="${1 / 0}"/>', "division by zero", "1 / 0"),
         ('<link name="$(env HOME)"/>', "`$(env ...)` is not read", "$(env"),
         ('<link name="$(eval 1 + 1)"/>', "`$(eval ...)` is not read", "$(eval"),
@@ -133,6 +134,7 @@ def test_an_optional_environment_and_include(tmp_path: Path) -> None:
     ("value", "expected"),
     [
         ("2 ** 3 // 3 - -1", "3"),
+        ("2 ** 65 == 2.0 ** 65", "True"),
         ("not 1 > 2 and 'a' in 'abc'", "True"),
         ("'x' if 1 &lt; 2 &lt; 3 else 'y'", "x"),
         ("None or [1, 2, 3][1:]", "[2, 3]"),
