@@ -30,7 +30,7 @@ FRAGMENTS = {
     "cpp": 1,
     "language": 9,
     "properties": 1,
-    "robots": 10,
+    "robots": 11,
     "ros": 2,
     "semantics": 13,
     "state_types": 2,
@@ -144,8 +144,11 @@ def faults_of_interface(text: str, folder: Path) -> list[str]:
 
 
 def faults_of_data(text: str, kind: DataKind, folder: Path) -> list[str]:
-    """The findings in a file of a robot, a scene or faults."""
+    """The findings in a file of a robot, a scene or faults, beside the robots of the page."""
     report: Report = []
+    for other, robot in blocks(ROOT / "docs" / "robots.md"):
+        if other == "xml":
+            (folder / robot.split()[1]).write_text(robot, "utf-8")
     source = Source(str(folder / "fragment.yml"), text)
     check_data_file(source, kind, disk_library(folder, []), report)
     return [f"{each.code} {each.message}" for each in report]

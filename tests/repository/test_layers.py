@@ -31,7 +31,7 @@ PACKAGES: Mapping[str, frozenset[str]] = {
     "runtime": frozenset(
         {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs"}
     ),
-    "robots": frozenset({"yaml"}),
+    "robots": frozenset({"yaml", "xacro"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),
 }
 """The rooms that generated programs stand on, with the packages that they may import."""
