@@ -35,7 +35,7 @@ MODULES = (
     ("PIL", "Pillow", "films of the arm (.gif)", "pip install 'smachac[sim]'", False),
     ("imageio_ffmpeg", "imageio-ffmpeg", "films of the arm (.mp4)", "pip install 'smachac[sim]'",
      False),
-    ("xacro", "xacro", "macro files of robots, `.urdf.xacro`", "pip install 'smachac[xacro]'", False),
+    ("xacro", "xacro", "macro files of robots, `.xacro`", "pip install 'smachac[xacro]'", False),
     ("pygls", "pygls", "the language server, `smachac lsp`", "pip install 'smachac[lsp]'", False),
     ("rosbags", "rosbags", "bags of ROS 2 in `trace check`", "pip install 'smachac[bags]'", False),
     ("smach", "smach", "SMACH itself; without it programs use the bundled runtime",

@@ -110,7 +110,9 @@ def test_a_joint_without_effort(tmp_path: Path, effort: str) -> None:
     arm = "{{joints: [j1], tool: a, home: [0]{}}}"
     ((code, message, file, place),) = project(tmp_path, arm.format(""), *joints)
     assert (code, file) == ("SM018", "arm.yml")
-    assert message.endswith("the joint `j1` has the effort 0 in the URDF file: its motor cannot move it")
+    assert message.endswith(
+        "the joint `j1` has the effort 0 in the URDF file: its motor cannot move it"
+    )
     assert place.startswith("j1 | add `efforts: {j1: 100}` to the arm, with the largest torque")
     assert project(tmp_path, arm.format(", efforts: {j1: 5}"), *joints) == []
 
