@@ -112,7 +112,7 @@ def test_templates(text: str, tmp_path: Path) -> None:
     run(tmp_path, *COMMANDS)
 
 
-@pytest.mark.parametrize("pure", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("pure", [False, pytest.param(True, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("text", SCRIPTS)
 @pytest.mark.slow
 def test_scripts(text: str, pure: bool, tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ LAYERS = (
     ("targets", "checks"),
     ("driver", "report"),
     ("__init__", "batch"),
+    ("repair",),
     ("diff",),
     ("refactor", "verify"),
     ("lsp", "sweep", "view"),

@@ -15,6 +15,7 @@ import pytest
 from smachac import sim
 from smachac.sim import transforms
 from tests.support.arm_examples import carry
+from tests.support.examples import seeds
 
 pytest.importorskip("pybullet")
 
@@ -122,7 +123,7 @@ def test_the_files_are_those_of_the_script() -> None:
         assert "<mesh" not in content
 
 
-MANY = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 6))]
+MANY = seeds(1, 2, 6)
 
 
 @pytest.mark.parametrize("seed", MANY)

@@ -21,6 +21,7 @@ from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach.user_data import store
 from smachac.runtime.smach_ros2 import ros, spinning
+from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 
 STATUS_TOPIC = "/smach/container_status"
 INIT_TOPIC = "/smach/container_init"
@@ -77,7 +78,7 @@ class Format:
             message.header.stamp = node.get_clock().now().to_msg()
         for field, value in fields.items():
             setattr(message, field, value.encode() if field == "local_data" else value)
-        return message
+        return checked(message, type(message), name)
 
     def decode(self, message: Any) -> dict[str, Any]:
         """The fields of a message."""
@@ -170,6 +171,8 @@ class ContainerProxy:
             self._publishers[name].publish(self._format.encode(self._node, name, fields))
         except (ros.invalid_handle(), ros.rclpy.exceptions.ROSInterruptException) as error:
             smach.logdebug(f"nothing is reported: {error}")
+        except FieldError as error:
+            smach.logerr(f"nothing is reported: {error}")
 
     def _on_init_command(self, message: Any) -> None:
         """Set the initial state of the container for all later runs."""

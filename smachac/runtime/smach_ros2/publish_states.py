@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 
 from smachac.runtime import smach
 from smachac.runtime.smach_ros2.interfaces import message_class
+from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 from smachac.runtime.smach_ros2.plain_messages import parse_message
 from smachac.runtime.smach_ros2.qos import profile
 from smachac.runtime.smach_ros2.topics import Publications
@@ -91,7 +92,11 @@ class PublishMsgState(_PublishingState):
             return "aborted"
         rate = None if self.action == "once" else optional(userdata, "rate", 100.0)
         make = self._maker(message, optional(userdata, "callback"))
-        running.start(topic, type(message), make, rate, self.qos)
+        try:
+            running.start(topic, type(message), make, rate, self.qos)
+        except FieldError as error:
+            self.node.get_logger().error(f"the message is invalid: {error}")
+            return "aborted"
         self.write(userdata, message, topic)
         return "succeeded"
 
@@ -118,12 +123,13 @@ class Observer:
         self._subscription: Any = None
 
     def add(self, topic: str, msg_type: Any, make: Callable[[], Any], qos: Any) -> bool:
-        """Add a publication; False if the type of the observed topic is unknown."""
+        """Add a publication; False if the type of the observed topic is unknown. A message with a
+        value that does not fit its field ends it."""
         if self._subscription is None and not self._observe():
             return False
         publisher = self._node.create_publisher(msg_type, topic, profile(qos))
         with self._lock:
-            self._messages[topic] = (publisher, make)
+            self._messages[topic] = (publisher, lambda: checked(make(), msg_type, "msg"))
         return True
 
     def remove(self, topic: str) -> bool:
@@ -154,9 +160,13 @@ class Observer:
 
     def _publish(self, _: bytes) -> None:
         with self._lock:
-            messages = list(self._messages.values())
-        for publisher, make in messages:
-            publisher.publish(make())
+            messages = list(self._messages.items())
+        for topic, (publisher, make) in messages:
+            try:
+                publisher.publish(make())
+            except FieldError as error:
+                self._node.get_logger().error(f"the publication on '{topic}' ends: {error}")
+                self.remove(topic)
 
 
 class PublishObserverMsgState(_PublishingState):

@@ -5,6 +5,7 @@ Importing this module imports rclpy. ImportError names the packages if there is 
 
 from __future__ import annotations
 
+import math
 import traceback
 from collections.abc import Callable
 from importlib import import_module
@@ -75,6 +76,18 @@ else:
     LifecycleNode = load("rclpy.lifecycle").LifecycleNode
 
 NANOSECONDS = 1_000_000_000
+
+
+def nanoseconds(seconds: float) -> int:
+    """The nearest whole number of nanoseconds."""
+    whole = math.floor(seconds)
+    return whole * NANOSECONDS + round((seconds - whole) * NANOSECONDS)
+
+
+def duration(seconds: float) -> Any:
+    """The rclpy.duration.Duration that is nearest to a number of seconds. The constructor of that
+    class cuts fractions off: its 2.01 s are one nanosecond less."""
+    return load("rclpy.duration").Duration(nanoseconds=nanoseconds(seconds))
 
 
 def seconds(time: Time | None) -> float | None:

@@ -104,6 +104,8 @@ class SimpleActionState(RosState):
         keys = tuple(input_keys), tuple(output_keys)
         self._outgoing = Outgoing(
             name=action_name,
+            part="goal",
+            kind=action_spec.Goal,
             default=action_spec.Goal() if goal is None else goal,
             key=goal_key,
             slots=checked_slots(goal_slots, ros.fields(action_spec.Goal), "goal"),

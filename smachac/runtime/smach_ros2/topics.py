@@ -10,6 +10,7 @@ from typing import Any
 from smachac.runtime import smach
 from smachac.runtime.smach_ros2 import interfaces, ros
 from smachac.runtime.smach_ros2 import qos as qos_profiles
+from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 from smachac.runtime.smach_ros2.ros_state import RosState
 from smachac.runtime.smach_ros2.subscriptions import Subscription
 from smachac.runtime.smach_ros2.waits import CHECK_INTERVAL, DISCOVERY_INTERVAL, Wait
@@ -188,21 +189,35 @@ class Publications:
     def start(
         self, topic: str, msg_type: Any, message: Any, rate: float | None = None, qos: Any = None
     ) -> None:
-        """Publish a message, or the result of a function: once, or `rate` times a second."""
+        """Publish a message, or the result of a function: once, or `rate` times a second.
+
+        Raises FieldError for a value that does not fit its field. If a later message has one, the
+        log contains it, and the publication ends.
+        """
         create = message if callable(message) else lambda: message
+
+        def checked_message() -> Any:
+            return checked(create(), msg_type, "msg")
+
+        def publish_next() -> None:
+            try:
+                publisher.publish(checked_message())
+            except FieldError as error:
+                smach.logerr(f"the publication on '{topic}' ends: {error}")
+                self._stop_timer(topic)
+
+        first = checked_message()
         self._stop_timer(topic)
         with self._changing:
-            publisher = self._publishers.get(topic)
+            publisher: Any = self._publishers.get(topic)
             if publisher is None:
                 profile = qos_profiles.profile(qos)
                 publisher = self._node.create_publisher(msg_type, topic, profile)
                 self._publishers[topic] = publisher
-            publisher.publish(create())
+            publisher.publish(first)
             if rate is not None:
                 self._timers[topic] = self._node.create_timer(
-                    1 / rate,
-                    lambda: publisher.publish(create()),
-                    callback_group=ros.own_group(),
+                    1 / rate, publish_next, callback_group=ros.own_group()
                 )
 
     def stop(self, topic: str) -> bool:
