@@ -156,7 +156,8 @@ class Kinematics:
     ) -> tuple[float, ...]:
         """The joints after a step, within their limits."""
         facts = [self._facts[name] for name in limb.joints]
-        part = min(1.0, _LARGEST_STEP / max(map(abs, step), default=1.0))
+        largest = max(map(abs, step), default=0.0)
+        part = _LARGEST_STEP / largest if largest > _LARGEST_STEP else 1.0
         scales = [1.0 if joint.turns else SLIDE for joint in facts]
         return tuple(
             min(max(position + part * change * scale, joint.lower), joint.upper)

@@ -101,10 +101,10 @@ def test_kinematics_need_no_meshes(tmp_path: Path) -> None:
 def test_a_file_with_one_long_line_is_loaded(tmp_path: Path) -> None:
     path = robot(
         tmp_path,
-        *(link(name) for name in ("base", "hand", "a" * 700, "b" * 1500)),
+        *(link(name) for name in ("base", "hand", "a" * 700, "b" * 900)),
         joint("j", "revolute", "base", "hand"),
         joint("k" * 900, "fixed", "hand", "a" * 700, ""),
-        joint("l", "fixed", "hand", "b" * 1500, ""),
+        joint("l", "fixed", "hand", "b" * 900, ""),
     )
     path.write_text(path.read_text().replace("\n", " "))
     with opened(path) as world:
