@@ -470,17 +470,23 @@ class RunView:
         self.trace, self.control = trace, control
         self._server = server
 
-    def stay(self) -> None:
-        """After the run: where a person is at the terminal, serve the page until Ctrl-C."""
+    def stay(self, code: int) -> int:
+        """After the run: where a person is at the terminal, serve the page until Ctrl-C, unless
+        SIGTERM or SIGHUP ended the run. The exit code: `code`, that of the run, or that of the
+        signal."""
+        import signal
+
         from smachac.commands.interrupts import interrupts_raise
+        from smachac.runtime.signals import exit_code, received
 
         self.control.ended()
-        if not sys.stdin or not sys.stdin.isatty():
-            return
+        if not sys.stdin or not sys.stdin.isatty() or set(received) - {signal.SIGINT}:
+            return code
         print("the run has ended; the view stays until Ctrl-C", file=sys.stderr, flush=True)
         with interrupts_raise(), suppress(KeyboardInterrupt):
             while True:
                 time.sleep(3600)
+        return exit_code(code)
 
 
 @contextmanager

@@ -1,12 +1,46 @@
 # Made by smachac 0.1.0 from main.yml (sha256 44e17fb39b6fd463).
 """The state machine `sm`."""
 
+import os
+import signal
+import socket
 import threading
 
 try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
+
+
+stop_signals = []
+
+
+def stop_at_signals(stop):
+    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
+
+    A thread reads the signals from a socket, because Python runs no signal handler while
+    the main thread is blocked. `stop_signals` gets the number of the first one.
+    """
+    read, write = socket.socketpair()
+    write.setblocking(False)
+    signal.set_wakeup_fd(write.detach())
+    handled = set()
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number and signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, lambda number, frame: None)
+            handled.add(number)
+
+    def wait():
+        while True:
+            number = read.recv(1)[0]
+            if number in handled and stop_signals:
+                os._exit(128 + number)
+            if number in handled:
+                stop_signals.append(number)
+                threading.Thread(target=stop).start()
+
+    threading.Thread(target=wait, daemon=True).start()
 
 
 def withdraw(state):
@@ -169,10 +203,13 @@ def build():
 
 def main():
     """Run the state machine once and return its outcome."""
-    return build().execute()
+    sm = build()
+    if __name__ == "__main__":
+        stop_at_signals(sm.request_preempt)
+    return sm.execute()
 
 
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)

@@ -4,6 +4,7 @@
 import copy
 import os
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -38,32 +39,41 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach_ros
 
 
-def start_node(name):
-    """Start a ROS node. The first signal shuts it down; the second ends the program.
+stop_signals = []
 
-    A thread performs the shutdown: the signal handler of rospy can cause a deadlock if
-    the interrupted code holds a lock. The thread reads the signal number from a pipe,
-    because Python runs no signal handler while the main thread is blocked.
+
+def stop_at_signals(stop):
+    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
+
+    A thread reads the signals from a socket, because Python runs no signal handler while
+    the main thread is blocked. `stop_signals` gets the number of the first one.
     """
+    read, write = socket.socketpair()
+    write.setblocking(False)
+    signal.set_wakeup_fd(write.detach())
+    handled = set()
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number and signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, lambda number, frame: None)
+            handled.add(number)
+
+    def wait():
+        while True:
+            number = read.recv(1)[0]
+            if number in handled and stop_signals:
+                os._exit(128 + number)
+            if number in handled:
+                stop_signals.append(number)
+                threading.Thread(target=stop).start()
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def start_node(name):
+    """Start a ROS node, which the first signal shuts down."""
     rospy.init_node(name, disable_signals=True)
-    read, write = os.pipe()
-    os.set_blocking(write, False)
-    signal.set_wakeup_fd(write)
-
-    def handle_signal(number, frame):
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-    def shut_down():
-        number = 0
-        while number not in (signal.SIGINT, signal.SIGTERM):
-            number = os.read(read, 1)[0]
-        reason = f"signal {number}"
-        threading.Thread(target=rospy.signal_shutdown, args=[reason], daemon=False).start()
-
-    threading.Thread(target=shut_down, daemon=True).start()
-    signal.signal(signal.SIGINT, handle_signal)
-    signal.signal(signal.SIGTERM, handle_signal)
+    stop_at_signals(lambda: rospy.signal_shutdown("signal"))
 
 
 def preempt_at_shutdown(machine):
@@ -952,4 +962,4 @@ def main():
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)
