@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from smachac.runtime.tracing.writer import LONGEST_LINE
 from smachac.verify.status_conformance import Status, in_order, status_of
 
 TOPIC, JSON_TOPIC = "/smach/container_status", "/smach/container_status_json"
@@ -53,6 +54,8 @@ def read_statuses(path: Path) -> dict[str, list[Status]]:
                 message = types.deserialize_cdr(data, connection.msgtype)
                 status = _status(message)
                 found.setdefault(connection.topic, []).extend([status] if status else [])
+    except BagError:
+        raise
     except Exception as error:  # of rosbags, of its storages, and of the messages
         reason = " ".join(str(error).split()) or type(error).__name__
         raise BagError(f"it is broken: {reason}") from None
@@ -62,7 +65,10 @@ def read_statuses(path: Path) -> dict[str, list[Status]]:
 
 
 def _status(message: Any) -> Status | None:
-    """The status in a message; None if no change has caused it."""
+    """The status in a message; None if no change has caused it. Raises BagError."""
+    text = message.data if hasattr(message, "data") else message.info
+    if len(text) > LONGEST_LINE:
+        raise BagError(f"a status in it has more than {LONGEST_LINE:,} characters")
     if hasattr(message, "data"):
         fields = json.loads(message.data)
         return status_of(fields, float(fields["stamp"]))

@@ -165,7 +165,10 @@ def _judged(
     """Every trace, with what all of them cover and count. The runs of a database have no events,
     and so no `conformance`; those of a bag have no outcomes of states, and so nothing else. Raises
     UnreadableTraceError, and DatabaseError for a database."""
+    from functools import partial
+
     from smachac.commands.bag import is_bag
+    from smachac.runtime.tracing.writer import LONGEST_LINE
     from smachac.verify.coverage import Coverage
     from smachac.verify.trace_report import judge_trace
     from smachac.verify.trace_statistics import TraceStatistics
@@ -190,7 +193,8 @@ def _judged(
                     raise UnreadableTraceError(path, "a sweep's database has no events")
                 _add_database(path, machine, taken, statistics)
                 continue
-            with path.open(encoding="utf-8", errors="replace", newline="\n") as lines:
+            with path.open(encoding="utf-8", errors="replace", newline="\n") as stream:
+                lines = iter(partial(stream.readline, LONGEST_LINE + 1), "")
                 judged.append(judge_trace(machine, str(path), lines, record))
         except OSError as error:
             raise UnreadableTraceError(path, error.strerror or str(error)) from None

@@ -328,6 +328,8 @@ class _TraceFile:
 
 def _unknown_place(places: Iterable[str], picture: Picture) -> str:
     """What shows that the run is of another machine, or of another version; else empty."""
+    from smachac.diagnostics.wording import quote
+
     model = picture.model
     nodes = model["nodes"]
     known = {each.get("shown", each["path"]) for each in nodes} | {each["path"] for each in nodes}
@@ -336,8 +338,8 @@ def _unknown_place(places: Iterable[str], picture: Picture) -> str:
     if not place:
         return ""
     if machine != model["root"]:
-        return f"this is the trace of the machine `{machine}`, not of `{model['root']}`"
-    return f"the script has no state {place}: it is not the version that ran"
+        return f"this is the trace of the machine {quote(machine)}, not of `{model['root']}`"
+    return f"the script has no state {quote(place)}: it is not the version that ran"
 
 
 class _NodeRun:

@@ -182,7 +182,7 @@ def test_view_follows_a_trace(script: Path, tmp_path: Path, start: Callable[...,
     ("path", "message"),
     [
         ("other", "this is the trace of the machine `other`, not of `sm`"),
-        ("sm/GONE", "the script has no state sm/GONE: it is not the version that ran"),
+        ("sm/GONE", "the script has no state `sm/GONE`: it is not the version that ran"),
     ],
 )
 def test_a_trace_of_another_machine_is_named(

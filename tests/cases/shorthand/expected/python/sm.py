@@ -18,26 +18,25 @@ stop_signals = []
 def stop_at_signals(stop):
     """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
 
-    A thread reads the signals from a socket, because Python runs no signal handler while
-    the main thread is blocked. `stop_signals` gets the number of the first one.
+    A thread reads the signals from a socket: Python runs no signal handler while the main
+    thread is blocked.
     """
     read, write = socket.socketpair()
     write.setblocking(False)
     signal.set_wakeup_fd(write.detach())
-    handled = set()
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)  # Windows has no SIGHUP
-        if number and signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, lambda number, frame: None)
-            handled.add(number)
+    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
+    handled = [each for each in known if signal.getsignal(each) != signal.SIG_IGN]
+    for number in handled:
+        signal.signal(number, lambda number, frame: stop_signals.append(number))
 
     def wait():
+        is_stopping = False
         while True:
             number = read.recv(1)[0]
-            if number in handled and stop_signals:
+            if number in handled and is_stopping:
                 os._exit(128 + number)
             if number in handled:
-                stop_signals.append(number)
+                is_stopping = True
                 threading.Thread(target=stop).start()
 
     threading.Thread(target=wait, daemon=True).start()
