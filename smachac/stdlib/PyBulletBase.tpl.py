@@ -1,5 +1,8 @@
 {% extends "Program.tpl.py" %}
 {%- block imports %}{{ super() }}
+{%- if "from smachac import sim" not in imports %}
+from smachac import sim
+{%- endif %}
 from smachac.runtime import signals
 {%- endblock %}
 {%- block stop_signals %}{% endblock %}
@@ -18,5 +21,4 @@ from smachac.runtime import signals
             print(f"{name}: x {x:.4f} m, y {y:.4f} m, z {z:.4f} m, {rest}")
     return outcome
 {%- endblock %}
-
 {%- block exit_code %}signals.exit_code(outcome is None){% endblock %}

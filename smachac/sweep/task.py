@@ -146,11 +146,9 @@ class Runner:
         placed: Mapping[str, Mapping[str, float]],
         recorder: _Recorder,
     ) -> str | None:
-        if self._task.scenario is not None:
-            task = self._task
-            return play(
-                program.machine, task.scenario, seed, None, recorder, max_steps=task.max_steps
-            )
+        scenario, most = self._task.scenario, self._task.max_steps
+        if scenario is not None:
+            return play(program.machine, scenario, seed, None, recorder, max_steps=most)
         ((name, text),) = program.texts.items()
         try:
             return execute(

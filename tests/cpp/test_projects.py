@@ -34,6 +34,27 @@ states:
   - SIT: {template: SleepState, time: 1000.0, transitions: {succeeded: done, preempted: stopped}}
 """
 
+DEAF = """
+name: Deaf
+outcomes: [done]
+code: {cpp: {header: deaf.hpp, class: Deaf}}
+"""
+
+DEAF_HPP = """
+#include <cstdio>
+#include <smachac/smachac.hpp>
+
+class Deaf : public smachac::State {
+public:
+  const char *execute(smachac::Userdata &) override {
+    std::getchar();
+    return "done";
+  }
+};
+"""
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
 GREETING = """
 name: greeting
 outcomes: [done]
@@ -165,32 +186,97 @@ def test_options_that_make_no_sense(
 
 @pytest.fixture(scope="module")
 def waiting(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A program that waits until somebody asks it to stop."""
+    """A program that waits for a stop request."""
     folder = tmp_path_factory.mktemp("wait")
     (folder / "main.yml").write_text(WAIT)
+    return compiled(folder)
+
+
+@pytest.fixture(scope="module")
+def deaf(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A program that waits for a line, whatever is requested."""
+    folder = tmp_path_factory.mktemp("deaf")
+    (folder / "main.yml").write_text(WAIT.replace(
+        "SleepState, time: 1000.0, transitions: {succeeded: done, preempted: stopped}",
+        "Deaf, transitions: {done: done}"))  # fmt: skip
+    (folder / "templates").mkdir()
+    (folder / "templates" / "Deaf.yml").write_text(DEAF)
+    (folder / "deaf.hpp").write_text(DEAF_HPP)
+    return compiled(folder)
+
+
+def compiled(folder: Path) -> Path:
+    """The program of the script in a folder."""
     built(folder, folder / "main.yml", "main=true")
     flags = ["-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
-    program = folder / "wait"
+    program = folder / "program"
     ran("g++", *flags, "-pthread", f"-I{folder}", folder / "main.cpp", "-o", program)
     return program
 
 
 @pytest.mark.slow
-def test_ctrl_c_asks_the_machine_to_stop(waiting: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_stop_signal_preempts_the_machine(waiting: Path, tmp_path: Path, number: int) -> None:
     trace = tmp_path / "trace.jsonl"
     started = subprocess.Popen(
         [waiting, "--trace", trace], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     until_entered(trace, started)
-    started.send_signal(signal.SIGINT)
+    started.send_signal(number)
     out, err = started.communicate(timeout=60)
-    assert (started.returncode, out, err) == (0, "outcome: stopped\n", "")
+    assert (started.returncode, out, err) == (128 + number, "outcome: stopped\n", "")
     assert '"event": "preempt"' in trace.read_text()
+    assert trace.read_text().splitlines()[-1].startswith('{"seq": ')
 
 
-def until_entered(trace: Path, started: subprocess.Popen[str]) -> None:
-    """Wait until a state runs: the trace tells of it at once."""
-    while not (trace.exists() and '"enter"' in trace.read_text()):
+@pytest.mark.slow
+@pytest.mark.parametrize(("first", "second"), [*zip(SIGNALS, SIGNALS[::-1], strict=True)])
+def test_the_second_signal_ends_a_program_at_once(
+    deaf: Path, tmp_path: Path, first: int, second: int
+) -> None:
+    trace = tmp_path / "trace.jsonl"
+    started = subprocess.Popen(
+        [deaf, "--trace", trace], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    until_entered(trace, started)
+    started.send_signal(first)
+    until_entered(trace, started, '"preempt"')
+    started.send_signal(second)
+    assert started.wait(60) == 128 + second
+    assert started.communicate()[0] == ""
+
+
+@pytest.mark.slow
+def test_a_state_that_does_not_answer_ends_as_it_does(deaf: Path, tmp_path: Path) -> None:
+    trace = tmp_path / "trace.jsonl"
+    started = subprocess.Popen(
+        [deaf, "--trace", trace], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    until_entered(trace, started)
+    started.send_signal(signal.SIGHUP)
+    until_entered(trace, started, '"preempt"')
+    assert started.communicate("go on\n")[0] == "outcome: done\n"
+    assert started.returncode == 129
+    assert '"finish"' in trace.read_text()
+
+
+@pytest.mark.slow
+def test_sighup_that_nohup_ignores_stays_ignored(waiting: Path, tmp_path: Path) -> None:
+    trace = tmp_path / "trace.jsonl"
+    started = subprocess.Popen(
+        ["sh", "-c", f"trap '' HUP; exec {waiting} --trace {trace}"],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    until_entered(trace, started)
+    started.send_signal(signal.SIGHUP)
+    started.send_signal(signal.SIGTERM)
+    assert (started.communicate()[0], started.returncode) == ("outcome: stopped\n", 143)
+
+
+def until_entered(trace: Path, started: subprocess.Popen[str], event: str = '"enter"') -> None:
+    """Wait until a state runs, or until another event: it is in the trace at once."""
+    while not (trace.exists() and event in trace.read_text()):
         assert started.poll() is None
 
 
