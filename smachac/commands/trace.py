@@ -206,6 +206,7 @@ def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTra
     """The runs in a bag, one trace for each node that reports on the machine. Raises
     UnreadableTraceError."""
     from smachac.commands.bag import BagError, read_statuses
+    from smachac.diagnostics.wording import listed
     from smachac.verify.status_conformance import judge_statuses
 
     if not path.exists():
@@ -217,7 +218,7 @@ def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTra
     roots = {topic: {each.path.partition("/")[0] for each in found[topic]} for topic in found}
     own = [topic for topic in found if not roots[topic] or machine.root.name in roots[topic]]
     if not own:
-        names = ", ".join(f"`/{root}`" for root in sorted(set().union(*roots.values())))
+        names = listed(f"/{root}" for root in set().union(*roots.values()))
         raise UnreadableTraceError(path, f"it reports on {names}, not on `/{machine.root.name}`")
     names_of = {topic: str(path) if len(own) == 1 else f"{path} ({topic})" for topic in own}
     return [judge_statuses(machine, names_of[topic], found[topic], taken) for topic in own]

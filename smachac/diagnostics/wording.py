@@ -23,7 +23,7 @@ def quote(text: str) -> str:
 def listed(names: Iterable[str]) -> str:
     """Names in backticks, sorted, at most MOST_LISTED of them."""
     every = sorted(set(names))
-    text = ", ".join(f"`{name}`" for name in every[:MOST_LISTED])
+    text = ", ".join(map(quote, every[:MOST_LISTED]))
     more = len(every) - MOST_LISTED
     return f"{text} and {more} more" if more > 0 else text
 
