@@ -145,7 +145,7 @@ def test_a_viewer_sees_the_active_states(graph2: Graph, tmp_path: Path) -> None:
     viewer.expect("nodes ['patrol', 'patrol_introspection']")
     viewer.expect(str(STRUCTURE))
     program.send(signal.SIGINT)
-    assert program.end() == 1, program.output
+    assert program.end() == 130, program.output
     assert "publisher already registered" not in program.output
 
 
@@ -180,7 +180,7 @@ def test_ctrl_c_cancels_the_goal(graph2: Graph) -> None:
     program = patrol(graph2)
     robot.expect("drive to")
     program.send(signal.SIGINT)
-    assert program.end() == 1, program.output
+    assert program.end() == 130, program.output
     assert program.output.endswith("outcome: preempted\n")
     robot.expect("cancelled")
 
@@ -291,7 +291,7 @@ def test_a_machine_is_offered_as_an_action(graph2: Graph, tmp_path: Path) -> Non
     caller.say("2")
     caller.expect("ended succeeded [0, 1]")
     program.send(signal.SIGINT)
-    assert program.end() == 0, program.output
+    assert program.end() == 130, program.output
 
 
 DRIVING = """
@@ -367,7 +367,7 @@ def test_the_feedback_of_the_action_is_the_path_of_the_active_state(
     caller.expect("paths ['/NAVIGATE', '/NAVIGATE/GO', '/DOCK']")
     caller.expect("result docked")
     program.send(signal.SIGINT)
-    assert program.end() == 0, program.output
+    assert program.end() == 130, program.output
 
 
 def test_a_managed_node(graph2: Graph, tmp_path: Path) -> None:
@@ -407,4 +407,4 @@ def test_a_managed_node_with_a_wrong_parameter_is_not_configured(
     manager.say("unconfigured")
     manager.expect("is unconfigured")
     program.send(signal.SIGINT)
-    assert program.end() == 1, program.output
+    assert program.end() == 130, program.output
