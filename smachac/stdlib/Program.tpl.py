@@ -15,11 +15,6 @@ try:
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 {%- endblock %}
-{%- block stop_signals %}
-
-
-{% include "StopSignals.tpl.py" %}
-{%- endblock %}
 {%- for part in definitions %}
 
 
@@ -39,6 +34,11 @@ def build({{ build_parameters }}):
 
 {{ functions }}
 {%- endif %}
+{%- block stop_signals %}
+
+
+{% include "StopSignals.tpl.py" %}
+{%- endblock %}
 
 
 def {{ function_name | default("main") }}({{ main_parameters }}):

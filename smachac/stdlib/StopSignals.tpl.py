@@ -11,7 +11,7 @@ def stop_at_signals(stop):
     write.setblocking(False)
     signal.set_wakeup_fd(write.detach())
     known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [each for each in known if signal.getsignal(each) != signal.SIG_IGN]
+    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
     for number in handled:
         signal.signal(number, lambda number, frame: stop_signals.append(number))
 

@@ -94,7 +94,9 @@ def test_a_state_that_checks_nothing_is_given_five_seconds(graph2: Graph) -> Non
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_the_second_signal_ends_a_state_that_checks_nothing(graph2: Graph, number: int) -> None:
+def test_the_second_signal_ends_a_state_that_checks_nothing(
+    graph2: Graph, number: signal.Signals
+) -> None:
     program = graph2.start(START + RUN.format(name="deaf"))
     program.expect("state: deaf")
     program.send(signal.SIGTERM)

@@ -118,11 +118,10 @@ def folder_of(folder: Path, script: str = "", *, base: str = "Base", last: str =
     return folder
 
 
-def built(folder: Path, *options: str) -> Path:
-    """The Python program of the script in a folder."""
+def built(folder: Path) -> None:
+    """Build the Python program of the script in a folder."""
     script = folder / "main.yml"
-    assert main(["build", str(script), "-t", "python", "-o", str(folder), *options]) == 0
-    return folder / "sm.py"
+    assert main(["build", str(script), "-t", "python", "-o", str(folder)]) == 0
 
 
 class Running:

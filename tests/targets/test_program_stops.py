@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.examples import examples
-from tests.support.stops import BRANCHES, SIGNALS, Running, built, folder_of
+from tests.support.stops import BRANCHES, SCRIPT, SIGNALS, Running, built, folder_of
 
 FOOTER = """\
 {{% extends "{0}" %}}
@@ -130,7 +130,8 @@ def test_bases_of_the_user_stop_too(tmp_path: Path, base: str) -> None:
     own = tmp_path / "templates" / "Own.yml"
     own.write_text("name: Own\nkind: base\ncode: {python: Own.tpl.py}\n")
     (tmp_path / "templates" / "Own.tpl.py").write_text(FOOTER.format(base))
-    program = Running(tmp_path, built(tmp_path))
+    built(tmp_path)
+    program = Running(tmp_path, "sm.py")
     program.until("working")
     program.send(signal.SIGTERM)
     code, _ = program.end()
@@ -138,10 +139,12 @@ def test_bases_of_the_user_stop_too(tmp_path: Path, base: str) -> None:
     assert ("footer" in program.lines) is (base == "Base.tpl.py")
 
 
-def test_a_program_in_the_simulation_stops_too(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["sm", "signals", "world"])
+def test_a_program_in_the_simulation_stops_too(tmp_path: Path, name: str) -> None:
     pytest.importorskip("pybullet")
-    built(folder_of(tmp_path, base="PyBulletBase"))
-    program = Running(tmp_path, "sm.py")
+    folder_of(tmp_path, SCRIPT.format(base="PyBulletBase", last="Work").replace("sm", name, 1))
+    built(tmp_path)
+    program = Running(tmp_path, f"{name}.py")
     program.until("working")
     program.send(signal.SIGHUP)
     code, err = program.end()

@@ -12,36 +12,6 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
 
 
-stop_signals = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [each for each in known if signal.getsignal(each) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                threading.Thread(target=stop).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
 class ScriptedState(smach.State):
     """Ends with scripted outcomes: visit n performs step n; the last step repeats.
 
@@ -88,6 +58,36 @@ def build():
             remapping={"p": "p", "t": "s"},
         )
     return sm
+
+
+stop_signals = []
+
+
+def stop_at_signals(stop):
+    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
+
+    A thread reads the signals from a socket: Python runs no signal handler while the main
+    thread is blocked.
+    """
+    read, write = socket.socketpair()
+    write.setblocking(False)
+    signal.set_wakeup_fd(write.detach())
+    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
+    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
+    for number in handled:
+        signal.signal(number, lambda number, frame: stop_signals.append(number))
+
+    def wait():
+        is_stopping = False
+        while True:
+            number = read.recv(1)[0]
+            if number in handled and is_stopping:
+                os._exit(128 + number)
+            if number in handled:
+                is_stopping = True
+                threading.Thread(target=stop).start()
+
+    threading.Thread(target=wait, daemon=True).start()
 
 
 def main():

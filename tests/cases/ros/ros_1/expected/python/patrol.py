@@ -39,59 +39,6 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach_ros
 
 
-stop_signals = []
-
-
-def stop_at_signals(stop):
-    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
-
-    A thread reads the signals from a socket: Python runs no signal handler while the main
-    thread is blocked.
-    """
-    read, write = socket.socketpair()
-    write.setblocking(False)
-    signal.set_wakeup_fd(write.detach())
-    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
-    handled = [each for each in known if signal.getsignal(each) != signal.SIG_IGN]
-    for number in handled:
-        signal.signal(number, lambda number, frame: stop_signals.append(number))
-
-    def wait():
-        is_stopping = False
-        while True:
-            number = read.recv(1)[0]
-            if number in handled and is_stopping:
-                os._exit(128 + number)
-            if number in handled:
-                is_stopping = True
-                threading.Thread(target=stop).start()
-
-    threading.Thread(target=wait, daemon=True).start()
-
-
-def start_node(name):
-    """Start a ROS node, which the first signal shuts down."""
-    rospy.init_node(name, disable_signals=True)
-    stop_at_signals(lambda: rospy.signal_shutdown("signal"))
-
-
-def preempt_at_shutdown(machine):
-    """Preempt a state machine before the node shuts down and wait up to 5 s."""
-
-    def preempt():
-        end = time.monotonic() + 5.0
-        machine.request_preempt()
-        while machine.is_running():
-            if time.monotonic() > end:
-                smach.logwarn(
-                    "the state machine did not end within 5 s: the node shuts down"
-                )
-                break
-            time.sleep(0.02)
-
-    rospy.on_shutdown(preempt)
-
-
 def optional(userdata, key, default=None):
     """The value of a userdata key, or the default if the key is absent."""
     return userdata[key] if key in userdata else default
@@ -948,6 +895,59 @@ def build():
             transitions={"succeeded": "succeeded", "aborted": "aborted"},
         )
     return patrol
+
+
+stop_signals = []
+
+
+def stop_at_signals(stop):
+    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
+
+    A thread reads the signals from a socket: Python runs no signal handler while the main
+    thread is blocked.
+    """
+    read, write = socket.socketpair()
+    write.setblocking(False)
+    signal.set_wakeup_fd(write.detach())
+    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
+    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
+    for number in handled:
+        signal.signal(number, lambda number, frame: stop_signals.append(number))
+
+    def wait():
+        is_stopping = False
+        while True:
+            number = read.recv(1)[0]
+            if number in handled and is_stopping:
+                os._exit(128 + number)
+            if number in handled:
+                is_stopping = True
+                threading.Thread(target=stop).start()
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def start_node(name):
+    """Start a ROS node, which the first signal shuts down."""
+    rospy.init_node(name, disable_signals=True)
+    stop_at_signals(lambda: rospy.signal_shutdown("signal"))
+
+
+def preempt_at_shutdown(machine):
+    """Preempt a state machine before the node shuts down and wait up to 5 s."""
+
+    def preempt():
+        end = time.monotonic() + 5.0
+        machine.request_preempt()
+        while machine.is_running():
+            if time.monotonic() > end:
+                smach.logwarn(
+                    "the state machine did not end within 5 s: the node shuts down"
+                )
+                break
+            time.sleep(0.02)
+
+    rospy.on_shutdown(preempt)
 
 
 def main():
