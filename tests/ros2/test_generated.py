@@ -194,6 +194,46 @@ def test_run_shows_progress(graph2: Graph) -> None:
     assert program.output.endswith("outcome: docked\n")
 
 
+WAITING = """
+name: machine
+template: {base}
+outcomes: [succeeded]
+states:
+  - WAIT: {{template: SleepState, time: 1000, transitions: {{preempted: succeeded}}}}
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("way", ["run", "program", "own base"])
+def test_a_stop_signal_gives_the_exit_code(
+    graph2: Graph, tmp_path: Path, way: str, number: signal.Signals
+) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(WAITING.format(base="Own" if way == "own base" else "ROSBase"))
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates/Own.tpl.py").write_text('{% extends "ROSBase.tpl.py" %}\n')
+    (tmp_path / "templates/Own.yml").write_text(
+        "{name: Own, kind: base, code: {python: Own.tpl.py}}"
+    )
+    if way == "run":
+        trace = tmp_path / "trace"
+        os.mkfifo(trace)
+        words = ["run", str(path), "--trace", str(trace), "--ros"]
+        program = graph2._launch([PYTHON, "-m", "smachac", *words])
+        with trace.open() as events:
+            while "WAIT" not in events.readline():
+                pass
+            program.send(number)
+            assert '"finish"' in events.read()
+    else:
+        (text,) = smachac.compile(path, "python").values()
+        program = graph2.start(text)
+        program.expect("starting in 'WAIT'")
+        program.send(number)
+    assert program.end() == 128 + number
+    assert program.output.endswith("outcome: succeeded\n")
+
+
 def test_the_commands_of_the_docs(graph2: Graph, tmp_path: Path) -> None:
     text = (ROOT / "docs/ros.md").read_text("utf-8")
     lines = text.split("## ROS 2\n")[1].split("```\n")[1].splitlines()

@@ -123,3 +123,9 @@ def exit_code(outcome: str | None, failures: Collection[str] = ("aborted", "pree
     """The exit code of a program: after a stop signal 128 + its number, else that of an outcome: 1
     for none and for one of `failures`."""
     return signals.exit_code(1 if outcome is None or outcome in failures else 0)
+
+
+def stop_code() -> int:
+    """The exit code of a program without an outcome: after a stop signal 128 + its number, else
+    0."""
+    return signals.exit_code()

@@ -27,5 +27,5 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
 {{ defs }}
 {% endblock defs %}
 {% block exit_code %}
-    raise SystemExit(signals.exit_code())
+    raise SystemExit(program.stop_code())
 {% endblock exit_code %}

@@ -74,7 +74,7 @@ def run_node():
     {{ result }}{{ function_name | default("main") }}()
 {%- endif %}
 {%- if ros_action %}
-    return signals.exit_code()
+    return program.stop_code()
 {%- else %}
     print(f"outcome: {outcome}")
     return program.exit_code(outcome, failures={{ ros_failures }})

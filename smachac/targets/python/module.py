@@ -247,8 +247,6 @@ def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -
     if module.action is not None:
         more.append(f"from {module.action.package}.action import {module.action.name}")
         more.append("from smachac.runtime.smach_ros2 import serving")
-    if module.ros == 2 and (module.action is not None or template == "ROSBase.tpl.py"):
-        more.append("from smachac.runtime import signals")
     return [*NODE_IMPORTS[module.ros], *more]
 
 
