@@ -52,6 +52,7 @@ class StopSignals:
         self._write.setblocking(False)
         self._pipe_before = signal.set_wakeup_fd(self._write.fileno(), warn_on_full_buffer=False)
         self._before = {number: signal.signal(number, self) for number in handled()}
+        self._terminals = [stream for stream in range(3) if os.isatty(stream)]
         self._reading = threading.Thread(target=self._wait, name="signals", daemon=True)
         self._reading.start()
 
@@ -92,6 +93,9 @@ class StopSignals:
                 self._end(number)
                 continue
             self(number, None)
+            for stream in self._terminals:
+                if not os.isatty(stream):  # it was closed: output to it is an error
+                    os.dup2(os.open(os.devnull, os.O_RDWR), stream)
             self._stopping.start()
 
 

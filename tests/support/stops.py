@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -163,3 +164,25 @@ class Running:
 def is_own(line: str) -> bool:
     """Whether a line is of the program, not of SMACH's log."""
     return not line.startswith("[")
+
+
+class OnTerminal:
+    """A program on a terminal of its own, which can be closed."""
+
+    def __init__(self, folder: Path, *words: object) -> None:
+        self.child, self._terminal = pty.fork()
+        if self.child == 0:
+            os.chdir(folder)
+            os.environ["PYTHONPATH"] = str(ROOT)
+            os.execv(sys.executable, [sys.executable, *map(str, words)])
+        self._shown = b""
+
+    def until(self, text: bytes) -> None:
+        """Read until a text was printed."""
+        while text not in self._shown:
+            self._shown += os.read(self._terminal, 1000)
+
+    def close(self) -> int:
+        """Close the terminal; the exit code of the program."""
+        os.close(self._terminal)
+        return os.waitstatus_to_exitcode(os.waitpid(self.child, 0)[1])

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.examples import examples
-from tests.support.stops import BRANCHES, SCRIPT, SIGNALS, Running, built, folder_of
+from tests.support.stops import BRANCHES, SCRIPT, SIGNALS, OnTerminal, Running, built, folder_of
 
 FOOTER = """\
 {{% extends "{0}" %}}
@@ -161,3 +161,22 @@ def test_main_of_an_imported_program_leaves_the_signals_alone(folder: Path) -> N
     program.send(signal.SIGTERM)
     assert program.end()[0] == -signal.SIGTERM
     assert "True" in program.lines
+
+
+@pytest.mark.parametrize("words", [["sm.py"], ["-m", "smachac", "run", "main.yml"]])
+@pytest.mark.parametrize("base", ["Base", "PyBulletBase"])
+def test_a_closed_terminal_stops_the_machine_as_ctrl_c_does(
+    tmp_path: Path, base: str, words: list[str]
+) -> None:
+    if base == "PyBulletBase":
+        pytest.importorskip("pybullet")
+    folder_of(tmp_path, base=base)
+    steps = tmp_path / "steps.py"
+    said = '        print("tidied", flush=True)\n'
+    note = '        open("tidied", "w").close()\n'
+    steps.write_text(steps.read_text().replace(said, said + note))
+    built(tmp_path)
+    program = OnTerminal(tmp_path, *words)
+    program.until(b"working")
+    assert program.close() == 129
+    assert (tmp_path / "tidied").exists()

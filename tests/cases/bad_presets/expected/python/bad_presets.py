@@ -73,6 +73,8 @@ def stop_at_signals(stop):
     for number in handled:
         signal.signal(number, lambda number, frame: stop_signals.append(number))
 
+    terminals = [stream for stream in range(3) if os.isatty(stream)]
+
     def wait():
         is_stopping = False
         while True:
@@ -81,6 +83,9 @@ def stop_at_signals(stop):
                 os._exit(128 + number)
             if number in handled:
                 is_stopping = True
+                for stream in terminals:
+                    if not os.isatty(stream):  # it was closed: output to it is an error
+                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
                 threading.Thread(target=stop).start()
 
     threading.Thread(target=wait, daemon=True).start()
