@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from smachac.runtime.tracing.writer import LONGEST_LINE
 from smachac.verify.status_conformance import Status, in_order, status_of
 
 TOPIC, JSON_TOPIC = "/smach/container_status", "/smach/container_status_json"
@@ -63,6 +64,8 @@ def read_statuses(path: Path) -> tuple[dict[str, list[Status]], list[str]]:
             if messages:
                 statuses = [_status(types.deserialize_cdr(data, kind)) for kind, data in messages]
                 found[topic] = in_order([status for status in statuses if status])
+    except BagError:
+        raise
     except Exception as error:  # of rosbags, and of the texts
         raise BagError(f"it is broken: {_reason(error)}") from None
     if not found:
@@ -163,7 +166,10 @@ def _reason(error: Exception) -> str:
 
 
 def _status(message: Any) -> Status | None:
-    """The status in a message; None if no change has caused it."""
+    """The status in a message; None if no change has caused it. Raises BagError."""
+    text = message.data if hasattr(message, "data") else message.info
+    if len(text) > LONGEST_LINE:
+        raise BagError(f"a status in it has more than {LONGEST_LINE:,} characters")
     if hasattr(message, "data"):
         fields = json.loads(message.data)
         return status_of(fields, float(fields["stamp"]))

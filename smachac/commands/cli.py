@@ -77,8 +77,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return _whole_program() if arguments is None else _guarded(arguments)
     except KeyboardInterrupt:
+        from smachac.runtime.signals import exit_code
+
         print("interrupted", file=sys.stderr, flush=True)
-        return INTERRUPTED
+        return exit_code(INTERRUPTED)
     finally:
         if collecting and arguments is not None:  # the process of the caller goes on
             gc.enable()

@@ -288,7 +288,7 @@ def test_ctrl_c_preempts_the_machine(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         rest = events.read()
     shown, told = process.communicate(timeout=60)
-    assert process.returncode == 0
+    assert process.returncode == 130
     assert "TIDY_UP" in rest
     assert shown.rstrip().endswith("outcome: preempted")
     assert "preemption requested" in told

@@ -292,3 +292,26 @@ def test_no_statistics_of_a_bag(
     write_bag(folder / "bag", "mcap", {(TOPIC, TEXT_TYPE): texts()})
     line = refused([*words, "main.yml", "bag"], capsys)
     assert line.endswith("a bag has no outcomes of states to count")
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"userdata": {"k": "x" * 5_000_000}}, "a status in it has more than 4,000,000 characters"),
+        ({"info": "(['A'], " + "[]," * 2_000_000 + ")"}, "has more than 4,000,000 characters"),
+        ({"path": "/sm/" + "a" * 100_000}, "(100003 characters)"),
+        ({"active_states": ["a" * 100_000], "info": "(['A'],)"}, "(100003 characters)"),
+        ({"path": "/" + "a" * 100_000}, "(100001 characters)"),
+    ],
+    ids=["value", "info", "path", "state", "root"],
+)
+def test_a_long_status_is_refused_in_a_few_words(
+    folder: Path, capsys: pytest.CaptureFixture[str], fields: dict[str, object], message: str
+) -> None:
+    status = {"stamp": 1.0, "path": "/sm", "active_states": ["A"], "info": "(['A'],)", **fields}
+    found = {(TOPIC, TEXT_TYPE): [text_message(json.dumps(status))]}
+    write_bag(folder / "bag", "mcap", found)
+    assert main(["trace", "check", "main.yml", "bag"]) in (1, 2)
+    shown = "".join(capsys.readouterr())
+    assert message in shown
+    assert len(shown) < 1000

@@ -137,6 +137,6 @@ def start_node(
 
 
 def run(node: LifecycleMachineNode) -> str | None:
-    """Wait until the node is shut down by a transition, or by Ctrl-C or SIGTERM, which preempt its
+    """Wait until the node is shut down by a transition, or by a stop signal, which preempts its
     machine; the outcome of the last run."""
     return program.run(node, node)

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
+from smachac.runtime import signals
 from smachac.runtime.smach_ros2 import delivery, ros
 from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
@@ -20,9 +21,9 @@ def start_node(
 ) -> Any:
     """Initialize rclpy and start a node that a thread spins.
 
-    From now on SIGINT and SIGTERM preempt the machine of `run`; rclpy gets no signal handlers,
-    because they end the node before goals can be cancelled. `args` are the arguments of the program
-    (default: sys.argv); other arguments are those of `node_class`.
+    From now on SIGINT, SIGTERM and SIGHUP preempt the machine of `run`; rclpy gets no signal
+    handlers, because they end the node before goals can be cancelled. `args` are the arguments of
+    the program (default: sys.argv); other arguments are those of `node_class`.
 
     If ROS refuses to start, as with arguments that are not valid, this ends the program as argparse
     does: one line with the reason, SystemExit with exit code 2.
@@ -102,8 +103,8 @@ def _silent_rcl() -> Iterator[None]:
 def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
     """Execute a machine in this thread and return its outcome; the node is one of `start_node`.
 
-    The first Ctrl-C or SIGTERM preempts it; after `grace` seconds the node shuts down, and states
-    that wait for ROS end. The second one ends the program.
+    The first stop signal preempts it; after `grace` seconds the node shuts down, and states that
+    wait for ROS end. The second one ends the program at once.
     """
     handler: PreemptHandler | None = node.signal_handler
     outcome: str | None
@@ -140,5 +141,12 @@ def stop_node(node: Any) -> None:
 
 
 def exit_code(outcome: str | None, failures: Collection[str] = ("aborted", "preempted")) -> int:
-    """The exit code of a program for an outcome: 1 for none and for one of `failures`."""
-    return 1 if outcome is None or outcome in failures else 0
+    """The exit code of a program: after a stop signal 128 + its number, else that of an outcome: 1
+    for none and for one of `failures`."""
+    return signals.exit_code(1 if outcome is None or outcome in failures else 0)
+
+
+def stop_code() -> int:
+    """The exit code of a program without an outcome: after a stop signal 128 + its number, else
+    0."""
+    return signals.exit_code()

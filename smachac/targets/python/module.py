@@ -61,8 +61,11 @@ MOST_BRACKETS = 80
 """The most brackets of code that is never nested too deeply for Python, which allows 200 levels: a
 value of the script that contains the code has up to 100."""
 
+STOP_IMPORTS = [f"import {name}" for name in ("os", "signal", "socket", "threading")]
+"""The imports of a program that handles signals by itself (StopSignals.tpl.py)."""
+
 NODE_IMPORTS: Mapping[Ros, list[str]] = {
-    1: [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")],
+    1: [*STOP_IMPORTS, "import rospy", "import time"],
     2: ["from smachac.runtime.smach_ros2 import program"],
 }
 """The imports of a program that is a node, by version of ROS."""
@@ -233,7 +236,9 @@ def _node_variables(
 
 
 def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -> list[str]:
-    """The imports of the code that starts the node."""
+    """The imports of the code that starts the node, and of that for signals."""
+    if template in ("Program.tpl.py", "Base.tpl.py"):
+        return STOP_IMPORTS
     if template not in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         return []
     more = ["from smachac.runtime.smach_ros2 import parameters"] if settable.declared else []

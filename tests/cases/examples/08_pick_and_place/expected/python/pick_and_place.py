@@ -7,6 +7,7 @@ try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
+from smachac.runtime import signals
 
 
 def outcome_of(state, result):
@@ -469,6 +470,8 @@ def main():
     with sim.World(robot="panda") as world:
         pick_and_place = build()
         world.attach(pick_and_place, "pick_and_place")
+        if __name__ == "__main__":
+            signals.stop_at_signals(pick_and_place)
         outcome = pick_and_place.execute()
         print(f"simulated time: {world.time:.2f} s")
         for name in world.bodies:
@@ -481,4 +484,4 @@ def main():
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

@@ -7,6 +7,7 @@ try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
+from smachac.runtime import signals
 
 
 def outcome_of(state, result):
@@ -554,6 +555,8 @@ def main():
     with sim.World(robot="panda") as world:
         stacking = build()
         world.attach(stacking, "stacking")
+        if __name__ == "__main__":
+            signals.stop_at_signals(stacking)
         outcome = stacking.execute()
         print(f"simulated time: {world.time:.2f} s")
         for name in world.bodies:
@@ -566,4 +569,4 @@ def main():
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

@@ -7,6 +7,7 @@ try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
+from smachac.runtime import signals
 
 
 def outcome_of(state, result):
@@ -619,6 +620,8 @@ def main():
     with sim.World(robot="baxter", scene="table.yml") as world:
         dual_arm_stacking = build()
         world.attach(dual_arm_stacking, "dual_arm_stacking")
+        if __name__ == "__main__":
+            signals.stop_at_signals(dual_arm_stacking)
         outcome = dual_arm_stacking.execute()
         print(f"simulated time: {world.time:.2f} s")
         for name in world.bodies:
@@ -631,4 +634,4 @@ def main():
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))
