@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.spelling import guesser_of
 from smachac.ir.code_places import python_tree
+from smachac.ir.python_code import parse_code
 
 
 class Slip(NamedTuple):
@@ -235,12 +236,10 @@ def _begins(token: _Token) -> bool:
 def _reason(text: str) -> str:
     """The reason of Python."""
     try:
-        ast.parse(text, mode="eval")
+        parse_code(text)
     except SyntaxError as error:
-        return (error.msg or "invalid syntax").lower()
-    except (ValueError, RecursionError, MemoryError):
-        pass
-    return "it is nested too deeply, or contains a character that is not allowed"
+        return (error.msg or "").lower() or "invalid syntax"
+    return "invalid syntax"
 
 
 def texts_of(node: ast.expr) -> tuple[str, ...]:
