@@ -32,6 +32,10 @@ _TOKEN = re.compile(
 _PART = re.compile(r"\w+|[^\w\s]")
 
 
+class TooDeepError(SyntaxError):
+    """Code is nested deeper than its limit; the message has the limit."""
+
+
 def parse_module(text: str) -> ast.Module:
     """The syntax tree of a module. Raises SyntaxError, also for code that is nested deeper than
     DEEPEST_MODULE levels or has characters that Python does not read."""
@@ -49,9 +53,9 @@ def parse_code(text: str) -> ast.expr:
 
 
 def _parsed(text: str, mode: str, deepest: int) -> ast.AST:
-    too_deep = SyntaxError(f"it is nested deeper than {deepest} levels")
+    too_deep = TooDeepError(f"it is nested deeper than {deepest} levels")
     is_long = len(text) > deepest  # each level takes a character or more
-    if is_long and _operations(text) > MOST_OPERATIONS:
+    if is_long and _has_too_many_operations(text):
         raise too_deep
     try:
         with warnings.catch_warnings():
@@ -66,18 +70,17 @@ def _parsed(text: str, mode: str, deepest: int) -> ast.AST:
     return tree
 
 
-def _operations(text: str) -> int:
-    """The most operators, calls and names that can be in one another in a text of Python: those
+def _has_too_many_operations(text: str) -> bool:
+    """Whether more than MOST_OPERATIONS operators, calls and names can be in one another: those
     since the last comma, of a bracket and of all brackets around it."""
     around: list[int] = []
-    here = inside = most = 0
+    here = inside = 0
     for found in _TOKEN.finditer(text):
         match found.lastgroup:
             case "part":
                 here += 1
-                most = max(most, inside + here)
             case "format":  # code can be inside
-                most = max(most, inside + here + len(_PART.findall(found[0])))
+                here += len(_PART.findall(found[0]))
             case "open":
                 around.append(here)
                 inside, here = inside + here, 0
@@ -86,7 +89,9 @@ def _operations(text: str) -> int:
                 inside, here = inside - here, here + 1
             case "end" if found[0] == "," or not around:
                 here = 0
-    return most
+        if inside + here > MOST_OPERATIONS:
+            return True
+    return False
 
 
 def _is_deeper(tree: ast.AST, deepest: int) -> bool:
