@@ -37,6 +37,7 @@ from smachac.frontend.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.targets import BuildContext, Files, Target, errors, load_target
+from smachac.targets.hiding_files import hiding_files
 from smachac.targets.interface_check import code_faults, missing_templates, target_faults
 from smachac.targets.runtime_files import runtime_files
 from smachac.targets.template_imports import template_imports
@@ -307,6 +308,7 @@ def build(
         with deep_recursion():
             found = [*target_faults(machine, library, target)]
             files = target.emit(machine, context, found)
+            found += hiding_files(files, machine)
     except MemoryError:
         found = [_out_of_memory(machine.root.span.source)]
     report.extend(in_order(found))
