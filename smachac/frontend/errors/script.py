@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
     LONGEST_WORD,
-    Edit,
     Finding,
     Problem,
     Related,
@@ -21,6 +20,7 @@ from smachac.diagnostics.diagnostic import (
     problem,
 )
 from smachac.diagnostics.meanings import by_words
+from smachac.diagnostics.repair import Edit, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.diagnostics.wording import listed, possible
@@ -50,6 +50,7 @@ def yaml_syntax(
     arguments: tuple[str, ...] = (),
     related: tuple[Related, ...] = (),
     effect: str | None = None,
+    repairs: tuple[Repair, ...] = (),
 ) -> Finding:
     """The text is not YAML.
 
@@ -77,6 +78,7 @@ def yaml_syntax(
         help=help or "check the brackets, quotes and indentation before this place",
         related=related,
         effect=effect,
+        repairs=repairs,
     )
 
 
