@@ -23,6 +23,11 @@ _COMMON = {
 """The modules of SMACH and ROS that programs import, or modules that they import."""
 
 
+_APART = {"chunk", "pipes", "turtle", "wave"}
+"""Words for tasks, and modules of the standard library for sound and drawing: no program imports
+them without naming them."""
+
+
 def hiding_files(files: Mapping[str, str], machine: Machine) -> Iterator[Diagnostic]:
     """The files that hide a module of Python, each with another name."""
     for file, text in files.items():
@@ -33,9 +38,9 @@ def hiding_files(files: Mapping[str, str], machine: Machine) -> Iterator[Diagnos
 
 
 def _hidden_module(path: PurePosixPath, text: str, files: Mapping[str, str]) -> str:
-    """The module that a file hides; empty if it hides none. A file of a package is
-    imported by the name of the package, and its program may import the package."""
-    known = [*sys.stdlib_module_names, *_COMMON]
+    """The module that a file hides; empty if it hides none. A file of a package is imported by the
+    name of the package, and its program may import the package."""
+    known = [*(sys.stdlib_module_names - _APART), *_COMMON]
     if str(path.parent / "__init__.py") in files:
         if path.name != "__init__.py":
             return ""

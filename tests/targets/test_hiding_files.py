@@ -94,6 +94,15 @@ def test_a_package_named_like_a_module(
     assert build(tmp_path, "task", "python", "ros=2", "package=true") == 0
 
 
+def test_a_word_for_a_task_is_refused_if_the_program_imports_its_module(tmp_path: Path) -> None:
+    assert build(tmp_path, "wave", "python") == 0
+    callbacks = "CallbacksState, output_keys: [x], callbacks: {x: 'lambda ud: wave.Error'}"
+    script = tmp_path / "main.yml"
+    text = SCRIPT.replace("NAME", "wave").replace("TYPE", callbacks).replace("ok:", "succeeded:")
+    script.write_text(text)
+    assert main(["build", str(script), "-t", "python", "-o", str(tmp_path / "new")]) == 1
+
+
 def test_a_program_with_the_name_in_the_help_runs(tmp_path: Path) -> None:
     assert build(tmp_path, "threading_task", "python") == 0
     program = tmp_path / "out" / "threading_task.py"
