@@ -674,9 +674,10 @@ def hiding_file(span: Span, file: str, hidden: str, name: str) -> Finding:
     so does each other program in its folder.
 
     Exactly: the names of all modules of the standard library but `wave`, `turtle`, `pipes` and
-    `chunk`, of SMACH and ROS, and of the modules that the program imports, also of your classes. Upper and lower case do not differ: some
-    file systems treat them as equal. Files of other targets may have these names; in C++, SM601
-    reports a header of a class that has the name of the generated one.
+    `chunk`, of SMACH and ROS, and of the modules that the program imports, also of your classes.
+    Upper and lower case do not differ: some file systems treat them as equal. Files of other
+    targets may have these names; in C++, SM601 reports a header of a class that has the name of the
+    generated one.
 
     Wrong:
         name: threading
