@@ -289,6 +289,18 @@ def compile_script(
     return Compiled(files, merged(analysis.report, found))
 
 
+def compile_files(
+    analysis: Analysis,
+    target: Target,
+    options: Mapping[str, str] | None = None,
+    levels: int = 0,
+) -> Compiled:
+    """As `compile_script`, for files that are written: none of them hides a module (SM611)."""
+    files, report = compile_script(analysis, target, options, levels)
+    hiding = list(hiding_files(files, analysis.checked)) if analysis.checked is not None else []
+    return Compiled({} if hiding else files, merged(report, hiding))
+
+
 def build(
     machine: Checked,
     target: Target,
@@ -308,7 +320,6 @@ def build(
         with deep_recursion():
             found = [*target_faults(machine, library, target)]
             files = target.emit(machine, context, found)
-            found += hiding_files(files, machine)
     except MemoryError:
         found = [_out_of_memory(machine.root.span.source)]
     report.extend(in_order(found))
