@@ -589,7 +589,7 @@ def _place(problem: ScenarioProblem, tree: Tree) -> Span:
             continue
         if problem.step is None:
             return entry.key.span
-        if isinstance(entry.value, Seq):
-            return entry.value.items[problem.step - 1].span
-        return entry.value.span
+        items = entry.value.items if isinstance(entry.value, Seq) else ()
+        # Another key can have the same text: 1 and "1".
+        return items[problem.step - 1].span if problem.step <= len(items) else entry.value.span
     return tree.span

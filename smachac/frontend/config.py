@@ -239,15 +239,17 @@ def _severities(
         return {}
     found: dict[str, Severity | None] = {}
     for code, word in value.items():
-        if codes is not None and not any(known.startswith(code) for known in codes):
+        if not code or (codes and not any(known.startswith(code) for known in codes)):
             message = f"no code begins with `{code}`"
-            _wrong(source, code, message, _near(code, codes), report, ("code", code))
-        elif not isinstance(word, str) or word not in LEVELS:
+            _wrong(source, code, message, _near(code, codes or ()), report, ("code", code))
+        elif not isinstance(word, str):
+            message = f"a severity is a text, not {_kind(word)}"
+            help = f"write one of {listed(LEVELS)} in quotes"
+            _wrong(source, code, message, help, report, ("severity", code), at_value=True)
+        elif word not in LEVELS:
             message = f"`{word}` is not a severity"
-            arguments = ("severity", code, str(word))
-            help = _near(str(word), LEVELS)
-            if word in _WORDS_FOR_OFF:
-                help = "did you mean `off`?"
+            arguments = ("severity", code, word)
+            help = "did you mean `off`?" if word in _WORDS_FOR_OFF else _near(word, LEVELS)
             _wrong(source, code, message, help, report, arguments, at_value=True)
         elif codes and code in codes and codes[code].firm and word != "error":
             help = "remove the line: no program can be generated with this fault"
@@ -255,6 +257,12 @@ def _severities(
         else:
             found[code] = LEVELS[word]
     return found
+
+
+def _kind(value: object) -> str:
+    """The kind of a value of TOML."""
+    kinds = {bool: "a truth value", int: "a number", float: "a number", list: "a list"}
+    return "a table" if isinstance(value, dict) else kinds.get(type(value), "a time")
 
 
 def _near(word: str, known: Iterable[str]) -> str:
@@ -293,7 +301,7 @@ def folder_place(source: Source, setting: str, base: Path, folder: Path) -> Word
 
 def _key(source: Source, key: str) -> Span:
     """The place of a key, if a search finds it: TOML parsers give no positions."""
-    for start in source.line_starts if len(key) <= LONGEST_KEY else ():
+    for start in source.line_starts if 0 < len(key) <= LONGEST_KEY else ():
         line = source.text[start : start + 2 * LONGEST_KEY].split("\n", 1)[0]
         before, found, after = line.partition(key)
         lead = before.lstrip(" \t")

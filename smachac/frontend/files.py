@@ -117,10 +117,13 @@ def lies_inside(path: Path, folder: Path) -> bool:
         return False
 
 
-def leads_out(path: Path, folder: Path) -> Diagnostic:
-    """SM007: a link in a folder that is searched leads out of it."""
+def leads_out(path: Path, folder: Path, *, can_be_named: bool = True) -> Diagnostic:
+    """SM007: a link in a folder that is searched leads out of it. `can_be_named`: a link that is
+    named on the command line is followed."""
     message = f"this link leads out of the folder `{folder}`: it is not followed"
-    help = "copy the file into the folder, or name it or its folder on the command line"
+    help = "copy the file into the folder"
+    if can_be_named:
+        help = f"{help}, or name it or its folder on the command line"
     return unreadable_file(Span(Source(str(path), ""), 0, 0), message, help, arguments=("link",))
 
 

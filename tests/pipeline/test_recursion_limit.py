@@ -99,7 +99,7 @@ def test_deep_machines_are_interpreted() -> None:
 def test_too_deep_an_expression() -> None:
     """Found by fuzzing: the program that was printed could not be compiled."""
     state = '{T: CallbacksState, output_keys: [n], callbacks: {n: "lambda ud: CODE"}}'
-    for levels, found in ((490, set()), (600, {"SM016"}), (3000, {"SM016"})):
+    for levels, found in ((190, set()), (210, {"SM016"}), (3000, {"SM016"})):
         script = HEAD.replace("done", "succeeded") + state.replace("CODE", "-" * levels + "1")
         assert codes(script) == found
         analysis = analyse(Source("main.yml", script), library({}), [])

@@ -12,6 +12,7 @@ from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Machine
+from smachac.ir.python_code import parse_module
 from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
@@ -334,8 +335,8 @@ def _uses(text: str, names: re.Pattern[str]) -> bool:
     if names.search(text) is None:
         return False
     try:
-        tree = ast.parse(modern(text)[0])
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        tree = parse_module(modern(text)[0])
+    except SyntaxError:
         return True
     for node in ast.walk(tree):
         match node:
@@ -388,7 +389,7 @@ def _checked(
     text = with_fallback(text, tree)
     lines = _BLANKS.sub("\n\n\n", text).split("\n")
     tidy = "\n".join(line.rstrip(" \t") for line in lines)
-    if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(ast.parse(text)):
+    if tidy != text and ast.dump(parse_module(tidy)) == ast.dump(parse_module(text)):
         text = tidy
     mark = f"# {made_by(machine)}\n"
     if mark not in text:
