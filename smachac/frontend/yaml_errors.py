@@ -53,8 +53,7 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
         span = Span(source, *wide.span())
         return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
     stop = _stop(source.text, error)
-    readers = (_conflict, _space, _block_text, _open_or_stray, _colon, _indentation, _value)
-    faults = (reader(stop) for reader in readers)
+    faults = (reader(stop) for reader in (_READERS if _is_short(stop) else (_conflict,)))
     message = ", ".join(part for part in (stop.problem, stop.context) if part)
     unknown = _Fault(message or "this is not YAML", None, stop.at)
     fault = next((fault for fault in faults if fault is not None), unknown)
@@ -71,6 +70,18 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
         arguments=("syntax", here),
         related=related,
     )
+
+
+LONGEST_LINE = 2_000
+"""In characters. A syntax error in a longer line is reported in the words of the parser: some
+searches for a cause take quadratic time."""
+
+
+def _is_short(stop: _Stop) -> bool:
+    """Whether the lines of both places of a syntax error have at most LONGEST_LINE characters."""
+    places = [stop.at] if stop.first is None else [stop.at, stop.first]
+    starts = [stop.text.rfind("\n", 0, place) + 1 for place in places]
+    return all(_line_end(stop.text, start) - start <= LONGEST_LINE for start in starts)
 
 
 def stopped_at(text: str, error: Any) -> list[int]:
@@ -646,3 +657,7 @@ def _value(stop: _Stop) -> _Fault | None:
         message = "the text cannot begin in the line of its `|` or `>`"
         return _Fault(message, "begin the text in the next line, indented", stop.at)
     return None
+
+
+_READERS = (_conflict, _space, _block_text, _open_or_stray, _colon, _indentation, _value)
+"""The searches for the cause of a syntax error; the first one that finds it decides."""
