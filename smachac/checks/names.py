@@ -34,7 +34,7 @@ from smachac.checks.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import Guesser, guesser, respelt, words_of
+from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, respelt, words_of
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
@@ -421,7 +421,8 @@ def _unknown_steps(
 ) -> Iterator[Finding]:
     guess = guesser([*outcome_names(child), EXCEPTIONS])
     default = missing_default(child)
-    for step, known_meant in unknown:
+    for number, (step, known_meant) in enumerate(unknown):
+        is_searched = number < MOST_EXPLAINED
         meant = known_meant or guess.sure(step.outcome)
         retried = _retried(child, step.outcome)
         message = f"`{child.name}` has no outcome `{step.outcome}`"
@@ -436,9 +437,9 @@ def _unknown_steps(
             arguments=(own_name(child, step.span), step.outcome),
             help=(f"add `default_outcome: {step.outcome}` to `{child.name}`" if default else None)
             or retried
-            or _catch_all(child, step)
+            or (_catch_all(child, step) if is_searched else None)
             or did_you_mean(meant)
-            or other_outcome(child, step),
+            or (other_outcome(child, step) if is_searched else "remove this transition"),
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=()
@@ -529,10 +530,10 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
     """
     for path, container in context.containers:
         first: dict[str, Node] = {}
+        meant = copied_name(container)
         for child in container.children:
             known = first.setdefault(child.name, child)
             if known is not child:
-                meant = copied_name(container)
                 help = (
                     f"rename one of the two, for example to `{_new_name(child.name, first)}`,"
                     " also in the transitions that mean it"

@@ -14,7 +14,7 @@ from typing import Literal
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, has_errors
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.diagnostics.spelling import guesser_of
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser_of
 from smachac.frontend import schema
 from smachac.frontend.errors.references import (
     bad_sub_script,
@@ -192,6 +192,7 @@ class _Resolver:
         self.calls: dict[Span, KeptCall] = {}
         self.others: dict[str, StateType | None] = {}  # types that the script need not use
         self.unknown: set[str] = set()  # the templates that were not found
+        self.left_searches = MOST_EXPLAINED  # among all types, for what a state means
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
@@ -600,8 +601,9 @@ class _Resolver:
 
     def meant_type(self, entries: Entries, type_: StateType) -> StateType | None:
         """The built-in type that a state means, in place of that of its template (SM003)."""
-        if not has_unknown_variable(entries, type_):
+        if not has_unknown_variable(entries, type_) or self.left_searches <= 0:
             return None
+        self.left_searches -= 1
         _, names = self.known_templates()
         found = meant_type(entries, type_, names, self.other_type, self.report)
         return self.state_type(found.name) if found is not None else None
@@ -649,7 +651,8 @@ class _Resolver:
             known = [*names, *([] if role else schema.CONTAINERS)]
             other = self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
             near = guesser_of(tuple(known)).sure(word.text)
-            read = {} if role or word.text in self.unknown else entries
+            is_known = word.text in self.unknown or len(self.unknown) >= MOST_EXPLAINED
+            read = {} if role or is_known else entries
             self.unknown.add(word.text)
             called = [] if role else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
