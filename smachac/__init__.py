@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from os import PathLike
     from typing import Any
 
-    from smachac.diagnostics.diagnostic import Code, Diagnostic, Edit, Related, Severity
+    from smachac.diagnostics.diagnostic import Code, Diagnostic, Related, Severity
+    from smachac.diagnostics.repair import Edit
     from smachac.diagnostics.source import Source, Span
     from smachac.driver import Analysis
     from smachac.ir.nodes import (

@@ -41,7 +41,8 @@ from smachac.checks.number_help import number_meant
 from smachac.checks.outcome_results import wrong_outcomes
 from smachac.checks.rule import rule
 from smachac.checks.types import written
-from smachac.diagnostics.diagnostic import Edit, Finding, Severity
+from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser, in_quotes
 from smachac.diagnostics.wording import listed

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Literal
 
-from smachac.diagnostics.diagnostic import Edit
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import is_plain
 from smachac.diagnostics.wording import listed

@@ -24,8 +24,9 @@ from smachac.checks.rule import rule
 from smachac.checks.swapped_params import swapped_params_help
 from smachac.checks.types import written
 from smachac.checks.value_places import place_of_fault, place_of_part
-from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, in_quotes, respelt
 from smachac.diagnostics.wording import listed

@@ -43,7 +43,8 @@ from smachac.checks.remap_slips import lacking_finding, swapped_remap
 from smachac.checks.rule import rule
 from smachac.checks.unset_read_findings import Guesses, name_help, unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
-from smachac.diagnostics.diagnostic import Edit, Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
 from smachac.diagnostics.wording import either, listed

@@ -17,6 +17,7 @@ from pathlib import PurePath
 from typing import Generic, ParamSpec
 
 from smachac.diagnostics.negation import are_unlike
+from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
 
@@ -55,14 +56,6 @@ class Related:
     message: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Edit:
-    """A range of a source, and the text that replaces it."""
-
-    span: Span
-    text: str
-
-
 @dataclass(frozen=True, slots=True)
 class PathStep:
     """One step of a witness path: a state that is entered, or an outcome that it ends with.
@@ -96,7 +89,8 @@ class Finding:
     leaves it out, for a message that contains it.
     `path` is a witness: the states that are entered, in order, and the outcomes between them.
     `severity` overrides that of the code. `node` is the path of the state that it is about.
-    `edits` correct the fault, all of them together; empty if the correction is not certain.
+    `edits` are the safe repair of the fault, all of them together; empty without one. `repairs` are
+    others, the best first.
     Findings of one code with the same `group` in one container are shown as one (`grouped`).
     """
 
@@ -111,6 +105,15 @@ class Finding:
     node: str | None = None
     edits: tuple[Edit, ...] = ()
     group: tuple[str, ...] = ()
+    repairs: tuple[Repair, ...] = ()
+
+    @property
+    def all_repairs(self) -> tuple[Repair, ...]:
+        """The repairs, the safe one first."""
+        if not self.edits:
+            return self.repairs
+        safe = Repair(edits=self.edits, certainty=Certainty.SAFE, operator="correct")
+        return (safe, *self.repairs)
 
     @property
     def path_labels(self) -> tuple[str, ...]:

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
-from smachac.diagnostics.diagnostic import Edit
 from smachac.diagnostics.negation import are_opposite, are_unlike
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Word
 
 MOST_COMPARED = 40

@@ -9,7 +9,8 @@ import re
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 
-from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word, new_tuple
 from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape

@@ -9,7 +9,8 @@ import math
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from smachac.diagnostics.diagnostic import Diagnostic, Edit, Related, Report, did_you_mean
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser_of, words_of, written_name
 from smachac.diagnostics.wording import listed

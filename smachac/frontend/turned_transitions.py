@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator
 from typing import TypeAlias
 
-from smachac.diagnostics.diagnostic import Edit, Report
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.errors.script import duplicate_key, wrong_shape
 from smachac.frontend.script import State

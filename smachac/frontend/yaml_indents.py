@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
 from smachac.frontend.yaml_outline import (
@@ -176,24 +177,30 @@ def _columns(rows: Sequence[Row], head: int) -> list[int]:
 
 def moved_text(text: str, move: Move, before: Mended) -> tuple[str, Mended]:
     """The text in which the lines of a move are moved, and the changes with those before."""
-    lines = text.split("\n")
     changes: list[tuple[int, int, int]] = []
-    first, last = move.rows[move.first].line, move.rows[move.last - 1].last
-    at = move.rows[move.first].start
-    for number in range(first, last + 1):
-        line = lines[number]
-        indent = len(line) - len(line.lstrip(" "))
+    shift = 0
+    for at, taken, added in _shifts(text, move):
+        text = text[: at + shift] + " " * added + text[at + shift + taken :]
+        changes.append((at + shift, taken, added))
+        shift += added - taken
+    return text, Mended(text, (*before.changes, *changes))
+
+
+def _shifts(text: str, move: Move) -> Iterator[tuple[int, int, int]]:
+    """The index of each line that moves, and the numbers of spaces that it loses and gets."""
+    first, last = move.rows[move.first], move.rows[move.last - 1]
+    at = first.start
+    for line in text[at:].split("\n")[: last.last - first.line + 1]:
         if line.strip():
-            taken = min(indent, max(0, -move.by))
-            changes.append((at, taken, max(0, move.by)))
-            lines[number] = " " * max(0, move.by) + line[taken:]
-        at += len(lines[number]) + 1
-    moved = "\n".join(lines)
-    return moved, Mended(moved, (*before.changes, *changes))
+            indent = len(line) - len(line.lstrip(" "))
+            yield at, min(indent, max(0, -move.by)), max(0, move.by)
+        at += len(line) + 1
 
 
-def move_finding(source: Source, before: Mended, move: Move, *, stops: bool) -> Diagnostic:
-    """SM001 for a row at a wrong column. `stops`: the text is no YAML because of it."""
+def move_finding(
+    source: Source, text: str, before: Mended, move: Move, *, stops: bool
+) -> Diagnostic:
+    """SM001 for a row at a wrong column of a text. `stops`: it is no YAML because of it."""
     row, like = move.rows[move.first], move.like
     start = before.back(row.start + row.column)
     length = row.key_column - row.column + len(row.key) + bool(row.dashes)
@@ -211,12 +218,18 @@ def move_finding(source: Source, before: Mended, move: Move, *, stops: bool) -> 
         how += f", and move {_shown(move.rows[move.last - 1])} equally"
     elif move.last > move.first + 2:
         how += f", and move the lines below it, down to {_shown(move.rows[move.last - 1])}, equally"
+    edits = [
+        Edit(span=Span(source, before.back(at), before.back(at + taken)), text=" " * added)
+        for at, taken, added in _shifts(text, move)
+    ]
+    repair = Repair(edits=(*edits,), certainty=Certainty.LIKELY, operator="move lines")
     return yaml_syntax(
         Span(source, start, start + max(length, 1)),
         message,
         how,
         arguments=("indent", name, str(column)),
         effect="the indentation decides to which state or field a line belongs",
+        repairs=(repair,),
     )
 
 

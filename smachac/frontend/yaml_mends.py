@@ -14,6 +14,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors.script import yaml_syntax
 from smachac.frontend.fields import PRESET_FIELDS
@@ -113,7 +114,7 @@ def _moved(
         left = Doubts([], [], [])
         parse(Source(source.name, repaired), [], left)
         if not left.stops or (doubts.stops and min(left.stops) > max(doubts.stops) + _BEYOND):
-            reports.append(move_finding(source, mends, move, stops=bool(doubts.stops)))
+            reports.append(move_finding(source, text, mends, move, stops=bool(doubts.stops)))
             return repaired, changed, left
     return None
 
@@ -385,6 +386,8 @@ def _finding(
     """SM001 for a repair."""
     at, sign = mend.at, mend.written
     end = at + len(mend.removed)
+    edit = Edit(span=Span(source, before.back(at), before.back(end)), text=sign)
+    repair = Repair(edits=(edit,), certainty=Certainty.LIKELY, operator="write a sign")
     left, right = _word_before(text, at), _word_after(text, end)
     effect = None if stops else _OTHER_MEANING
     if sign == f"[{mend.removed}]":
@@ -413,6 +416,7 @@ def _finding(
         f"write `{_piece(repaired, mend)}`",
         arguments=("sign", sign, str(mend.at)),
         effect=effect,
+        repairs=(repair,),
     )
 
 

@@ -17,7 +17,8 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any, NamedTuple, TypeAlias
 
-from smachac.diagnostics.diagnostic import Edit, Report
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
 from smachac.frontend.yaml_errors import JOINED, SPACE_MISSING, spaced, stopped_at, syntax_error

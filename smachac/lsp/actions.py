@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from smachac.diagnostics.diagnostic import Diagnostic, Edit
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.severities import is_firm
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.files import BUILT_IN
@@ -52,9 +53,11 @@ def fixes(report: list[Diagnostic], start: int, end: int, path: str) -> Iterator
         span = item.span
         if os.path.realpath(span.source.name) != path or span.end < start or span.start > end:
             continue
-        edits = item.finding.edits
-        if edits and not unclear and not any(map(_is_built_in, edits)):
-            yield Fix(title=_title(item), finding=item, edits=edits, preferred=True)
+        for repair in item.finding.all_repairs:
+            safe = repair.certainty is Certainty.SAFE
+            if not (safe and unclear) and not any(map(_is_built_in, repair.edits)):
+                title = _title(item, repair)
+                yield Fix(title=title, finding=item, edits=repair.edits, preferred=safe)
         if not is_firm(item):
             yield Fix(title=f"Allow {item.code} here", finding=item, edits=(_allowance(item),))
 
@@ -63,9 +66,9 @@ def _is_built_in(edit: Edit) -> bool:
     return any(Path(edit.span.source.name).is_relative_to(folder) for folder in BUILT_IN)
 
 
-def _title(item: Diagnostic) -> str:
-    edit = item.finding.edits[0]
-    if len(item.finding.edits) == 1 and "\n" not in edit.text and edit.text.strip():
+def _title(item: Diagnostic, repair: Repair) -> str:
+    edit = repair.edits[0]
+    if len(repair.edits) == 1 and "\n" not in edit.text and edit.text.strip():
         old = edit.span.text
         return f"Replace `{old}` by `{edit.text}`" if old else f"Insert `{edit.text.strip()}`"
     return (item.help or f"Fix {item.code}").capitalize()

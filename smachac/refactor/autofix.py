@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from smachac.batch import Batch
-from smachac.diagnostics.diagnostic import Diagnostic, Edit, Report, Severity, fingerprint, identity
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, fingerprint, identity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import BUILT_IN
 

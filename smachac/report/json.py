@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.report.terminal import COMMAND
 
-VERSION = 3
+VERSION = 4
 """The version of the schema; it increases with every change."""
 
 
@@ -49,8 +51,21 @@ def diagnostic_data(item: Diagnostic) -> dict[str, Any]:
         ],
         "path": list(finding.path_labels),
         "node": finding.node,
-        "edits": [{"place": place(edit.span), "text": edit.text} for edit in finding.edits],
+        "edits": edits_data(finding.edits),
+        "repairs": [
+            {
+                "certainty": repair.certainty.value,
+                "operator": repair.operator,
+                "edits": edits_data(repair.edits),
+            }
+            for repair in finding.all_repairs
+        ],
     }
+
+
+def edits_data(edits: Iterable[Edit]) -> list[dict[str, Any]]:
+    """Edits as data."""
+    return [{"place": place(edit.span), "text": edit.text} for edit in edits]
 
 
 def place(span: Span) -> dict[str, Any] | None:

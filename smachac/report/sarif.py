@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import quote
 
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, fingerprint
+from smachac.diagnostics.repair import Repair
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.explain_code import explanation, render_code, render_section
 from smachac.report.json import json_text
@@ -84,8 +85,8 @@ def _result(item: Diagnostic, rule: int, mark: str) -> dict[str, Any]:
         ]
     if finding.path:
         result["codeFlows"] = [{"threadFlows": [{"locations": _flow(item)}]}]
-    if finding.edits:
-        result["fixes"] = [_fix(item)]
+    if finding.all_repairs:
+        result["fixes"] = [_fix(item, repair) for repair in finding.all_repairs]
     return result
 
 
@@ -143,9 +144,9 @@ def _flow(item: Diagnostic) -> list[dict[str, Any]]:
     return flow
 
 
-def _fix(item: Diagnostic) -> dict[str, Any]:
+def _fix(item: Diagnostic, repair: Repair) -> dict[str, Any]:
     files: dict[int, dict[str, Any]] = {}
-    for edit in item.finding.edits:
+    for edit in repair.edits:
         change = files.setdefault(
             id(edit.span.source),
             {"artifactLocation": _artifact(edit.span.source), "replacements": []},

@@ -16,7 +16,8 @@ from typing import NamedTuple
 from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import accepts, code_slots, free_in, parameters
 from smachac.analysis.context import Context
-from smachac.diagnostics.diagnostic import Diagnostic, Edit
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.script import NameFix, undefined_name

@@ -16,12 +16,12 @@ from smachac.commands.cli import main
 from smachac.commands.files import ChangedError, rewrite_files
 from smachac.diagnostics.diagnostic import (
     Diagnostic,
-    Edit,
     Finding,
     Severity,
     fingerprint,
     has_errors,
 )
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import Guesser, respelt
 from smachac.frontend.files import Disk

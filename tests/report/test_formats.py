@@ -17,7 +17,6 @@ from hypothesis import strategies as st
 import smachac
 from smachac.diagnostics.diagnostic import (
     Diagnostic,
-    Edit,
     Finding,
     Related,
     Report,
@@ -25,6 +24,7 @@ from smachac.diagnostics.diagnostic import (
     ended,
     entered,
 )
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.driver import CODES
 from smachac.report.explain_code import MAIN, explanation

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from smachac.diagnostics.diagnostic import (
     Code,
     Diagnostic,
-    Edit,
     Finding,
     Related,
     Severity,
     ended,
     entered,
 )
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.json import render_json
 from tests.support.examples import examples
@@ -91,10 +91,11 @@ def test_a_report_in_full() -> None:
                   }
                 }
               ],
+              "repairs": [],
               "severity": "error"
             }
           ],
-          "version": 3
+          "version": 4
         }
         """)
 
@@ -114,6 +115,7 @@ def test_edits_have_a_place_and_a_text() -> None:
     assert faults(data, SCHEMA) == []
     (item,) = data["diagnostics"]
     assert item["edits"] == [{"place": item["place"], "text": "A"}]
+    assert item["repairs"] == [{"certainty": "safe", "operator": "correct", "edits": item["edits"]}]
 
 
 def test_an_empty_report_is_a_report() -> None:
@@ -125,7 +127,7 @@ def test_an_empty_report_is_a_report() -> None:
 def test_reports_fit_the_schema_and_others_do_not() -> None:
     data = json.loads(render_json([FULL, BARE]))
     assert faults(data, SCHEMA) == []
-    assert faults(data | {"version": 1}, SCHEMA) == ["$.version: not 3"]
+    assert faults(data | {"version": 1}, SCHEMA) == ["$.version: not 4"]
     data["diagnostics"][0]["place"]["line"] = 0
     del data["diagnostics"][1]["name"]
     assert faults(data, SCHEMA) == [

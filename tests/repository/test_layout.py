@@ -18,8 +18,6 @@ LINKS = ("ir", "targets", "grammars")
 LONGEST_FUNCTION = 70
 """In lines, without the docstring. A longer function does two things."""
 
-LONGEST_FILE = 700
-"""In lines. A longer module has two subjects."""
 
 TOUCHES = {
     "smachac/frontend/files.py": "reads scripts, templates and project files",
@@ -160,11 +158,6 @@ def test_functions_fit_a_screen() -> None:
             if lines > LONGEST_FUNCTION:
                 faults.append(f"{name(path)}:{function.lineno}: {function.name}, {lines} lines")
     assert faults == []
-
-
-def test_files_have_one_subject() -> None:
-    lines = {name(path): len(path.read_text("utf-8").splitlines()) for path in modules()}
-    assert {each: count for each, count in lines.items() if count > LONGEST_FILE} == {}
 
 
 def test_public_modules_say_what_they_are() -> None:

@@ -1,20 +1,16 @@
 """Mutations of the text of a correct project, such as hands make them: a letter left out, a line
 deleted, a bracket lost, a state indented too far. Files need not be valid YAML after them.
 
-What is judged is the repair: whether the first finding holds the text that was lost, in its message
-or in its help, and whether it is the only finding.
+`judged_repairs.py` judges the findings about the mutants.
 """
 
 from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeAlias
-
-from smachac.diagnostics.diagnostic import Diagnostic, Severity
-from tests.trust.project_text import analysed
 
 NAME = re.compile(r"[A-Za-z_]\w{2,}")
 ENTRY = re.compile(r"(?<=[\[{,])\s*(\w+)(:\s*[\w./'\"-]+)?\s*(?=[,\]}])")
@@ -267,33 +263,3 @@ def lose_the_brackets_of_a_list(text: str, draw: random.Random) -> TextMutant | 
         return None
     place = draw.choice(found)
     return replaced(text, place.span(), place[1], [place.group()])
-
-
-@dataclass(frozen=True, slots=True)
-class Repair:
-    """The findings about a mutant, errors and warnings, in the order in which they are printed."""
-
-    file: str
-    mutant: TextMutant
-    findings: tuple[Diagnostic, ...]
-
-    @property
-    def named(self) -> bool:
-        """Whether the first finding holds what was lost."""
-        if not self.findings:
-            return False
-        first = self.findings[0]
-        told = f"{first.message} {first.help or ''}"
-        return all(piece in told for piece in self.mutant.lost)
-
-
-def repairs(files: Mapping[str, str], kind: str, seed: str) -> Repair | None:
-    """The findings about one mutant of a project; None if the mutation does not fit its file."""
-    draw = random.Random(seed)
-    file = draw.choice([name for name in sorted(files) if name.endswith((".yml", ".yaml"))])
-    mutant = TEXT_MUTATIONS[kind](files[file], draw)
-    if mutant is None:
-        return None
-    report = analysed({**files, file: mutant.text}).report
-    serious = tuple(item for item in report if item.severity is not Severity.INFO)
-    return Repair(file, mutant, serious)

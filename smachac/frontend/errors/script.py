@@ -13,7 +13,6 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import (
     LONGEST_WORD,
     Diagnostic,
-    Edit,
     Finding,
     Problem,
     Related,
@@ -22,6 +21,7 @@ from smachac.diagnostics.diagnostic import (
     problem,
 )
 from smachac.diagnostics.meanings import by_words
+from smachac.diagnostics.repair import Edit, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.diagnostics.wording import listed, possible
@@ -51,6 +51,7 @@ def yaml_syntax(
     arguments: tuple[str, ...] = (),
     related: tuple[Related, ...] = (),
     effect: str | None = None,
+    repairs: tuple[Repair, ...] = (),
 ) -> Finding:
     """The text is not YAML.
 
@@ -78,6 +79,7 @@ def yaml_syntax(
         help=help or "check the brackets, quotes and indentation before this place",
         related=related,
         effect=effect,
+        repairs=repairs,
     )
 
 

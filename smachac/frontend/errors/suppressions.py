@@ -7,13 +7,13 @@ from collections.abc import Iterable, Mapping
 
 from smachac.diagnostics.diagnostic import (
     Diagnostic,
-    Edit,
     Finding,
     Problem,
     Severity,
     did_you_mean,
     problem,
 )
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
 
 _CODE = re.compile(r"[A-Za-z]{2}\d+")
