@@ -25,7 +25,7 @@ Combination = dict[str, str]
 Domains = Mapping[str, Sequence[str]]
 """The outcomes that each child can end with, those to show first in front."""
 
-MOST_LOOKED_AT = 1_000_000
+MOST_LOOKED_AT = 300_000
 """The most children that one rule of the checker looks at for one concurrence. Forty
 branches with forty rules take some thousands."""
 
