@@ -497,6 +497,8 @@ template <class A, class B> Order order(const A &a, const B &b) {
     }
   } else if constexpr (std::is_same_v<A, std::string> && std::is_same_v<B, std::string>) {
     return inner::plain_order(a.compare(b), 0);
+  } else if constexpr (std::is_same_v<A, None> || std::is_same_v<B, None>) {
+    fail("None where a value is needed");
   } else if constexpr (detail::is_optional<A>::value) {
     return order(present(a), b);
   } else if constexpr (detail::is_optional<B>::value) {
