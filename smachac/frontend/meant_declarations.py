@@ -312,9 +312,10 @@ def _code_words(script: Script, state: State) -> Iterator[Word]:
 def _judge_types(whole: _Whole, library: Library, repairs: _Repairs) -> None:
     """The faults in the outcomes of interfaces of the user."""
     declarers: dict[str, _Declarer] = {}
-    type_of = {state.type.name: state.type for state in reversed(whole.states.values())}
+    type_of: dict[str, StateType] = {}
     for place, state in whole.states.items():
         type_ = state.type
+        type_of.setdefault(type_.name, type_)
         fixed = not (type_.open or type_.built_in or "outcomes" in type_.given)
         if state.owner != "state" or not fixed or type_.outcomes_place is None:
             continue
