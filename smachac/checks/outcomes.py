@@ -297,7 +297,7 @@ def _targets(
             if name != PREEMPTED and (name in sure or name not in failures)]  # fmt: skip
     bad = [name for name in rest
            if name != PREEMPTED and name in failures and name not in sure]  # fmt: skip
-    for outcome in (*good, *bad) if len(left) <= MOST_EXPLAINED else ():
+    for outcome in (*good, *bad) if len(rest) <= MOST_EXPLAINED else ():
         after = (name for name in free if order[name] > order[child.name])
         choice = next(after, next((name for name in free if name != child.name), None))
         if choice is not None:
