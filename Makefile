@@ -8,7 +8,7 @@ SMACHAC := .venv/bin/smachac
 DEMO := examples/08_pick_and_place/main.yml
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all test-ros test-ros2 test-browser test-vscode test-lowest check check-mypy check-pyright golden docs viewer bench build clean
+.PHONY: help demo test test-all test-nightly test-ros test-ros2 test-browser test-vscode test-lowest check check-mypy check-pyright golden docs viewer bench build clean
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' Makefile
@@ -24,12 +24,18 @@ demo: ## From YAML to a robot that moves: compile, check, simulate, draw; everyt
 
 test: ## Run the tests that a change is likely to break; ARGS="-k trace" selects some of them
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not slow and not ros and not ros2 and not browser" $(ARGS)
+	$(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not slow and not nightly and not ros and not ros2 and not browser" $(ARGS)
 
-test-all: ## Run every test: also the slow ones, those with live ROS, and those in a browser
+test-all: ## Run the tests that decide about a change: also slow ones, those with live ROS and those in a browser
 	@scripts/setup.sh dev
-	$(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not ros and not ros2 and not browser" $(ARGS)
+	$(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not nightly and not ros and not ros2 and not browser" $(ARGS)
 	@$(MAKE) --no-print-directory test-ros test-ros2 test-browser
+
+test-nightly: ## Run every test: also those with more machines, seeds, compilers and sanitizers; a release needs it
+	@scripts/setup.sh dev
+	SMACHAC_NIGHTLY=1 $(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not ros and not ros2 and not browser" $(ARGS)
+	@$(MAKE) --no-print-directory test-ros test-ros2 test-browser
+	@SMACHAC_NIGHTLY=1 $(MAKE) --no-print-directory test-package
 
 test-ros: ## Install ROS from Debian and run the tests with live nodes
 	@scripts/setup.sh dev

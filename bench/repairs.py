@@ -1,6 +1,6 @@
 """The repairs that findings offer: correct projects whose text is damaged in one place, and whether
-the first finding holds the text that was lost, and its edits restore the original text. A table by
-kind, and examples where they do not. Then the same for the kinds that are kept for judging, and
+the first finding holds the text that was lost, and the repair restores the original text. A table
+by kind, and examples where they do not. Then the same for the kinds that are kept for judging, and
 texts with two faults.
 
     python bench/repairs.py [mutants of each kind] [examples of each kind] [kind ...]
@@ -59,8 +59,8 @@ def print_table(title: str, found: Found) -> None:
     """A row for each kind, and a sum."""
     print(f"\n### {title}\n" if title else "")
     words = ("mutants", "with a finding", "with exactly one", "names what was lost")
-    print(f"| what was changed | {' | '.join(words)} | edits | edits restore the text |")
-    print(f"| --- |{' ---: |' * 6}")
+    print(f"| what was changed | {' | '.join(words)} | repair | restores the text | wrong |")
+    print(f"| --- |{' ---: |' * 7}")
     for kind, rows in found.items():
         print_row(kind, (repair for _, repair in rows))
     print_row("all", (repair for rows in found.values() for _, repair in rows))
@@ -74,8 +74,9 @@ def print_row(kind: str, repairs: Iterable[JudgedRepair]) -> None:
         len(reported),
         sum(len(repair.findings) == 1 for repair in reported),
         sum(repair.named for repair in reported),
-        sum(bool(repair.edits) for repair in reported),
+        sum(repair.repair is not None for repair in reported),
         sum(repair.restored for repair in reported),
+        sum(repair.wrong for repair in reported),
     )
     print(f"| {kind} | {' | '.join(map(str, counts))} |")
 

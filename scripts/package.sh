@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds the source archive and the wheel, and tries both on every Python from 3.10 that is on PATH, each
 # in a new virtual environment and from an empty folder; the wheel also with `uv tool` and `pipx`, where
-# these are installed. Needs the network. BUILD_PYTHON=... has the package build.
+# these are installed. Without SMACHAC_NIGHTLY only the first of these Pythons tries the archive.
+# Needs the network. BUILD_PYTHON=... has the package build.
 set -euo pipefail
 CDPATH='' cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
@@ -33,7 +34,10 @@ try() {
 
 for name in python3.{10..14}; do
   "$name" -c '' 2>/dev/null || continue
-  for package in "${wheel[0]}" "${archive[0]}"; do
+  packages=("${wheel[0]}")
+  [[ -n ${tried:-} && -z ${SMACHAC_NIGHTLY:-} ]] || packages+=("${archive[0]}")
+  tried=$name
+  for package in "${packages[@]}"; do
     venv=$(mktemp -d -p "$folder")
     "$name" -m venv "$venv"
     "$venv/bin/python" -m pip install -q --disable-pip-version-check "$package"

@@ -165,7 +165,8 @@ def analyse_alone(
         )
         caller = _caller(name, [outcome.name for outcome in state.outcomes], *keys)
     found = analyse(caller, own, report, previous=previous)
-    return replace(found, report=list(_without(caller, found.report)), checked=None)
+    left = list(_without(caller, found.report))
+    return replace(found, source=source, library=library, report=left, checked=None, alone=True)
 
 
 def _caller(

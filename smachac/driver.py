@@ -74,19 +74,22 @@ MachineCheck: TypeAlias = "Callable[[Machine], Iterable[Diagnostic]]"
 class Analysis:
     """The result of the pipeline up to the checks: the machine and all findings, in order.
 
-    `script` is the name of the text. `machine` is the machine as far as it could be read; `checked`
-    is the same machine if the report has no error. `library` is None if there is no text. `given`
-    holds the suppressions of all texts of the script, `unused` those in sub-scripts that suppressed
-    nothing.
+    `script` is the name of the text, `source` the text. `machine` is the machine as far as it could
+    be read; `checked` is the same machine if the report has no error. `library` is None if there is
+    no text. `given` holds the suppressions of all texts of the script, `unused` those in
+    sub-scripts that suppressed nothing. `alone`: the text is a sub-script that was analysed without
+    a caller.
     """
 
     script: str = ""
+    source: Source | None = None
     machine: Machine | None = None
     checked: Checked | None = None
     report: Report
     library: Library | None = None
     given: tuple[Suppression, ...] = ()
     unused: tuple[Suppression, ...] = ()
+    alone: bool = False
 
 
 @dataclass(slots=True)
@@ -179,6 +182,7 @@ def _analysis(
         found = grouped(apply_severities(in_order(rest), library.policy))
     return Analysis(
         script=source.name,
+        source=source,
         machine=machine,
         checked=Checked(machine) if machine is not None and not has_errors(found) else None,
         report=found,

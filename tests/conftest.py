@@ -79,7 +79,7 @@ def work_done_once() -> Iterator[None]:
 def pytest_configure(config: pytest.Config) -> None:
     """Load the profile of Hypothesis; compile the package once: where PYTHONDONTWRITEBYTECODE is
     set, each command that a test starts would do it again."""
-    settings.load_profile("some" if "not slow" in config.option.markexpr else "all")
+    settings.load_profile("some" if "not nightly" in config.option.markexpr else "all")
     if not hasattr(config, "workerinput"):
         compileall.compile_dir(PACKAGE, rx=TEMPLATES, quiet=1)
 

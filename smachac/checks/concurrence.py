@@ -23,8 +23,6 @@ from smachac.checks.rule_slips import (
     UNKNOWN_BRANCH,
     copied_rule_help,
     lost_condition,
-    turned_finding,
-    turned_rules,
 )
 from smachac.checks.timeouts import missing_joins, turned_renames
 from smachac.checks.value_places import place_of_value
@@ -130,10 +128,6 @@ def _dead_rules(path: str, container: Concurrence, moved: Collection[str]) -> It
     guess = guesser(children)
     states = f"use one of its states: {listed(children)}" if children else "add states to it"
     inverted = [each.rule for each in inverted_rules(container)]
-    turned = turned_rules(container)
-    if turned:
-        yield turned_finding(path, container, turned)
-    inverted += [each.rule for each in turned]
     for entry in container.rules:
         if entry in inverted:  # SM103 reports those that begin with a state
             continue

@@ -21,13 +21,12 @@ from smachac.checks.class_values import (
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.null_keys import null_keys, output_for_null
 from smachac.checks.rule import rule
-from smachac.checks.swapped_params import swapped_params_help
 from smachac.checks.types import written
 from smachac.checks.value_places import place_of_fault, place_of_part
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, in_quotes, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import (
@@ -332,8 +331,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         does = "fails" if fault.always else "can fail"
         severity = None if fault.always else Severity.WARNING
         finding = _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
-        swapped = swapped_params_help(_places_of_values(site, fault), site.node.span.source)
-        help = swapped or _number_in_quotes(site, fault) or _set_by_other_key(context, site, fault)
+        help = _number_in_quotes(site, fault) or _set_by_other_key(context, site, fault)
         yield replace(finding, help=help) if help else finding
     yield from null_keys(context)
     yield from wrong_parts(context)
@@ -449,14 +447,6 @@ def _set_by_other_key(context: Context, site: ExpressionSite, fault: Fault) -> s
             if meant is not None:
                 return meant.help
     return None
-
-
-def _places_of_values(site: ExpressionSite, fault: Fault) -> Iterator[Span]:
-    """The places of the literals that reach a fault."""
-    for key in fault.keys:
-        cell = site.cells.get(key)
-        for alike in cell.flows.values() if cell is not None else ():
-            yield from (flow.origin.span for flow in alike if flow.origin.how == "value")
 
 
 def _faults(context: Context, kind: FaultKind) -> Iterator[tuple[ExpressionSite, Fault]]:

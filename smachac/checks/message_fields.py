@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from typing import NamedTuple
@@ -12,6 +12,7 @@ from typing import NamedTuple
 from smachac.analysis.code_slots import code_slots
 from smachac.analysis.context import Context
 from smachac.analysis.message_code import (
+    MOST_CODE,
     leaf_definitions,
     message_code,
     nested_messages,
@@ -19,6 +20,7 @@ from smachac.analysis.message_code import (
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.class_messages import faults_in_classes
 from smachac.checks.edits import listing
+from smachac.checks.message_calls import CHECK_FIELDS, call_faults, message_calls
 from smachac.checks.message_reads import (
     code_places,
     described,
@@ -40,6 +42,7 @@ from smachac.checks.message_types import (
     word_in,
 )
 from smachac.checks.message_values import (
+    ValueFault,
     in_field_order,
     is_time,
     value_faults,
@@ -72,6 +75,7 @@ from smachac.ir.nodes import (
     Leaf,
     Node,
     Struct,
+    Value,
     Variable,
 )
 from smachac.ir.traversal import remapping
@@ -115,9 +119,11 @@ def unknown_field(context: Context) -> Iterator[Finding]:
     The state fails when it runs: the goal or the request is never sent, or its function stops at
     the name.
 
-    Exactly: fields in lists of keys, in mappings and lists of values, in calls of the class of the
-    message, in functions that receive the message, and in mappings that are published or copied to
-    a field of a goal or a request, at any depth; also numbers that a function compares with text.
+    Exactly: fields in lists of keys, in mappings and lists of values, in calls of the classes of
+    messages (`Bool(data=True)`, `std_msgs.msg.Bool(data=True)`), in functions that receive the
+    message, and in mappings that are published or copied to a field of a goal or a request, at any
+    depth; also numbers that a function compares with text. A value fits if it is in the range of
+    its type, and a text or a list is not longer than its type allows (`string<=8`, `int32[<=4]`).
     The definitions of messages, services and actions (`.msg`, `.srv`, `.action`) are searched in
     packages in the folders of `code` in the project file, in the folder of the script and in those
     above it up to the root of the repository, in AMENT_PREFIX_PATH, in ROS_PACKAGE_PATH and beside
@@ -180,14 +186,20 @@ def unknown_field(context: Context) -> Iterator[Finding]:
                     other = _other_type(context, node, kind, held.role)
                     yield from _faults(context, path, node, held, messages, other)
                     yield from _wrong_values(path, node, held, messages, found, other)
+                    yield from _wrong_arguments(path, node, held.value, messages, found)
                     yield from _wrong_slots(context, path, held, messages, found)
         for slot in code_slots(node, context.machine.state_types):
+            yield from _wrong_calls(path, node, slot.code, found)
             code = message_code(slot, node, found, context.machine.functions)
             if code is not None:
                 here = code_places(node, slot, code)
                 yield from wrong_reads(path, node, code, found, here)
                 yield from wrong_comparisons(path, node, code, found, here)
                 yield from wrong_operands(path, node, operands_of(slot, code), code, found, here)
+    for path, container in context.containers if found else ():
+        for preset in container.userdata:
+            if isinstance(preset.value.data, Expression):
+                yield from _wrong_calls(path, container, preset.value.data, found)
     yield from faults_in_classes(context, found, missing)
 
 
@@ -277,6 +289,43 @@ def type_key_meant(container: Node | None) -> str | None:
     }
     unread = [key for key in held if key not in read | outside]
     return unread[0] if len(unread) == 1 else None
+
+
+def _wrong_calls(path: str, node: Node, code: Expression, found: Definitions) -> Iterator[Finding]:
+    """Arguments of the classes of messages, in code, that are no fields or do not fit."""
+    if len(code.text) <= MOST_CODE:
+        for call, messages in message_calls(code, found):
+            faults = call_faults(call, messages, found, code.span)
+            yield from _argument_findings(path, node, code.span, faults)
+
+
+def _wrong_arguments(
+    path: str, leaf: Leaf, value: Value, messages: Sequence[Message], found: Definitions
+) -> Iterator[Finding]:
+    """Arguments that do not fit, in the call that makes a goal or a request; unknown fields of its
+    own are names that the state uses."""
+    code = value.data
+    call = _class_call(code.text, messages) if isinstance(code, Expression) else None
+    if call is not None:
+        faults = call_faults(call, messages, found, value.span)
+        known = [each for each in faults if each.wanted is not None or len(each.names) > 1]
+        yield from _argument_findings(path, leaf, value.span, known)
+
+
+def _argument_findings(
+    path: str, node: Node, span: Span, faults: Iterable[ValueFault]
+) -> Iterator[Finding]:
+    """The findings for the arguments of a class of a message."""
+    for names, message, wanted, value in faults:
+        word = word_in(names[-1], span, "=")
+        effect = f"`{node.name}` ends with `aborted`: the message is never sent"
+        if wanted is None:
+            effect = "the field is ignored, or the program stops"
+            yield unknown_field_finding(path, node, word, (message,), effect=effect)
+            continue
+        text = f"the value of `{names[-1]}` does not fit: the field of {described(message)} is"
+        help = value_help(value, wanted)
+        yield field_finding(path, node, word, f"{text} `{wanted}`", help, (message,), effect)
 
 
 def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Finding]:
@@ -561,13 +610,20 @@ def _uses(held: Variable, messages: Sequence[Message]) -> Iterator[_Use]:
 
 
 def _keywords(text: str, messages: Sequence[Message]) -> Iterator[str]:
-    """The names of the arguments in a call of the class of a message: `TestGoal(goal=1)` in ROS 1,
-    `Test.Goal(goal=1)` in ROS 2."""
+    """The names of the arguments in a call of the class of a message."""
+    call = _class_call(text, messages)
+    if call is not None:
+        yield from (each.arg for each in call.keywords if each.arg not in (None, CHECK_FIELDS))
+
+
+def _class_call(text: str, messages: Sequence[Message]) -> ast.Call | None:
+    """The call of the class of a message, by keywords: `TestGoal(goal=1)` in ROS 1,
+    `Test.Goal(goal=1)` in ROS 2; None for other code."""
     tree = call_of(text)
     if tree is None or tree.args:
-        return
+        return None
     definition, _, part = messages[0].name.rpartition("/")[2].partition(".")
     called = ast.unparse(tree.func).split(".")
     joined = f"{definition}{part.capitalize()}"
-    if called[-1] == joined or called[-2:] == [definition, part.capitalize()]:
-        yield from (each.arg for each in tree.keywords if each.arg is not None)
+    is_class = called[-1] == joined or called[-2:] == [definition, part.capitalize()]
+    return tree if is_class else None

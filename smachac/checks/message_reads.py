@@ -26,7 +26,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.function_facts import Operand, Part
 from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
-from smachac.ir.nodes import Leaf
+from smachac.ir.nodes import Leaf, Node
 
 METHODS = frozenset(
     ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy"]  # ROS 1
@@ -209,7 +209,7 @@ def _item(text: str) -> str | None:
 
 def unknown_field_finding(
     path: str,
-    leaf: Leaf,
+    node: Node,
     word: Word,
     messages: Sequence[Message],
     also: str = "",
@@ -228,7 +228,7 @@ def unknown_field_finding(
     if guess and also:
         help += f" Write it here{also}, and remap it: `remapping: {{{guess}: {word.text}}}`"
     message = f"{described(messages[0])} has no field `{word.text}`"
-    finding = field_finding(path, leaf, word, message, help, messages, effect)
+    finding = field_finding(path, node, word, message, help, messages, effect)
     return replace(finding, related=(*here, *finding.related)) if here else finding
 
 
@@ -240,7 +240,7 @@ def described(message: Message) -> str:
 
 def field_finding(
     path: str,
-    leaf: Leaf,
+    node: Node,
     word: Word,
     message: str,
     help: str | None,
@@ -259,7 +259,7 @@ def field_finding(
         help=help,
         related=(
             *(each for span in places for each in other_place(span, label)),
-            *calls(leaf, word.span),
+            *calls(node, word.span),
         ),
         node=path,
         effect=effect,

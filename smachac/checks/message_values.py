@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 from typing import NamedTuple
@@ -41,6 +43,9 @@ MOST_ORDERED = 5
 
 MOST_CONSTANTS = 8
 """Limit on the constants of a message that a help names."""
+
+LARGEST_FLOATS = {"float32": (2 - 2**-23) * 2.0**127, "float64": sys.float_info.max}
+"""The largest finite number of each type."""
 
 _TIME = re.compile(r"(\d{1,9}(?:\.\d{1,9})?)\s*([a-z]+)")
 _SECONDS = ("/Time", "/Duration")
@@ -95,7 +100,7 @@ def _fits(data: Data, wanted: FieldType) -> bool:
     if data is None or isinstance(data, Expression) or (isinstance(data, str) and "`" in data):
         return True
     if not wanted.array:
-        return _fits_item(data, wanted.name)
+        return _fits_item(data, wanted)
     if isinstance(data, str):
         return wanted.name in BYTES
     if not isinstance(data, tuple):
@@ -105,21 +110,28 @@ def _fits(data: Data, wanted: FieldType) -> bool:
         return False
     if wanted.size is not None and len(data) < wanted.size:
         return False
-    return all(_fits(each, FieldType(name=wanted.name)) for each in data)
+    return all(_fits(each, item_type(wanted)) for each in data)
 
 
-def _fits_item(data: Data, name: str) -> bool:
+def item_type(wanted: FieldType) -> FieldType:
+    """The type of the values of a list."""
+    return FieldType(name=wanted.name, longest=wanted.longest)
+
+
+def _fits_item(data: Data, wanted: FieldType) -> bool:
     """Whether a value fits a type that is no list. A truth value can be written as 0 or 1; a number
     of seconds can be a time, and a list can be a message."""
+    name = wanted.name
     if name == "bool":
         return isinstance(data, bool) or (isinstance(data, int) and data in (0, 1))
     if name in INTEGERS:
         least, most = _bounds(name)
         return isinstance(data, int) and not isinstance(data, bool) and least <= data <= most
     if name in FLOATS:
-        return is_number(data)
+        is_infinity_or_nan = isinstance(data, float) and not math.isfinite(data)
+        return is_number(data) and (abs(data) <= LARGEST_FLOATS[name] or is_infinity_or_nan)
     if name in TEXTS:
-        return isinstance(data, str)
+        return isinstance(data, str) and (wanted.longest is None or len(data) <= wanted.longest)
     if "/" not in name or name.endswith(_SECONDS):
         return not isinstance(data, bool | str)
     return isinstance(data, Struct | tuple)
@@ -152,7 +164,11 @@ def value_help(value: Data, wanted: FieldType) -> str:
     meant = SWITCHES.get(value.lower()) if isinstance(value, str) else None
     if wanted.name == "bool" and not wanted.array and meant is not None:
         return f"write `{meant}`: in YAML 1.2, `{value}` is a text"
-    item = FieldType(name=wanted.name)
+    if isinstance(value, tuple) and wanted.most is not None and len(value) > wanted.most:
+        return f"shorten the list: it has {len(value)} values, the limit is {wanted.most}"
+    if isinstance(value, str) and wanted.longest is not None and not wanted.array:
+        return f"shorten the text: it has {len(value)} characters, the limit is {wanted.longest}"
+    item = item_type(wanted)
     if wanted.array and wanted.size in (None, 1) and value is not None and _fits(value, item):
         text = written(value)
         if text:

@@ -1,65 +1,16 @@
-"""Slips in the rules of an outcome map: conditions turned round, and copied rules."""
+"""Help for rules of an outcome map that were copied, or that have lost a condition."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from smachac.analysis.control_flow import is_open
-from smachac.checks.messages import calls, other_place
-from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.spelling import words_of, written_name
-from smachac.ir.nodes import Concurrence, Node, OutcomeRule
+from smachac.ir.nodes import Concurrence, OutcomeRule
 from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES
 from smachac.ir.traversal import outcome_names
 
 UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
-
-
-class Turned(NamedTuple):
-    """A rule in which conditions have their outcome before their state, and its conditions as they
-    are meant: pairs of a state and its outcome."""
-
-    rule: OutcomeRule
-    meant: tuple[tuple[str, str], ...]
-
-
-def turned_rules(container: Concurrence) -> list[Turned]:
-    """The rules of an outcome map with conditions that are turned round."""
-    children = {child.name: child for child in container.children}
-    found = []
-    for rule in container.rules:
-        turned = [part for part in rule.when if part.child not in children]
-        if turned and all(_has(children.get(part.outcome), part.child) for part in turned):
-            meant = tuple((part.outcome, part.child) if part in turned
-                          else (part.child, part.outcome) for part in rule.when)  # fmt: skip
-            found.append(Turned(rule, meant))
-    return found
-
-
-def _has(child: Node | None, outcome: str) -> bool:
-    return child is not None and (is_open(child) or outcome in outcome_names(child))
-
-
-def turned_finding(path: str, container: Concurrence, turned: Sequence[Turned]) -> Finding:
-    """SM403 for the rules of a concurrence with conditions that are turned round."""
-    names = {child.name for child in container.children}
-    places = [part for each in turned for part in each.rule.when if part.child not in names]
-    first = places[0]
-    texts = ", ".join(_text(each.rule.outcome, each.meant) for each in turned)
-    return Finding(
-        span=first.span,
-        message=f"the condition `{first.child}: {first.outcome}` of `{container.name}` begins with"
-        " the outcome, not with the state",
-        arguments=(turned[0].rule.outcome, first.child, first.outcome),
-        help=f"the state comes first: write `{texts}`",
-        effect=UNKNOWN_BRANCH,
-        related=(
-            *(part for each in places[1:] for part in other_place(each.span, "and here")),
-            *calls(container, first.span),
-        ),
-        node=path,
-    )
 
 
 def _text(outcome: str, conditions: Sequence[tuple[str, str]]) -> str:

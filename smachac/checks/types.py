@@ -44,7 +44,6 @@ from smachac.checks.record_fields import (
     without_fields,
 )
 from smachac.checks.rule import rule
-from smachac.checks.swapped_values import swapped_findings, swapped_values
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit, type_at
 from smachac.checks.wrong_remaps import wrong_remap_finding, wrong_remaps
@@ -112,11 +111,6 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     clashes = [each for each in context.clashes["type"] if not _is_function(each)]
-    swapped = swapped_values(clashes) if len(clashes) > 1 else []
-    if swapped:
-        cells = {cell for pair in swapped for cell in (pair.one.cell, pair.other.cell)}
-        clashes = [each for each in clashes if each.cell not in cells]
-        yield from swapped_findings(swapped)
     remapped = list(wrong_remaps(context, clashes))
     yield from map(wrong_remap_finding, remapped)
     done = {found.clash.cell for found in remapped}

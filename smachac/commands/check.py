@@ -24,13 +24,14 @@ from smachac.commands.streams import print_failure
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
     from typing import TextIO
 
     from smachac.batch import Batch
+    from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
-    from smachac.driver import Previous
+    from smachac.driver import MachineCheck, Previous
     from smachac.frontend.files import Disk
     from smachac.refactor.autofix import FixResult
 
@@ -182,7 +183,8 @@ def _check_once(
     if not arguments.notes and len(without_notes(found.report)) < len(found.report):
         notes.append("--notes shows notes")
     if not arguments.diff:
-        _put(found, failing, notes, arguments)
+        clusters = _clusters(found, sim_rule, arguments)
+        _put(found, failing, clusters, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
 
 
@@ -227,7 +229,22 @@ def _write_fixes(fixed: FixResult) -> bool:
     return True
 
 
-def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: Namespace) -> None:
+def _clusters(found: Batch, extra: MachineCheck | None, arguments: Namespace) -> Sequence[Cluster]:
+    """The clusters of the findings, for the formats that show them."""
+    if not without_notes(found.report) or arguments.format not in ("text", "json"):
+        return ()
+    from smachac.repair.search import clusters_of
+
+    return clusters_of(found, found.report, extra)
+
+
+def _put(
+    found: Batch,
+    failing: dict[str, Report],
+    clusters: Sequence[Cluster],
+    notes: list[str],
+    arguments: Namespace,
+) -> None:
     """Print the findings in the requested format."""
     report = found.report
     listed = report if arguments.notes else without_notes(report)
@@ -237,7 +254,7 @@ def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: 
         case "json":
             from smachac.report.json import render_json
 
-            sys.stdout.write(render_json(report, on_one_line=on_one_line))
+            sys.stdout.write(render_json(report, clusters, on_one_line=on_one_line))
         case "sarif":
             from smachac.report.sarif import render_sarif
 
@@ -253,7 +270,7 @@ def _put(found: Batch, failing: dict[str, Report], notes: list[str], arguments: 
             sys.stdout.write(render_github(listed))
             print(_summary(report, len(found.reports), notes))
         case _:
-            print_report(listed, arguments, sys.stdout)
+            print_report(listed, arguments, sys.stdout, clusters)
             print(_summary(report, len(found.reports), notes))
 
 

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
+    from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
 
 OK, FINDINGS, USAGE = 0, 1, 2
@@ -23,7 +24,9 @@ def without_notes(report: Report) -> Report:
     return [item for item in report if item.severity is not Severity.INFO]
 
 
-def print_report(report: Report, arguments: Namespace, stream: Any) -> None:
+def print_report(
+    report: Report, arguments: Namespace, stream: Any, clusters: Sequence[Cluster] = ()
+) -> None:
     """Print findings; on a terminal in its width."""
     from smachac.commands.terminal import file_uri, terminal_width, wants_colour, wants_links
     from smachac.report.text import Layout, render_text
@@ -35,7 +38,7 @@ def print_report(report: Report, arguments: Namespace, stream: Any) -> None:
         layout = layout._replace(width=terminal_width(stream), wraps=True)
     if wants_links(stream):
         layout = layout._replace(link=file_uri)
-    print(render_text(report, layout), file=stream)
+    print(render_text(report, layout, clusters), file=stream)
 
 
 def shown(path: object) -> str:

@@ -207,9 +207,11 @@ def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTra
     if not path.exists():
         raise UnreadableTraceError(path, "there is no such file")
     try:
-        found = read_statuses(path)
+        found, notes = read_statuses(path)
     except BagError as error:
         raise UnreadableTraceError(path, str(error)) from None
+    for note in notes:
+        print(f"note: {path}: {note}", file=sys.stderr)
     roots = {topic: {each.path.partition("/")[0] for each in found[topic]} for topic in found}
     own = [topic for topic in found if not roots[topic] or machine.root.name in roots[topic]]
     if not own:

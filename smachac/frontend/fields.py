@@ -15,7 +15,6 @@ from smachac.diagnostics.source import Span, Word, new_tuple
 from smachac.frontend import schema
 from smachac.frontend.errors.script import Owner, duplicate_key, unknown_variable, wrong_shape
 from smachac.frontend.script import Keys, Pairs, Rules
-from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_errors import JOINED, spaced
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong, known_wrong
@@ -309,7 +308,7 @@ def as_outcome(word: Word, tree: Tree, report: Report, *more: str) -> Outcome:
     """An outcome with what is written below its name: `doc`, `failure`, and what `more` names."""
     parts: dict[str, Tree] = {}
     known, owner = ("doc", "failure", *more), Owner("outcome", "an outcome")
-    for entry in as_map(with_turned(tree, known, owner, report), report):
+    for entry in as_map(tree, report):
         part = Word(str(entry.key.value), entry.key.span)
         if part.text not in known:
             report.append(unknown_variable(part, owner, known))

@@ -17,7 +17,6 @@ from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.frontend.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
 from smachac.frontend.loader import Library
 from smachac.frontend.script import ANY_OUTCOME, ERROR, EXHAUSTED, TIMEOUT, Script, State
-from smachac.frontend.turned_transitions import with_turned_transitions
 from smachac.ir.nodes import DeclarationKind, Expression, Misdeclared, Outcome, StateType, Struct
 from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
 from smachac.ir.properties import atoms
@@ -104,8 +103,6 @@ def with_meant_declarations(script: Script, library: Library, report: Report) ->
     was reported about uses of their names is removed."""
     if not _has_unknown(script.base) and not _has_unknown_atom(script):
         return script
-    base = with_turned_transitions(script.base, _ends, report)
-    script = script if base is script.base else replace(script, base=base)
     whole = _whole(script)
     reported: dict[Source, Report] = {}
     for item in report:

@@ -15,7 +15,11 @@ from typing import NamedTuple
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
-from smachac.frontend.standard_messages import packages_with, standard_package
+from smachac.frontend.standard_messages import (
+    packages_by_message,
+    packages_with,
+    standard_package,
+)
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.leaf import given_fields, type_text
 from smachac.ir.message_types import (
@@ -33,10 +37,13 @@ from smachac.ir.message_types import (
     MissingDefinitions,
     OtherTypes,
 )
-from smachac.ir.nodes import DEFINITION_KINDS
+from smachac.ir.nodes import DEFINITION_KINDS, Expression
 
 LONGEST = 1_000_000
 """The longest file that is read, in characters."""
+
+MOST_CODE = 10_000
+"""The longest code in which calls of messages are searched, in characters."""
 
 MOST_OTHERS = 100
 """Limit on the types of a package that are searched for fields."""
@@ -48,6 +55,9 @@ _TYPE = re.compile(
     re.ASCII,
 )
 
+
+_CALLED = re.compile(r"(?<![\w.])(?:[a-z]\w*\.msg\.)?[A-Z]\w*(?=\()", re.ASCII)
+"""The call of a class, such as that of a message: `Bool(`, `std_msgs.msg.Bool(`."""
 
 _MADE = re.compile(r"(Action|ActionGoal|ActionResult|ActionFeedback|Goal|Result|Feedback)\Z")
 """The names of messages that ROS 1 makes of an action."""
@@ -136,6 +146,10 @@ def definitions_of(base: State, classes: Iterable[ClassFacts], library: Library)
     for facts in classes:
         for kind, text, _ in _readings(facts):
             todo.append((kind, text))
+    for text, name in _called_messages(base, library).items():
+        found["msg", text] = find_definitions(name, "msg", library)
+        for each in found["msg", text]:
+            todo.extend(("msg", nested) for nested in _nested(each))
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:
@@ -205,6 +219,31 @@ def _named_types(base: State) -> dict[tuple[DefinitionKind, str], None]:
             text = preset.value.data if preset.key.endswith("type") else None
             if isinstance(text, str) and type_name(text, "msg") is not None:
                 found["msg", text] = None
+    return found
+
+
+def _called_messages(base: State, library: Library) -> dict[str, str]:
+    """The names of the messages whose classes the code of a script calls, by the words of the call:
+    `std_msgs.msg.Bool(data=True)`, or `Bool(data=True)`, which a program imports from the only
+    common package that has it, unless a type of the script or a base of the user has its name."""
+    words: dict[str, None] = {}
+    todo = [base]
+    while todo:
+        state = todo.pop()
+        todo += state.states
+        data = [held.value.data for held in state.variables]
+        data += [preset.value.data for preset in state.userdata]
+        codes = [each.text if isinstance(each, Expression) else each for each in data]
+        texts = [each for each in codes if isinstance(each, str) and len(each) <= MOST_CODE]
+        words |= dict.fromkeys(word for text in texts for word in _CALLED.findall(text))
+    found = {word: word for word in words if "." in word}
+    code = base.type.code.get("python", f"{base.type.name}.tpl.py")
+    if len(found) < len(words) and library.own_template(code) is None:
+        named = {re.split(r"[/.]", text)[-1] for _, text in _named_types(base)}
+        packages = packages_by_message(library.ros)
+        for word in words:
+            if word not in named and len(packages.get(word, ())) == 1:
+                found[word] = f"{packages[word][0]}/{word}"
     return found
 
 

@@ -26,7 +26,6 @@ from smachac.frontend.fields import as_name, expanded, kind_of, name_of, pairs_o
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
 from smachac.frontend.meant_declarations import with_meant_declarations
-from smachac.frontend.meant_types import has_unknown_variable, meant_type
 from smachac.frontend.message_definitions import (
     definitions_of,
     missing_definitions_of,
@@ -192,7 +191,6 @@ class _Resolver:
         self.calls: dict[Span, KeptCall] = {}
         self.others: dict[str, StateType | None] = {}  # types that the script need not use
         self.unknown: set[str] = set()  # the templates that were not found
-        self.left_searches = MOST_EXPLAINED  # among all types, for what a state means
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
@@ -599,15 +597,6 @@ class _Resolver:
         self.types[name] = self.found_types[name]
         return self.types[name]
 
-    def meant_type(self, entries: Entries, type_: StateType) -> StateType | None:
-        """The built-in type that a state means, in place of that of its template (SM003)."""
-        if not has_unknown_variable(entries, type_) or self.left_searches <= 0:
-            return None
-        self.left_searches -= 1
-        _, names = self.known_templates()
-        found = meant_type(entries, type_, names, self.other_type, self.report)
-        return self.state_type(found.name) if found is not None else None
-
     def other_type(self, name: str, words: Collection[str]) -> StateType | None:
         """A type that the script need not use; its faults are not reported. None for a built-in one
         whose interface does not have all these words, or that has no interface."""
@@ -663,8 +652,6 @@ class _Resolver:
             return StateType(name=word.text, open=True), role or nested
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
-        if not (role or is_container) and nested == "state":
-            found = self.meant_type(entries, found) or found
         return found, role or ("StateMachine" if is_container else nested)
 
 

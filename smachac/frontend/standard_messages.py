@@ -54,6 +54,15 @@ def standard_package(name: str, ros: Ros) -> StandardPackage:
     return StandardPackage(texts, is_complete)
 
 
+def packages_by_message(ros: Ros) -> dict[str, list[str]]:
+    """The common packages that have a message, by the name of the message."""
+    found: dict[str, list[str]] = {}
+    for file in sorted(FOLDER.glob("*.txt")):
+        for name in standard_package(file.stem, ros).names("msg"):
+            found.setdefault(name, []).append(file.stem)
+    return found
+
+
 def packages_with(name: str, kind: str, ros: Ros) -> list[str]:
     """The common packages that have a type of a name and a kind."""
     return [

@@ -35,14 +35,12 @@ from smachac.frontend.missing_outcomes import outcomes_used
 from smachac.frontend.paired_fields import (
     ends_with_any,
     fitting_fields,
-    paired_fields,
     paired_help,
 )
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, Pairs, State
 from smachac.frontend.sugar import NAMES, is_own, read_sugar
-from smachac.frontend.turned_entries import with_turned_fields
 from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
@@ -228,11 +226,6 @@ def with_meant_fields(
     ]
     if not unknown:
         return entries
-    if not type_.any_variable:
-        known = {*schema.names_for(owner), *type_.variables}
-        whose = _owner_of(owner, type_, of_type=owner == "state")
-        entries = with_turned_fields(entries, known, type_.variables, whose, report)
-        unknown = [key for key in unknown if key in entries]
     guess = guesser_of((*schema.names_for(owner), *type_.variables))
     meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
     roles: dict[str, str] = {each.role: name for name, each in type_.variables.items() if each.role}
@@ -248,8 +241,7 @@ def with_meant_fields(
     if "child_termination_cb" in unknown and ends_with_any(entries, owner):
         given = entries["child_termination_cb"]  # the help of its finding is `join: any`
         found["join"] = Entry(given.key, Scalar("any", True, given.key.span.source, 0, 0))
-    left = [key for key in unknown if all(entries[key] is not each for each in found.values())]
-    return found | paired_fields(left, {*entries, *found}, entries, owner, type_) | entries
+    return found | entries
 
 
 def params_meant(entries: Entries) -> Entry | None:

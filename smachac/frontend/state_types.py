@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import smacha_meta
 from smachac.frontend.class_reader import PARAMETERS
-from smachac.frontend.errors.script import Owner, wrong_shape
+from smachac.frontend.errors.script import wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.interface_code import (
     Section,
@@ -29,7 +29,6 @@ from smachac.frontend.interface_fields import interface_fields
 from smachac.frontend.interface_slips import swapped_facts, with_lost_outputs
 from smachac.frontend.loader import Library
 from smachac.frontend.schema import KEY_FACTS, VARIABLE_FACTS
-from smachac.frontend.turned_entries import with_turned, with_turned_types
 from smachac.frontend.type_annotations import as_record, read_type
 from smachac.frontend.type_classes import (
     ALL_GIVEN,
@@ -188,11 +187,6 @@ def _section(name: str, tree: Tree | None, report: Report) -> Section:
     mapping `{picked: {}, lost: {}}`: nothing is stated about them."""
     if tree is None:
         return ()
-    if name in ("variables", "input_keys", "output_keys"):
-        what = "variable" if name == "variables" else "key"
-        tree = with_turned_types(tree, Owner("interface", "an interface", what), report)
-    if name in ("input_keys", "output_keys") and isinstance(tree, Map):
-        return tuple([_with_turned_facts(each, report) for each in as_map(tree, report, "{}")])
     if name not in _LISTED or not isinstance(tree, Seq):
         return as_map(tree, report, "{}")
     names = [item for item in tree.items if isinstance(item, Scalar)]
@@ -398,7 +392,6 @@ def _variable(name: str, tree: Tree, report: Report) -> VariableType:
 
 def _described_variable(name: str, tree: Tree, report: Report) -> VariableType:
     whose = f"the variable `{name}`"
-    tree = with_turned(tree, VARIABLE_FACTS, Owner(whose, whose, "field"), report)
     meant = check_fields(tree, whose, VARIABLE_FACTS, report)
     role = _role(tree, _VARIABLE_ROLES, report)
     type_ = described(_type(tree, report), tree, role, report)
@@ -478,13 +471,6 @@ def _keys(section: Section, report: Report) -> tuple[Key, ...]:
         check_fields(entry.value, f"the key `{entry.key.value}`", KEY_FACTS, report)
     declared = _declared_words(section)
     return tuple([_key(*each, report) for each in declared if not _is_set(each[1], "optional")])
-
-
-def _with_turned_facts(entry: Entry, report: Report) -> Entry:
-    """The entry of a key with the facts that are turned round turned back."""
-    whose = f"the key `{entry.key.value}`"
-    new = with_turned(entry.value, KEY_FACTS, Owner(whose, whose, "field"), report)
-    return entry if new is entry.value else Entry(entry.key, new)
 
 
 def _key(name: Word, tree: Tree, report: Report) -> Key:

@@ -19,7 +19,6 @@ from smachac.frontend.errors.script import Owner, missing_variable, unknown_vari
 from smachac.frontend.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.paired_fields import paired_help
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
-from smachac.frontend.turned_entries import with_turned
 from smachac.frontend.values import UNKNOWN
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.nodes import Expression, Outcome, StateType, Value
@@ -326,10 +325,7 @@ def _parts(
         return None
     owner = Owner(str(entry.key.value), f"`{entry.key.value}`", "part")
     parts: dict[str, Tree] = {}
-    whole: Tree = entry.value
-    if MEANT_PARTS.keys().isdisjoint(str(each.key.value) for each in entry.value.entries):
-        whole = with_turned(whole, known, owner, report)
-    entries = whole.entries if isinstance(whole, Map) else ()
+    entries = entry.value.entries
     written = {str(each.key.value) for each in entries}
     paired = _paired([each for each in entries if each.key.value not in known], written, required)
     found: Report = []

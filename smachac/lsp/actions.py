@@ -27,6 +27,7 @@ from smachac.refactor.refactorings import (
     inline_state,
     rename_name,
 )
+from smachac.report.repair_words import in_words
 
 Results = dict[str, tuple[Source, str]]
 """New texts by real path, with the sources before; the source of a new file is empty."""
@@ -46,14 +47,24 @@ class Fix:
     preferred: bool = False
 
 
-def fixes(report: list[Diagnostic], start: int, end: int, path: str) -> Iterator[Fix]:
-    """The corrections of the findings that touch a range of a text, and their suppressions."""
+def fixes(
+    report: list[Diagnostic],
+    start: int,
+    end: int,
+    path: str,
+    search: Callable[[Diagnostic], Repair | None],
+) -> Iterator[Fix]:
+    """The corrections of the findings that touch a range of a text, and their suppressions. For a
+    finding without a repair, one is searched."""
     unclear = any(item.code in UNCLEAR for item in report)
     for item in report:
         span = item.span
         if os.path.realpath(span.source.name) != path or span.end < start or span.start > end:
             continue
-        for repair in item.finding.all_repairs:
+        repairs = item.finding.all_repairs
+        if not repairs and (searched := search(item)) is not None:
+            repairs = (searched,)
+        for repair in repairs:
             safe = repair.certainty is Certainty.SAFE
             if not (safe and unclear) and not any(map(_is_built_in, repair.edits)):
                 title = _title(item, repair)
@@ -71,7 +82,8 @@ def _title(item: Diagnostic, repair: Repair) -> str:
     if len(repair.edits) == 1 and "\n" not in edit.text and edit.text.strip():
         old = edit.span.text
         return f"Replace `{old}` by `{edit.text}`" if old else f"Insert `{edit.text.strip()}`"
-    return (item.help or f"Fix {item.code}").capitalize()
+    words = in_words(repair, item.span)
+    return words[0].upper() + words[1:]
 
 
 def _allowance(item: Diagnostic) -> Edit:

@@ -541,8 +541,9 @@ def _code_actions(server: Server) -> None:
             start = server.offset(view, params.range.start)
             end = server.offset(view, params.range.end)
             report = server.session.check(path).get(path, [])
-            found = [_fix_action(server, each)
-                     for each in actions.fixes(report, start, end, path)]  # fmt: skip
+            session = server.session
+            fixes = actions.fixes(report, start, end, path, lambda item: session.repair(path, item))
+            found = [_fix_action(server, fix) for fix in fixes]
             roots = server.session.script_roots(path)
             if view.machine is not None and roots:
                 place = place_at(view.tree, start)

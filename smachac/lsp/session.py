@@ -16,7 +16,8 @@ from typing import Literal, TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.batch import Batch, check_scripts
-from smachac.diagnostics.diagnostic import Report, in_order
+from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
+from smachac.diagnostics.repair import Repair
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES, Analysis, Previous, read_machine
 from smachac.frontend.config import PROJECT_FILES
@@ -218,6 +219,18 @@ class Session:
             with collection_paused():
                 self._checked[path] = self._check(path)
         return self._checked[path]
+
+    def repair(self, path: str, item: Diagnostic) -> Repair | None:
+        """The repair of a finding in a script, searched now; None without one."""
+        from smachac.repair.search import again, clusters
+
+        for root in self._known_roots(path) if self.kind(path) == "script" else ():
+            analysis, _ = self._contexts[root]
+            mine = [other for other in analysis.report if identity(other) == identity(item)]
+            with collection_paused():
+                for cluster in clusters(analysis, mine, again(analysis), 1):
+                    return cluster.repair
+        return None
 
     def _check(self, path: str) -> dict[str, Report]:
         kind = self.kind(path)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+from smachac.diagnostics.clusters import Cluster
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
-from smachac.diagnostics.repair import Edit
+from smachac.diagnostics.repair import Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.report.terminal import COMMAND
 
@@ -15,7 +16,9 @@ VERSION = 4
 """The version of the schema; it increases with every change."""
 
 
-def render_json(report: Report, *, on_one_line: bool = False) -> str:
+def render_json(
+    report: Report, clusters: Sequence[Cluster] = (), *, on_one_line: bool = False
+) -> str:
     """The findings in the order of the report, in ASCII. Equal reports give equal texts."""
     counts = {
         severity.value: sum(item.severity is severity for item in report) for severity in Severity
@@ -23,6 +26,7 @@ def render_json(report: Report, *, on_one_line: bool = False) -> str:
     whole = {
         "version": VERSION,
         "diagnostics": list(map(diagnostic_data, report)),
+        "clusters": clusters_data(report, clusters),
         "counts": counts,
     }
     return json_text(whole, sort_keys=True, on_one_line=on_one_line)
@@ -52,14 +56,29 @@ def diagnostic_data(item: Diagnostic) -> dict[str, Any]:
         "path": list(finding.path_labels),
         "node": finding.node,
         "edits": edits_data(finding.edits),
-        "repairs": [
-            {
-                "certainty": repair.certainty.value,
-                "operator": repair.operator,
-                "edits": edits_data(repair.edits),
-            }
-            for repair in finding.all_repairs
-        ],
+        "repairs": [repair_data(repair) for repair in finding.all_repairs],
+    }
+
+
+def clusters_data(report: Report, clusters: Sequence[Cluster]) -> list[dict[str, Any]]:
+    """Clusters as data; findings are numbers of the report, counted from 0."""
+    number = {id(item): at for at, item in enumerate(report)}
+    return [
+        {
+            "finding": number[id(cluster.finding)],
+            "explained": [number[id(item)] for item in cluster.explained],
+            "repair": repair_data(cluster.repair),
+        }
+        for cluster in clusters
+    ]
+
+
+def repair_data(repair: Repair) -> dict[str, Any]:
+    """A repair as data."""
+    return {
+        "certainty": repair.certainty.value,
+        "operator": repair.operator,
+        "edits": edits_data(repair.edits),
     }
 
 

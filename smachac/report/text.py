@@ -5,13 +5,16 @@ Sections: findings, then snippets (source lines with marks).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
+from smachac.diagnostics.clusters import Cluster
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity
 from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.report.repair_words import in_words
 from smachac.report.terminal import Line, columns, lay_out, linked, on_one_line, visible, wrapped
 
 COLOURS = {
@@ -52,18 +55,45 @@ class Layout(NamedTuple):
 PLAIN = Layout()
 
 
-def render_text(report: Report, layout: Layout = PLAIN) -> str:
+def render_text(report: Report, layout: Layout = PLAIN, clusters: Sequence[Cluster] = ()) -> str:
     """The findings, separated by empty lines; empty for no findings. At most MOST_FINDINGS are
-    printed. An effect is printed once for each code. Texts of the user cannot control the terminal.
+    printed. An effect is printed once for each code. Findings that a cluster explains are a line
+    each in the finding of the cluster. Texts of the user cannot control the terminal.
     """
+    hidden = {id(item) for cluster in clusters for item in cluster.explained}
+    roots = {id(cluster.finding): cluster for cluster in clusters}
+    shown = [item for item in report if id(item) not in hidden]
     texts = [
-        _rendered(item, effect, layout)
-        for item, effect in zip(report[:MOST_FINDINGS], effects(report), strict=False)
+        _rendered(with_cluster(item, roots.get(id(item))), effect, layout)
+        for item, effect in zip(shown[:MOST_FINDINGS], effects(shown), strict=False)
     ]
-    more = len(report) - len(texts)
+    more = len(shown) - len(texts)
     if more:
         texts.append(f"... and {more:,} findings more: `--format json` has all\n")
     return "\n".join(texts)
+
+
+MOST_EXPLAINED = 5
+"""The most findings of a cluster that are listed; the others are counted."""
+
+
+def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
+    """A finding with the repair of its cluster as a help, and the explained findings as notes."""
+    if cluster is None:
+        return item
+    words = in_words(cluster.repair, item.span)
+    help = words if item.help in (None, words) else f"{words}\n{item.help}"
+    if cluster.repair.edits in [repair.edits for repair in item.finding.all_repairs]:
+        help = item.help or words
+    notes = [
+        Related(span=NOWHERE, message=f"this also corrects {other.span}: {other.message}")
+        for other in cluster.explained[:MOST_EXPLAINED]
+    ]
+    more = len(cluster.explained) - len(notes)
+    if more:
+        notes.append(Related(span=NOWHERE, message=f"and {more} findings more"))
+    finding = replace(item.finding, help=help, related=(*item.related, *notes))
+    return replace(item, finding=finding)
 
 
 def effects(report: Report) -> Iterator[str]:

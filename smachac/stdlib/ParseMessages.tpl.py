@@ -5,6 +5,9 @@ type: None
 {% endblock meta %}
 {% include "MessageFields.tpl.py" %}
 {% block imports %}
+import io
+
+import genpy
 import rospy
 from geometry_msgs.msg import Point, Point32, PointStamped, Pose, PoseArray, PoseStamped, Quaternion, Transform, TransformStamped, Vector3
 from sensor_msgs.msg import PointCloud, PointCloud2, PointField
@@ -102,6 +105,15 @@ def parse_transformstamped(data):
             Vector3(*map(float, translation)), Quaternion(*map(float, rotation))
         )
     return TransformStamped(transform=data)
+
+
+def checked(message):
+    """Return a message. Raises ValueError, with the path, if a value does not fit its field."""
+    try:
+        message.serialize(io.BytesIO())
+    except (genpy.SerializationError, OverflowError) as error:
+        raise ValueError(f"{message._type}: {error}") from None
+    return message
 
 
 PARSERS = {

@@ -31,7 +31,7 @@ class PublishMsgState(smach.State):
         if self.action == "stop":
             return self.publisher.stop(topic)
         try:
-            message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
+            message = checked(parse_message(userdata["msg"], optional(userdata, "msg_type")))
         except (TypeError, ValueError) as error:
             smach.logerr(f"the message is invalid: {error}")
             return "aborted"

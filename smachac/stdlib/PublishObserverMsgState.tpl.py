@@ -30,7 +30,7 @@ class PublishObserverMsgState(smach.State):
         if self.action == "remove":
             return self.observer.remove(topic)
         try:
-            message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
+            message = checked(parse_message(userdata["msg"], optional(userdata, "msg_type")))
         except (TypeError, ValueError) as error:
             smach.logerr(f"the message is invalid: {error}")
             return "aborted"

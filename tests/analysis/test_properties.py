@@ -69,7 +69,7 @@ def test_verdicts_agree_with_runs() -> None:
     assert "not followed" not in counts
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("start", range(1000, 4000, 500))
 def test_more_verdicts_agree_with_runs(start: int) -> None:
     counts = compare(range(start, start + 500), runs=20)

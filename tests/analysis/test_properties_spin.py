@@ -59,7 +59,7 @@ def test_spin_agrees(tmp_path: Path) -> None:
     assert 0 < holding < 8
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("part", range(10))
 def test_spin_agrees_on_five_hundred_machines(part: int, tmp_path: Path) -> None:
     start = 10_000 + 1000 * part

@@ -192,11 +192,6 @@ HOT, PRESSED = "hot: {DOOR: invalid}", "pressed: {FORCE: invalid}"
 @pytest.mark.parametrize(
     ("rules", "found"),
     [
-        (f"polished: {{done: POLISH}}, {HOT}, {PRESSED}",
-         ("SM403", "done", "the state comes first: write `polished: {POLISH: done}`")),
-        ("polished: {done: POLISH}, hot: {invalid: DOOR}, pressed: {invalid: FORCE}",
-         ("SM403", "done", "the state comes first: write `polished: {POLISH: done}, hot: {DOOR:"
-          " invalid}, pressed: {FORCE: invalid}`")),
         (f"POLISH: {{polished: done}}, {HOT}, {PRESSED}",
          ("SM103", "POLISH", "the outcome comes first: `outcome_map: {polished: {POLISH: done}}`")),
         (f"POLISH: {{done: polished}}, {HOT}, {PRESSED}",

@@ -427,3 +427,98 @@ def test_a_mapping_in_a_slot(pose: str, expected: list[tuple[str, str]]) -> None
         fields="request_slots: [pose]\n      input_keys: [pose]\n      remapping: {pose: grip}",
     )
     assert [each[0::2] for each in faults(script)] == expected
+
+
+BOUNDED = {
+    "cell_msgs/action/Pick.action": "string<=4 label\nstring<=2[] tags\nwstring<=3 note\n"
+    "int32[<=2] few\nfloat32 speed\nfloat64 force\n---\n---\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("goal", "marked", "help"),
+    [
+        ("{note: abcd}", "abcd", "shorten the text: it has 4 characters, the limit is 3"),
+        ("{label: '12345'}", "'12345'", "shorten the text: it has 5 characters, the limit is 4"),
+        ("{tags: [ab, abc]}", "[ab, abc]", "write a value of the type `string<=2[]`"),
+        ("{few: [1, 2, 3]}", "[1, 2, 3]", "shorten the list: it has 3 values, the limit is 2"),
+        ("{speed: 1.0e+39}", "1.0e+39", "write a value of the type `float32`, such as `1.5`"),
+        (
+            f"{{force: 1{'0' * 400}}}",
+            f"1{'0' * 400}",
+            "write a value of the type `float64`, such as `1.5`",
+        ),
+        ("Pick.Goal(note='abcd')", "note", "shorten the text: it has 4 characters, the limit is 3"),
+        ("Pick.Goal(few=[1, 2.5])", "few", "write a value of the type `int32[<=2]`"),
+        ("PickGoal(speed=-1e39)", "speed", "write a value of the type `float32`, such as `1.5`"),
+    ],
+)
+def test_limits_of_texts_lists_and_numbers_hold(goal: str, marked: str, help: str) -> None:
+    found = faults(ACTION.format(type="cell_msgs/Pick", goal=goal), BOUNDED)
+    assert [(text, cure) for text, _, cure in found] == [(marked, help)]
+
+
+@pytest.mark.parametrize(
+    "goal",
+    [
+        "{label: abcd, tags: [ab, ''], note: äöü, few: [], speed: .inf, force: 1.0e+39}",
+        "Pick.Goal(label='abcd', tags=['ab'], few=(1, 2), speed=float('nan'), check_fields=True)",
+        "Pick.Goal(force=1, speed=-3, note=name)",
+        "Pick.Goal(*values, note='abcd')",
+    ],
+)
+def test_values_up_to_the_limits_fit(goal: str) -> None:
+    assert faults(ACTION.format(type="cell_msgs/Pick", goal=goal), BOUNDED) == []
+
+
+PUBLISHED = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {{msg: "`{code}`"}}
+states:
+  - SAY:
+      template: PublishMsgState
+      action: start
+      input_keys: [msg]
+      transitions: {{succeeded: done, aborted: failed}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "marked"),
+    [
+        ("String(date='x')", ["date"]),
+        ("std_msgs.msg.String(date='x')", ["date"]),
+        ("std_msgs.msg.String(data=5)", ["data"]),
+        ("Bool(data='yes')", ["data"]),
+        ("Bool(data=2)", ["data"]),
+        ("Float64(data='1')", ["data"]),
+        ("Int8(data=200)", ["data"]),
+        ("PoseStamped(pose=Pose(position=Point(x='far', z=1)))", ["x"]),
+        ("PoseArray(poses=[Pose(), Pose(postion=Point())])", ["postion"]),
+        ("(lambda: Bool(date=True))()", ["date"]),
+        ("Float64(data=1)", []),
+        ("Bool(data=1)", []),
+        ("Bool(data=True, check_fields=True)", []),
+        ("Point(1, 2, 3)", []),
+        ("Bool(**fields)", []),
+        ("Float64(data=compute())", []),
+        ("PoseStamped(pose=pose)", []),
+        ("Unknown(date='x')", []),
+        ("own.String(date='x')", []),
+        ("Bool(", []),
+    ],
+)
+def test_the_arguments_of_classes_of_messages_are_checked(code: str, marked: list[str]) -> None:
+    assert [text for text, _, _ in faults(PUBLISHED.format(code=code))] == marked
+
+
+def test_a_class_of_the_script_or_of_its_base_is_no_common_message() -> None:
+    script = PUBLISHED.format(code="Path(length=1)")
+    assert [text for text, _, _ in faults(script)] == ["length"]
+    own = script.replace("input_keys: [msg]", "input_keys: [msg, msg_type]").replace(
+        "userdata: {", "userdata: {msg_type: cell_msgs/Path, "
+    )
+    assert faults(own, {"cell_msgs/msg/Path.msg": "float64 length\n"}) == []
+    assert faults(script, {"templates/ROSBase.tpl.py": "from cell_msgs.msg import Path\n"}) == []

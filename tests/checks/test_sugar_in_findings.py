@@ -119,7 +119,8 @@ def words_of(item: Diagnostic) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "start", [0, 20, *(pytest.param(each, marks=pytest.mark.slow) for each in range(40, 160, 20))]
+    "start",
+    [0, 20, *(pytest.param(start, marks=pytest.mark.nightly) for start in range(40, 160, 20))],
 )
 def test_containers_made_of_sugar_are_not_named(start: int) -> None:
     found = 0

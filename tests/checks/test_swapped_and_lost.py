@@ -320,42 +320,6 @@ def test_an_item_of_data_with_a_slip(item: str, found: list[Row]) -> None:
     assert reported({"main.yml": RECORDS.replace("ITEM", item)}) == found
 
 
-PRESS = """\
-name: sm
-outcomes: [done]
-userdata: {label: abc, number: 3}
-states:
-  - PRESS: {template: Press, VARIABLES, remapping: REMAPPING, transitions: {pressed: done}}
-"""
-PRESS_TYPE = """\
-name: Press
-variables: {side: str, limit: int}
-input_keys: {text: str, count: int}
-outcomes: [pressed]
-code: {cpp: {header: press.hpp, class: Press}}
-"""
-
-
-@pytest.mark.parametrize(
-    ("variables", "remapping", "found"),
-    [
-        ("side: left, limit: 4", "{text: label, count: number}", []),
-        ("side: 4, limit: left", "{text: label, count: number}",
-         [("SM304", "4", "write `side: left, limit: 4`")]),
-        ("limit: left, side: 4", "{text: label, count: number}",
-         [("SM304", "left", "write `limit: 4, side: left`")]),
-        ("side: left, limit: 4", "{text: number, count: label}",
-         [("SM304", "number", "write `text: label, count: number`, or `text: int, count: str` in"
-           " the interface `Press`")]),
-    ],
-)  # fmt: skip
-def test_two_values_of_a_state_that_have_changed_places(
-    variables: str, remapping: str, found: list[Row]
-) -> None:
-    text = PRESS.replace("VARIABLES", variables).replace("REMAPPING", remapping)
-    assert reported({"main.yml": text, "templates/Press.yml": PRESS_TYPE}) == found
-
-
 @pytest.mark.parametrize(
     ("type_", "example"),
     [
@@ -435,53 +399,6 @@ def test_a_state_that_has_lost_its_list_of_keys(
 ) -> None:
     text = LISTS.replace("INPUTS", inputs).replace("OUTPUTS", outputs)
     assert reported({"main.yml": text}) == found
-
-
-TWO_CALLS = """\
-name: sm
-outcomes: [done, full]
-userdata: {count: 3}
-states:
-  - LEFT: {script: serve, params: PARAMS, transitions: {served: RIGHT}}
-  - RIGHT: {script: serve, params: {side: right, limit: 6}, transitions: {served: done}}
-"""
-SERVE = """\
-- SERVE:
-    template: StateMachine
-    DEFAULTS
-    doc: ['Serves ', [params, side]]
-    userdata: {most: [params, limit]}
-    input_keys: [count]
-    outcomes: [full, served]
-    states:
-      - FULL:
-          template: ConditionalOutcomeState
-          input_keys: [count, most]
-          outcomes: [full]
-          default_outcome: served
-          callbacks: {full: 'lambda ud: ud.count >= ud.most'}
-"""
-
-
-@pytest.mark.parametrize("defaults", ["params: {side: left, limit: 4}", "tags: []"])
-@pytest.mark.parametrize(
-    ("params", "help"),
-    [
-        ("{side: left, limit: 4}", []),
-        ("{side: 4, limit: left}",
-         ["write `side: left, limit: 4` in the `params` of the call: the values have changed"
-          " places"]),
-        ("{side: up, limit: left}",
-         ["convert a text that contains a number with `float(...)`"]),
-    ],
-)  # fmt: skip
-def test_two_params_of_a_call_that_have_changed_places(
-    params: str, help: list[str], defaults: str
-) -> None:
-    files = {"main.yml": TWO_CALLS.replace("PARAMS", params),
-             "serve.yml": SERVE.replace("DEFAULTS", defaults)}  # fmt: skip
-    found = [each for each in reported(files) if each[0] == "SM311"]
-    assert [each[2] for each in found] == help
 
 
 LOOK_UPS = """\

@@ -240,7 +240,8 @@ def test_output_that_cannot_be_written(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_check_loads_only_what_it_needs() -> None:
-    heavy = ("lark", "jinja2", "numpy", "pybullet", "PIL", "importlib.metadata")
+    parsers = "smachac.grammars.standalone"
+    heavy = (parsers, "jinja2", "numpy", "pybullet", "PIL", "importlib.metadata")
     code = (
         "import sys; from smachac.commands.cli import main; main(sys.argv[1:]);"
         f"print([name for name in {heavy} if name in sys.modules])"

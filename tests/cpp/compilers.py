@@ -5,8 +5,12 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
+import shutil
 import subprocess
 import tempfile
+import time
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,6 +33,12 @@ STRICT = (
 """Warnings that generated headers and those of the runtime do not give either."""
 BARE = ("-fno-exceptions", "-fno-rtti")
 
+PROGRAMS = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "smachac-tests"
+"""The compiled programs of earlier runs, by the hash of their texts, flags and compiler."""
+
+UNUSED = 14 * 24 * 3600
+"""In seconds. Programs that no run has used for so long are deleted."""
+
 
 @dataclass(frozen=True, slots=True)
 class Compiler:
@@ -49,22 +59,31 @@ class Compiler:
     def compile(
         self, text: str, folder: Path, *flags: str, standard: str = "c++17", warnings: bool = True
     ) -> Path:
-        """The program of one translation unit, made once in a folder for a text and its flags.
+        """The program of one translation unit, compiled once for a text, its flags and headers.
 
         Fails with what the compiler says.
         """
         call = [*self.command, f"-std={standard}", *(WARNINGS if warnings else ()), *flags]
-        digest = hashlib.sha256("\0".join([*call, text]).encode()).hexdigest()[:16]
-        program = folder / f"program-{digest}"
+        call.append(f"-I{HEADERS}")
+        digest = _digest([_version(self.command), *map(_content, call), text])
+        program, kept = folder / f"program-{digest}", PROGRAMS / digest
         if not program.exists():
-            source = folder / f"{digest}.cpp"
-            source.write_text(text, "utf-8")
             made = folder / f"{digest}-{os.getpid()}"
-            call += [f"-I{HEADERS}", str(source), "-o", str(made)]
-            run = subprocess.run(call, capture_output=True, text=True, timeout=600, check=False)
-            assert run.returncode == 0, f"{' '.join(call)}\n{run.stderr[:6000]}"
+            if kept.exists():
+                kept.touch()
+                shutil.copy(kept, made)
+            else:
+                self._compile(call, text, made)
+                _keep(made, kept)
             made.replace(program)
         return program
+
+    def _compile(self, call: list[str], text: str, made: Path) -> None:
+        source = made.with_suffix(".cpp")
+        source.write_text(text, "utf-8")
+        call = [*call, str(source), "-o", str(made)]
+        run = subprocess.run(call, capture_output=True, text=True, timeout=600, check=False)
+        assert run.returncode == 0, f"{' '.join(call)}\n{run.stderr[:6000]}"
 
     def run(self, text: str, folder: Path, *flags: str, standard: str = "c++17") -> str:
         """What the program of a text prints. Fails where it does not end well."""
@@ -76,6 +95,42 @@ class Compiler:
         return run.stdout
 
 
+def _digest(parts: Iterable[str]) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+
+
+@functools.cache
+def _version(command: tuple[str, ...]) -> str:
+    """What a compiler prints about itself."""
+    return subprocess.run(
+        [*command, "--version"], capture_output=True, text=True, check=True
+    ).stdout
+
+
+def _content(flag: str) -> str:
+    """A flag of a compiler; a folder in it by the texts of its headers."""
+    folder = Path(flag.removeprefix("-I"))
+    if not folder.is_dir():
+        return flag
+    headers = sorted(path for path in folder.rglob("*.h*") if path.is_file())
+    return _digest(
+        f"{path.relative_to(folder)}\0{path.read_text('utf-8', 'replace')}" for path in headers
+    )
+
+
+def _keep(made: Path, kept: Path) -> None:
+    """Keep a program for later runs; those that no run has used for two weeks go."""
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    oldest = time.time() - UNUSED
+    for path in kept.parent.iterdir():
+        with suppress(FileNotFoundError):  # another worker has removed it
+            if path.stat().st_mtime < oldest:
+                path.unlink()
+    new = kept.with_name(f"{kept.name}-{os.getpid()}")
+    shutil.copy(made, new)
+    new.replace(kept)
+
+
 @functools.cache
 def compilers() -> tuple[Compiler, ...]:
     """Those that are here, one of each kind."""
@@ -85,12 +140,12 @@ def compilers() -> tuple[Compiler, ...]:
 COMPILERS = pytest.mark.parametrize(
     "compiler",
     [
-        pytest.param(each, id=each.name, marks=pytest.mark.slow if number else ())
+        pytest.param(each, id=each.name, marks=pytest.mark.nightly if number else ())
         for number, each in enumerate(compilers())
     ]
     or [pytest.param(None, marks=pytest.mark.skip("no C++ compiler"))],
 )
-"""Marks a test that runs once with each compiler; with others than the first one it is slow."""
+"""Marks a test that runs once with each compiler; with others than the first one it is nightly."""
 
 
 def last_with(*flags: str) -> Compiler:

@@ -275,7 +275,10 @@ def test_constants_are_refused(data: Data, type_: str, reason: str) -> None:
 # What compiles, and gives the values of Python
 
 
-SEEDS_AND_CASES = [(1, 50), *(pytest.param(n, 130, marks=pytest.mark.slow) for n in (1, 2, 3, 4))]
+SEEDS_AND_CASES = [
+    (1, 50),
+    *(pytest.param(n, 130, marks=pytest.mark.nightly) for n in (1, 2, 3, 4)),
+]
 
 
 @COMPILERS

@@ -110,12 +110,12 @@ def test_large_machines_become_several_functions(
     agree(found, last_with(), tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_sanitizers_find_nothing(tmp_path: Path) -> None:
     agree([*of_scripts(), *drawn(2, 15)], last_with(*SANITIZED), tmp_path, *SANITIZED)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_threads_do_not_race(tmp_path: Path) -> None:
     parallel = [
         each

@@ -35,7 +35,7 @@ def test_requests_reach_the_same_states(tmp_path: Path) -> None:
     assert differing(1, 0, MACHINES, last_with(), tmp_path) == []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("start", range(0, MANY, 100))
 def test_requests_reach_the_same_states_in_many_machines(tmp_path: Path, start: int) -> None:
     assert differing(2, start, start + 100, last_with(), tmp_path) == []

@@ -64,7 +64,10 @@ def shares() -> list[Any]:
         names = NAMES if EVERYTHING else NAMES[at :: len(compilers())]
         for start in range(0, len(names), CHUNK):
             chunk = names[start : start + CHUNK]
-            found.append(pytest.param(compiler, chunk, id=f"{compiler.name}-{chunk[0]}"))
+            marks = pytest.mark.nightly if at else ()
+            found.append(
+                pytest.param(compiler, chunk, id=f"{compiler.name}-{chunk[0]}", marks=marks)
+            )
     return found or [pytest.param(None, (), marks=pytest.mark.skip("no C++ compiler"))]
 
 
@@ -136,7 +139,7 @@ def sanitized() -> Iterator[Any]:
             yield pytest.param(flags, chunk, id=f"{kind}-{chunk[0]}")
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("start", range(0, len(NAMES), CHUNK))
 def test_machines_run_without_exceptions_and_type_information(start: int, tmp_path: Path) -> None:
     chunk = NAMES[start : start + CHUNK]
@@ -164,7 +167,7 @@ def has_branches(name: str) -> bool:
     return any(node["type"] == "concurrence" for _, node in nodes_of(recorded.CASES[name]))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize(("flags", "names"), [*sanitized()])
 def test_sanitizers_find_nothing(flags: tuple[str, ...], names: list[str], tmp_path: Path) -> None:
     agree(names, last_with(*flags), tmp_path, *flags)

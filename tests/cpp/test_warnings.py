@@ -16,7 +16,12 @@ CLASSES = ROOT / "tests" / "cases" / "code_in_both" / "include"
 
 
 HEADERS_BY_COMPILER = [
-    pytest.param(path, compiler, id=f"{path.parents[2].name}-{compiler.name}")
+    pytest.param(
+        path,
+        compiler,
+        id=f"{path.parents[2].name}-{compiler.name}",
+        marks=pytest.mark.nightly if at else (),
+    )
     for number, path in enumerate(GOLDEN)
     for at, compiler in enumerate(compilers())
     if at == 0 or number % 3 == at % 3

@@ -22,7 +22,7 @@ from smachac.frontend.loader import Library, memory_library
 from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import BuildContext, load_target
 from smachac.targets.interface_check import target_faults
-from tests.support.examples import every
+from tests.support.examples import every, seeds
 from tests.trust.mutants import Subject, files_of
 from tests.trust.mutations import MUTATIONS
 from tests.trust.project_text import BUILT_IN
@@ -108,7 +108,7 @@ def test_arguments_in_the_examples_of_a_code(code: str) -> None:
         check_arguments(every_finding(Source(MAIN, files[MAIN]), library, []))
 
 
-SEEDS = [*range(QUICK), *(pytest.param(n, marks=pytest.mark.slow) for n in range(QUICK, MORE))]
+SEEDS = seeds(QUICK, QUICK + 1, MORE)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -22,7 +22,7 @@ from smachac.runtime.tracing import trace
 from smachac.runtime.tracing.compare import compare
 from smachac.targets.python import TARGET
 from tests.strategies.full_machines import busy_machines
-from tests.support.examples import examples
+from tests.support.examples import examples, seeds
 from tests.support.silent_smach import silent_smach
 from tests.support.typed_machines import with_state_types
 
@@ -155,7 +155,7 @@ def test_items_from_functions(code: str) -> None:
     assert differ(ours, of_generated(machine)) is None
 
 
-CHUNKS = [0, *(pytest.param(chunk, marks=pytest.mark.slow) for chunk in range(1, 24))]
+CHUNKS = seeds(1, 4, 24)
 
 
 @pytest.mark.parametrize("chunk", CHUNKS)

@@ -22,10 +22,11 @@ from smachac.refactor.edited_script import EditedScript, HasErrorsError
 from smachac.refactor.editor import RefusedError
 from smachac.refactor.locate import NotFoundError
 from tests.refactor.test_refactorings import comments, project, texts
+from tests.support.examples import seeds
 
 __all__ = ["project"]
 
-SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 10))]
+SEEDS = seeds(1, 3, 10)
 ROUNDS = 4
 MAIN = Path("main.yml")
 

@@ -20,6 +20,7 @@ from smachac.frontend.loader import memory_library
 from smachac.frontend.yaml_tree import parse
 from smachac.ir.printer import print_machine
 from smachac.refactor.formatter import WIDTH, format_script
+from tests.support.examples import seeds
 from tests.support.golden import compare_file
 from tests.trust.project_text import MAIN, written
 from tests.trust.random_projects import correct_project
@@ -86,7 +87,7 @@ def with_comments(text: str, seed: int) -> tuple[str, Counter[str]]:
     return "\n".join(lines), Counter(comments)
 
 
-FIRST_QUICK = [*range(4), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(4, 24))]
+FIRST_QUICK = seeds(4, 8, 24)
 
 
 @pytest.mark.parametrize("seed", FIRST_QUICK)

@@ -31,7 +31,7 @@ from smachac.ir.traversal import outcome_names, walk
 from smachac.refactor.equivalence import normalized
 from smachac.refactor.formatter import format_script
 from smachac.runtime import smach
-from tests.support.examples import examples
+from tests.support.examples import examples, seeds
 from tests.support.golden import compare_folder
 from tests.trust.project_text import written
 from tests.trust.random_projects import correct_project
@@ -39,7 +39,7 @@ from tests.trust.random_projects import correct_project
 CASES = sorted(
     path.parent for path in (Path(__file__).parents[1] / "refactorings").glob("*/command")
 )
-SEEDS = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 10))]
+SEEDS = seeds(1, 3, 10)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)

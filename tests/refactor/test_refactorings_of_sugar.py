@@ -69,7 +69,7 @@ def _states(draw: random.Random, names: list[str], last: str, pad: str, depth: i
     return rows
 
 
-@pytest.mark.parametrize("scripts", [10, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("scripts", [10, pytest.param(100, marks=pytest.mark.nightly)])
 @pytest.mark.slow
 def test_sugar_survives_refactoring(scripts: int) -> None:
     """Contained states run as before; a container that is extracted can be inlined again; a state

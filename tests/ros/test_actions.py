@@ -314,3 +314,16 @@ def test_wrong_arguments_are_found_when_the_state_is_made(graph: Graph) -> None:
         "InvalidStateError: a goal is a message, no function: see goal_cb",
         "InvalidStateError: the goal callback 3 of a state cannot be called",
     ]
+
+
+def test_a_goal_whose_value_does_not_fit_its_field_aborts_with_the_path(graph: Graph) -> None:
+    graph.node("action_server")
+    for arguments, reason in (
+        ('TestGoal(goal="one")', "field goal.goal must be an integer type"),
+        ("TestGoal(goal=2**40)", "field goal.goal exceeds specified width [int32]"),
+        ("goal_cb=lambda ud, goal: 5", "goal"),
+    ):
+        output = graph.run(client(arguments))
+        assert "no goal is sent to action 'work'" in output
+        assert reason in output
+        assert "outcome: aborted\n" in output

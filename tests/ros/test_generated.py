@@ -317,6 +317,32 @@ def test_no_message_in_time_aborts(graph: Graph, tmp_path: Path) -> None:
     assert outcome(graph, tmp_path, TOPICS.format(timeout=0.2)) == "aborted"
 
 
+PUBLISHED = """
+  - PUBLISH:
+      template: PublishMsgState
+      action: start
+      userdata: {{msg: "`{code}`"}}
+      input_keys: [msg]
+      transitions: {{succeeded: succeeded, aborted: aborted}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"),
+    [
+        ("std_msgs.msg.Float64(*['far'])", "std_msgs/Float64: field data must be float type"),
+        ("std_msgs.msg.Float32(*[1e39])", "std_msgs/Float32: float too large"),
+        ("std_msgs.msg.Float64(data=1)", ""),
+    ],
+)
+def test_a_message_that_cannot_be_sent_aborts(
+    graph: Graph, tmp_path: Path, code: str, reason: str
+) -> None:
+    output = graph.run(built(tmp_path, PUBLISHED.format(code=code)))
+    assert f"outcome: {'aborted' if reason else 'succeeded'}\n" in output
+    assert (f"the message is invalid: {reason}" in output) == bool(reason)
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_state_that_does_not_know_of_ros(
     graph: Graph, tmp_path: Path, number: signal.Signals

@@ -136,3 +136,19 @@ def test_ctrl_c_ends_a_call_that_hangs(graph: Graph) -> None:
     program.send(signal.SIGINT)
     assert program.end() == 0
     assert "outcome: aborted\n" in program.output
+
+
+def test_a_request_whose_value_does_not_fit_its_field_aborts_with_the_path(graph: Graph) -> None:
+    graph.node("service_server")
+    for arguments, reason in (
+        ('SetBoolRequest(data="yes")', "field data is not a bool"),
+        (
+            'request_cb=lambda ud, request: setattr(request, "data", None)',
+            "field data is not a bool",
+        ),
+        ('request_cb=lambda ud, request: "yes"', "field data is not a bool"),
+    ):
+        output = graph.run(client("answer", arguments))
+        assert "the call of service 'answer' failed" in output
+        assert reason in output
+        assert "outcome: aborted\n" in output

@@ -219,8 +219,8 @@ def test_messages_are_made_from_values(graph2: Graph) -> None:
     lines = graph2.run(MESSAGES).splitlines()
     assert lines[:4] == ["map 1 500000000", "3.0 1.0", "[1.0, 0.0, 0.0] 7.0", "[1.0, 2.0]"]
     assert lines[4] == "[1, 0, 3]"
-    assert lines[5].startswith("ValueError the field `pose` of PoseStamped")
-    assert "Pose has no field `positon`: it has position, orientation" in lines[5]
-    assert "the field `x` of Point is double, not 'far'" in lines[6]
-    assert "Pose is made from a mapping, or a list of 2 values" in lines[7]
+    assert lines[5].startswith("FieldError `PoseStamped.pose.positon` does not exist")
+    assert "the fields of geometry_msgs/msg/Pose are position, orientation" in lines[5]
+    assert "`PoseStamped.pose.position.x` is float64, not 'far'" in lines[6]
+    assert "Pose (a mapping or a list of position, orientation), not" in lines[7]
     assert lines[8] == "PointCloud2 3 PoseStamped"

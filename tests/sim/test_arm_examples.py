@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import pytest
-from _pytest.mark import ParameterSet
 
 from smachac.robots.faults import Fault
 from tests.support.arm_examples import (
@@ -16,17 +15,13 @@ from tests.support.arm_examples import (
     STACKING,
     run,
 )
+from tests.support.examples import seeds
 
 LIMIT = 0.002
 """The largest placing error, in metres."""
 
 
-def slow(seed: int) -> ParameterSet:
-    """A seed of the slow tier."""
-    return pytest.param(seed, marks=pytest.mark.slow)
-
-
-@pytest.mark.parametrize("seed", [0, *map(slow, range(1, 4))])
+@pytest.mark.parametrize("seed", seeds(1, 2, 4))
 def test_pick_and_place(seed: int) -> None:
     found = run(*PICK_AND_PLACE, seed)
     assert found.outcome == "succeeded"
@@ -34,7 +29,7 @@ def test_pick_and_place(seed: int) -> None:
     assert found.errors["block"] < LIMIT
 
 
-@pytest.mark.parametrize("seed", [0, *map(slow, range(1, 3))])
+@pytest.mark.parametrize("seed", seeds(1, 2, 3))
 def test_stacking(seed: int) -> None:
     found = run(*STACKING, seed)
     assert found.outcome == "succeeded"
@@ -85,10 +80,7 @@ def test_a_displaced_block_never_counts_as_placed(way: tuple[float, ...]) -> Non
     assert found.outcome == "aborted"
 
 
-SEEDS = [0, *map(slow, range(1, 5))]
-
-
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", seeds(1, 2, 5))
 @pytest.mark.parametrize("example", [BAXTER_STACKING, DUAL_ARM], ids=["one arm", "both arms"])
 def test_baxter_stacks_within_1_mm(example: tuple[str, dict[str, str]], seed: int) -> None:
     found = run(*example, seed)

@@ -15,6 +15,7 @@ import pytest
 from smachac import sim
 from smachac.sim import transforms
 from tests.support.arm_examples import carry
+from tests.support.examples import seeds
 
 pytest.importorskip("pybullet")
 
@@ -85,7 +86,7 @@ def baxter() -> Iterator[sim.World]:
 def draws(arm: sim.Arm, count: int) -> Iterator[list[float]]:
     source = random.Random(arm.name)
     for _ in range(count):
-        yield [source.uniform(low, high) for low, high in arm.limits]
+        yield [source.uniform(joint.lower, joint.upper) for joint in arm.facts]
 
 
 @pytest.mark.parametrize(("name", "side"), [("left", 1), ("right", -1)])
@@ -122,7 +123,7 @@ def test_the_files_are_those_of_the_script() -> None:
         assert "<mesh" not in content
 
 
-MANY = [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 6))]
+MANY = seeds(1, 2, 6)
 
 
 @pytest.mark.parametrize("seed", MANY)

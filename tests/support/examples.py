@@ -1,4 +1,4 @@
-"""The examples of a law or a table: all of them where the slow tests run as well, else a part."""
+"""The examples of a law or a table: all of them in the nightly tests, else a part."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from _pytest.mark import ParameterSet
 from hypothesis import settings
 
 ALL, SOME = 100, 20
-"""The examples of a law without a number of its own, in all tests and in `make test`."""
+"""The examples of a law without a number of its own, in the nightly tests and in all others."""
 
 
 def examples(count: int) -> int:
@@ -22,6 +22,19 @@ def examples(count: int) -> int:
 def every(step: int, values: Iterable[object]) -> list[ParameterSet]:
     """The values as parameters of a test; but for each `step`-th one the test is slow."""
     return [
-        pytest.param(each, marks=[pytest.mark.slow] if place % step else [])
-        for place, each in enumerate(values)
+        pytest.param(value, marks=[pytest.mark.slow] if place % step else [])
+        for place, value in enumerate(values)
     ]
+
+
+def seeds(quick: int, slow: int, nightly: int) -> list[ParameterSet]:
+    """The seeds from 0 as parameters of a test: those up to `quick` for `make test`, those up to
+    `slow` slow, and those up to `nightly` nightly."""
+    return [pytest.param(seed, marks=tier(seed, quick, slow)) for seed in range(nightly)]
+
+
+def tier(place: int, quick: int, slow: int) -> list[pytest.MarkDecorator]:
+    """The marks of the test at a place of its table; see `seeds`."""
+    if place < quick:
+        return []
+    return [pytest.mark.slow if place < slow else pytest.mark.nightly]

@@ -23,7 +23,7 @@ def quiet_ray(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("RAY_ADDRESS", raising=False)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.usefixtures("quiet_ray")
 def test_a_worker_that_is_killed_half_way_loses_no_run(tmp_path: Path) -> None:
     work_folder(tmp_path, ONCE.format("os.kill(os.getpid(), signal.SIGKILL)"), seed=9)
@@ -40,7 +40,7 @@ def test_a_worker_that_is_killed_half_way_loses_no_run(tmp_path: Path) -> None:
     assert rows == [(seed, "succeeded") for seed in range(20)]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.usefixtures("quiet_ray")
 def test_a_run_that_always_kills_its_worker_has_failed(tmp_path: Path) -> None:
     work_folder(tmp_path, "os.kill(os.getpid(), signal.SIGKILL)", seed=9)

@@ -12,7 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
-from smachac.diagnostics.repair import Edit, Repair, edited_texts
+from smachac.diagnostics.repair import Repair, edited_texts
+from smachac.diagnostics.source import Source
+from smachac.driver import Analysis
+from smachac.frontend.yaml_tree import parse
+from smachac.repair.search import again, clusters
+from smachac.report.text import with_cluster
 from tests.trust.kept_mutations import KEPT_MUTATIONS
 from tests.trust.project_text import analysed
 from tests.trust.text_mutations import TEXT_MUTATIONS, TextMutant, TextMutation
@@ -24,19 +29,21 @@ Files = Mapping[str, str]
 
 @dataclass(frozen=True, slots=True)
 class JudgedRepair:
-    """A mutant of a project with its findings, errors and warnings, in the order in which they are
-    printed. `original` are the files before the mutation, `files` those after it."""
+    """A mutant of a project with its findings, errors and warnings, as they are printed: in their
+    order, without those that the repair of another one explains. `original` are the files before
+    the mutation, `files` those after it; `repair` is the first repair of the report."""
 
     original: Files
     file: str
     files: Files
     mutant: TextMutant
     findings: tuple[Diagnostic, ...]
+    repair: Repair | None
 
     def after(self, repair: Repair) -> tuple[Diagnostic, ...]:
         """The findings after a repair."""
         new = {source.name: text for source, text in edited_texts(repair.edits).items()}
-        return findings({**self.files, **new})
+        return shown(analysed({**self.files, **new}))[0]
 
     @property
     def named(self) -> bool:
@@ -44,18 +51,22 @@ class JudgedRepair:
         return bool(self.findings) and names_all(self.findings[0], self.mutant.lost)
 
     @property
-    def edits(self) -> tuple[Edit, ...]:
-        """The edits of the best repair of the first finding that has one."""
-        repairs = (item.finding.all_repairs for item in self.findings)
-        return next((found[0].edits for found in repairs if found), ())
+    def restored(self) -> bool:
+        """Whether the repair restores the original text of every file that it changes, exactly."""
+        return bool(self._repaired) and all(old == new for old, new in self._repaired)
 
     @property
-    def restored(self) -> bool:
-        """Whether the edits restore the original text of every file that they change, exactly."""
-        return bool(self.edits) and all(
-            text == self.original.get(source.name)
-            for source, text in edited_texts(self.edits).items()
+    def wrong(self) -> bool:
+        """Whether a text has another meaning than the original one after the repair."""
+        return any(
+            parse(Source("", old), []) != parse(Source("", new), []) for old, new in self._repaired
         )
+
+    @property
+    def _repaired(self) -> list[tuple[str, str]]:
+        """The original texts of the files that the repair changes, and those after it."""
+        texts = edited_texts(self.repair.edits) if self.repair is not None else {}
+        return [(self.original.get(source.name, ""), text) for source, text in texts.items()]
 
 
 def names_all(item: Diagnostic, lost: tuple[str, ...]) -> bool:
@@ -72,17 +83,24 @@ def judged(files: Files, kind: str, seed: str) -> JudgedRepair | None:
     if mutant is None:
         return None
     changed = {**files, file: mutant.text}
-    return JudgedRepair(files, file, changed, mutant, findings(changed))
+    return JudgedRepair(files, file, changed, mutant, *shown(analysed(changed)))
 
 
 def scripts(files: Files) -> list[str]:
     return [name for name in sorted(files) if name.endswith((".yml", ".yaml"))]
 
 
-def findings(files: Files) -> tuple[Diagnostic, ...]:
-    """The errors and warnings of a project."""
-    report = analysed(files).report
-    return tuple(item for item in report if item.severity is not Severity.INFO)
+def shown(analysis: Analysis) -> tuple[tuple[Diagnostic, ...], Repair | None]:
+    """The errors and warnings of a project as they are printed, and the first repair."""
+    found = clusters(analysis, analysis.report, again(analysis))
+    hidden = {id(item) for cluster in found for item in cluster.explained}
+    roots = {id(cluster.finding): cluster for cluster in found}
+    items = [
+        with_cluster(item, roots.get(id(item)))
+        for item in analysis.report
+        if item.severity is not Severity.INFO and id(item) not in hidden
+    ]
+    return (*items,), found[0].repair if found else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,8 +120,10 @@ def two_faults(files: Files, kinds: tuple[str, str], seed: str) -> TwoFaults | N
     alone = ALL_MUTATIONS[kinds[1]](files[file], random.Random(seed))
     if first is None or second is None or alone is None:
         return None
-    if not findings({**files, file: first.text}) or not findings({**files, file: alone.text}):
+    one, other, found = (
+        shown(analysed({**files, file: mutant.text}))[0] for mutant in (first, alone, second)
+    )
+    if not one or not other:
         return None
-    found = findings({**files, file: second.text})
     named = [any(names_all(item, mutant.lost) for item in found) for mutant in (first, second)]
     return TwoFaults((first, second), (named[0], named[1]))

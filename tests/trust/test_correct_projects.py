@@ -6,6 +6,7 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.report.text import render_text
+from tests.support.examples import seeds
 from tests.trust.correct_projects import texts_by_hand, written_by_hand
 from tests.trust.project_text import analysed, judged
 from tests.trust.random_projects import correct_project
@@ -19,11 +20,7 @@ def loud(report: Report) -> str:
     return render_text([item for item in report if item.severity is not Severity.INFO])
 
 
-BLOCKS = range(RANDOM // BLOCK)
-MORE = [pytest.param(block, marks=pytest.mark.slow) for block in BLOCKS[2:]]
-
-
-@pytest.mark.parametrize("block", [*BLOCKS[:2], *MORE])
+@pytest.mark.parametrize("block", seeds(2, 6, RANDOM // BLOCK))
 def test_random_projects_are_clean(block: int) -> None:
     """Not even a warning, with everything that the language has."""
     for seed in range(block * BLOCK, (block + 1) * BLOCK):

@@ -25,7 +25,11 @@ PARTS = 4
 
 @pytest.mark.parametrize(
     ("each", "part"),
-    [(2, 0), *(pytest.param(10, part, marks=pytest.mark.slow) for part in range(PARTS))],
+    [
+        (2, 0),
+        *(pytest.param(2, part, marks=pytest.mark.slow) for part in range(1, PARTS)),
+        *(pytest.param(10, part, marks=pytest.mark.nightly) for part in range(PARTS)),
+    ],
 )
 def test_nearly_all_damage_is_caught(each: int, part: int) -> None:
     names = [*MUTATIONS][part::PARTS]

@@ -26,14 +26,14 @@ from tests.conformance_ir.ir_vectors import machine_of
 from tests.conformance_ir.test_ir_vectors import CASES
 from tests.strategies.full_machines import busy_machines
 from tests.strategies.userdata_machines import data_machines
-from tests.support.examples import examples
+from tests.support.examples import examples, seeds
 from tests.trust.mutants import Subject
 from tests.trust.mutations import MUTATIONS
 from tests.trust.project_text import judged
 from tests.trust.random_projects import correct_project
 from tests.trust.random_runs import contradictions, runs
 
-PROJECTS = [*range(2), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 14))]
+PROJECTS = seeds(2, 5, 14)
 DAMAGED = 6
 RUNS = 9
 
@@ -156,7 +156,7 @@ def test_graphs_without_an_error_run_without_a_fault(machine: Machine) -> None:
     expect_no_fault(machine)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @settings(max_examples=200, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
 @given(data_machines())
 def test_many_graphs_without_an_error_run_without_a_fault(machine: Machine) -> None:

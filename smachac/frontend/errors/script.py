@@ -172,7 +172,6 @@ def unknown_variable(
     meant: str | None = None,
     outcome: bool = False,
     key: str | None = None,
-    type_name: str | None = None,
     certain: str | None = None,
     required: str | None = None,
     fitting: Collection[str] = (),
@@ -207,8 +206,6 @@ def unknown_variable(
         certain = f"a decimal comma? write `{number}.{word.text}`"
     elif outcome:
         certain = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
-    elif type_name is not None:
-        certain = f"`{word.text}` is a variable of `{type_name}`: write `template: {type_name}`"
     elif key is not None:
         certain = f"`{word.text}` is an input key: {key}"
     lacks = f"no code reads a field of this name, and `{required}`, which is required, is missing"

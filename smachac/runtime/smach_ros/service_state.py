@@ -89,7 +89,7 @@ class ServiceState(RosState):
             return "aborted"
         try:
             response = self._call(request)
-        except (self._rospy.ServiceException, self._rospy.ROSInterruptException) as error:
+        except Exception as error:  # also those of genpy, for values that do not fit their fields
             smach.logerr(f"the call of service '{self._name}' failed: {error}")
             return "aborted"
         return "aborted" if response is None else self._take_response(ud, response)

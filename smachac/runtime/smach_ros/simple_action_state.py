@@ -113,15 +113,17 @@ class SimpleActionState(RosState):
                 smach.logerr(f"there is no server for action '{self._name}'")
             return "aborted"
         try:
-            goal = self._fill_goal(ud)
+            handle = self._client.send_goal(
+                self._fill_goal(ud),
+                lambda handle: self._wake(),
+                lambda handle, feedback: self._on_feedback(ud, feedback),
+            )
+        except self._rospy.ROSSerializationException as error:
+            smach.logerr(f"no goal is sent to action '{self._name}': {error}")
+            return "aborted"
         except Exception:
             smach.logerr(f"no goal is sent to action '{self._name}':\n{traceback.format_exc()}")
             return "aborted"
-        handle = self._client.send_goal(
-            goal,
-            lambda handle: self._wake(),
-            lambda handle, feedback: self._on_feedback(ud, feedback),
-        )
         try:
             ended = self._await_end(handle)
         finally:

@@ -14,6 +14,7 @@ from smachac.runtime.container_tree import active_paths, containers
 from smachac.runtime.smach import Remapper, UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach_ros2 import ros, spinning
+from smachac.runtime.smach_ros2.message_fields import FieldError, checked, filled
 
 CANCEL_LIMIT = 1.0
 """Seconds that the status of a goal may take to become `canceling` after the cancel request."""
@@ -163,6 +164,9 @@ class ActionServerWrapper:
             return
         try:
             result = self.execute_cb(handle)
+        except FieldError as error:
+            self._end(handle, str(error))
+            return
         except Exception:
             ros.log_failure(self._node, "the machine of an action server failed")
             self._end(handle, "its machine failed")
@@ -191,12 +195,13 @@ class ActionServerWrapper:
         return result
 
     def _result(self) -> Any:
-        """The result message, filled from the userdata after the container ended."""
-        result = self.userdata[self._keys[2]]
+        """The result message, filled from the userdata after the container ended. Raises FieldError
+        for a value that does not fit."""
         packed = {slot: slot for slot in self._packed if slot in self.userdata}
-        for slot, key in (self._result_slots | packed).items():
-            setattr(result, slot, self.userdata[key])
-        return result
+        slots = self._result_slots | packed
+        values = {slot: self.userdata[key] for slot, key in slots.items()}
+        result = checked(self.userdata[self._keys[2]], self._spec.Result, "result")
+        return filled(result, values, "result")
 
     def _is_cancelled(self, handle: Any) -> bool:
         """Whether the goal may end as cancelled; rclpy sets this after the cancel callback."""
@@ -215,6 +220,8 @@ class ActionServerWrapper:
                 handle.canceled()
             else:
                 handle.abort()
+        else:  # rclpy cannot change the status any more
+            smach.logerr(f"the client gets status {handle.status} and an empty result")
         self._send_result(handle, self._spec.Result())
 
     def _send_result(self, handle: Any, result: Any) -> None:
@@ -253,10 +260,12 @@ class ActionServerWrapper:
         key = self._keys[1]
         if self._path_slot is not None or key not in userdata or self._current is None:
             return
-        feedback = userdata[key]
-        for slot, source in self._feedback_slots.items():
-            setattr(feedback, slot, userdata[source])
-        self._current.publish_feedback(feedback)
+        values = {slot: userdata[source] for slot, source in self._feedback_slots.items()}
+        try:
+            feedback = checked(userdata[key], self._spec.Feedback, "feedback")
+            self._current.publish_feedback(filled(feedback, values, "feedback"))
+        except FieldError as error:
+            smach.logerr(f"no feedback of an action server is sent: {error}")
 
     def _publish_path(self, userdata: UserData, states: Any) -> None:
         """Publish the paths of the active states in the field `path_slot`."""
@@ -267,7 +276,10 @@ class ActionServerWrapper:
         paths = active_paths("/", self.wrapped_container)
         is_text = isinstance(getattr(feedback, self._path_slot), str)
         setattr(feedback, self._path_slot, ", ".join(paths) if is_text else paths)
-        self._current.publish_feedback(feedback)
+        try:
+            self._current.publish_feedback(checked(feedback, self._spec.Feedback, "feedback"))
+        except FieldError as error:
+            smach.logerr(f"no feedback of an action server is sent: {error}")
 
 
 def _key(handle: Any) -> bytes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from smachac.runtime.smach_ros2 import program, ros
@@ -27,7 +27,10 @@ class LifecycleMachineNode(LifecycleNode):
     Attributes:
         machine: the machine, or None while the node is not configured.
         outcome: the outcome of the last run, or None.
+        arguments: the arguments of the program, with those of ROS.
     """
+
+    arguments: Sequence[str] = ()
 
     def __init__(self, node_name: str, build: Callable[[Any], Any], **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)

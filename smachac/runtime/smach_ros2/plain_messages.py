@@ -9,7 +9,7 @@ from typing import Any
 
 from smachac.runtime.smach_ros2 import ros
 from smachac.runtime.smach_ros2.interfaces import message_class
-from smachac.runtime.smach_ros2.message_fields import filled, is_message
+from smachac.runtime.smach_ros2.message_fields import checked, filled, is_message
 
 Vector = tuple[float, float, float]
 
@@ -19,10 +19,13 @@ def parse_message(value: Any, kind: str | None = None, node: Any = None) -> Any:
 
     `kind` is its type, such as `geometry_msgs/Pose`. Without it, the shape of the lists determines
     it: `[x, y, z]` is a PointStamped, `[[x, y, z], [x, y, z, w]]` a PoseStamped, a list of points a
-    PointCloud2, a list of poses a PoseArray. Raises TypeError or ValueError for other values.
+    PointCloud2, a list of poses a PoseArray. The values of its fields have the types of the fields.
+    Raises TypeError or ValueError for other values.
     """
     if is_message(value):
-        return value if kind is not None else _stamped_message(value, node)
+        kind_of_value = type(value) if kind is None else message_class(kind)
+        message = checked(value, kind_of_value, "msg")
+        return message if kind is not None else _stamped_message(message, node)
     if kind is None:
         if isinstance(value, Mapping):
             raise ValueError("a mapping needs the key `msg_type`")
@@ -32,9 +35,9 @@ def parse_message(value: Any, kind: str | None = None, node: Any = None) -> Any:
     if name == "PointCloud2" and not isinstance(value, Mapping):
         _set_points(made, [tuple(map(float, point)) for point in value])
     elif name in _PARTS and not isinstance(value, Mapping):
-        filled(made, {_PARTS[name]: value})
+        filled(made, {_PARTS[name]: value}, "msg")
     else:
-        filled(made, value)
+        filled(made, value, "msg")
     return _now(made, node)
 
 

@@ -10,15 +10,20 @@ from typing import Any
 
 from smachac.runtime import smach
 from smachac.runtime.smach import State
-from smachac.runtime.smach_ros2.message_fields import filled_field
+from smachac.runtime.smach_ros2.message_fields import FieldError, checked, filled
 from smachac.runtime.state_callbacks import Callback, is_outcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outgoing:
-    """A goal or a request: a default message, a key, slots and a callback, in this order."""
+    """A goal or a request: a default message, a key, slots and a callback, in this order.
+
+    `name` is that of the server, `part` the word `goal` or `request`, `kind` the class.
+    """
 
     name: str
+    part: str
+    kind: type[Any]
     default: Any
     key: str | None
     slots: Sequence[str]
@@ -36,15 +41,15 @@ class Outgoing:
             return None
         try:
             message = copy.deepcopy(self.default if self.key is None else ud[self.key])
-            if hasattr(message, "_check_fields"):  # otherwise a wrong type is converted or crashes
-                message._check_fields = True
-            for slot in self.slots:
-                filled_field(message, slot, ud[slot])
+            message = checked(message, self.kind, self.part)
+            message = filled(message, {slot: ud[slot] for slot in self.slots}, self.part)
             changed = None if self.callback is None else self.callback(ud, message)
+            return checked(message if changed is None else changed, self.kind, self.part)
+        except FieldError as error:
+            smach.logerr(f"nothing is sent to '{self.name}': {error}")
         except Exception:
             smach.logerr(f"nothing is sent to '{self.name}':\n{traceback.format_exc()}")
-            return None
-        return message if changed is None else changed
+        return None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

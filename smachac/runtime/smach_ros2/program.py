@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import threading
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
 
-from smachac.runtime.smach_ros2 import ros
+from smachac.runtime.smach_ros2 import delivery, ros
 from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
@@ -30,6 +32,8 @@ def start_node(
 
 def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
     """Initialize rclpy as `start_node` does, and start the node that `make` returns."""
+    arguments = sys.argv if args is None else args
+    _refuse_leading_zeros(arguments)
     handler = None
     if threading.current_thread() is threading.main_thread():
         handler = PreemptHandler(ros.rclpy.get_default_context())
@@ -40,7 +44,7 @@ def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
             with _silent_rcl():
                 ros.rclpy.init(args=args, signal_handler_options=options.NO)
             node = make()
-        node.signal_handler = handler
+        node.signal_handler, node.arguments = handler, arguments
         node.start()
     except BaseException:
         ros.rclpy.try_shutdown()
@@ -48,6 +52,20 @@ def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
             handler.remove()
         raise
     return node
+
+
+def _refuse_leading_zeros(args: list[str]) -> None:
+    """End the program with exit code 2 if a number of a parameter begins with 0: ROS 2 reads 010 as
+    8, 07 as 7, and 08 as a float."""
+    for before, rule in pairwise(args):
+        value = rule.partition(":=")[2]
+        if before in ("-p", "--param") and re.fullmatch(r"[-+]?0[0-9]+", value):
+            print(
+                f"ROS 2 cannot start: '-p {rule}': a number that begins with 0 is read as octal "
+                f"or as a float; write it without the 0, or in quotes if it is a text",
+                file=sys.stderr,
+            )
+            raise SystemExit(2)
 
 
 @contextmanager
@@ -105,11 +123,14 @@ def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
 def stop_node(node: Any) -> None:
     """Stop the thread of a node of `start_node`, destroy the node and shut rclpy down.
 
-    Signals are ignored meanwhile; after that the former handlers are in place again.
+    Messages that are under way get up to a second to arrive. Signals are ignored meanwhile; after
+    that the former handlers are in place again.
     """
     handler: PreemptHandler | None = node.signal_handler
     if handler is not None:
         handler.ignore()
+    if node.context.ok():
+        delivery.await_acknowledgements(node.publishers)
     node.stop()
     node.destroy_node()
     node.context.try_shutdown()

@@ -5,6 +5,7 @@ Importing this module imports rclpy. ImportError names the packages if there is 
 
 from __future__ import annotations
 
+import math
 import traceback
 from collections.abc import Callable
 from importlib import import_module
@@ -32,7 +33,7 @@ def load(name: str) -> Any:
     except ImportError as error:
         raise ImportError(
             f"smach_ros2 needs ROS 2, and this Python has none ({error}); source the setup file of "
-            "a ROS 2 installation, or: pip install ros-rclpy ros-rmw-fastrtps-cpp"
+            "a ROS 2 installation, or: pip install ros-kilted-rclpy ros-kilted-rmw-fastrtps-cpp"
         ) from error
 
 
@@ -44,6 +45,8 @@ if TYPE_CHECKING:
         """The class rclpy.node.Node."""
 
         def __init__(self, node_name: str, **kwargs: Any) -> None: ...
+
+        def destroy_node(self) -> None: ...
 
         def __getattr__(self, name: str) -> Any: ...
 
@@ -75,6 +78,18 @@ else:
     LifecycleNode = load("rclpy.lifecycle").LifecycleNode
 
 NANOSECONDS = 1_000_000_000
+
+
+def nanoseconds(seconds: float) -> int:
+    """The nearest whole number of nanoseconds."""
+    whole = math.floor(seconds)
+    return whole * NANOSECONDS + round((seconds - whole) * NANOSECONDS)
+
+
+def duration(seconds: float) -> Any:
+    """The rclpy.duration.Duration that is nearest to a number of seconds. The constructor of that
+    class cuts fractions off: its 2.01 s are one nanosecond less."""
+    return load("rclpy.duration").Duration(nanoseconds=nanoseconds(seconds))
 
 
 def seconds(time: Time | None) -> float | None:
@@ -126,10 +141,10 @@ def connect_smach() -> None:
     if (smach.loginfo, smach.logerr) == (log.loginfo, log.logerr):
         logger = load("rclpy.logging").get_logger("smach_ros")
         smach.set_loggers(
-            lambda text: logger.info(text),
-            lambda text: logger.warning(text),
-            lambda text: logger.debug(text),
-            lambda text: logger.error(text),
+            lambda text: logger.info(str(text)),  # rclpy raises TypeError for what is no text
+            lambda text: logger.warning(str(text)),
+            lambda text: logger.debug(str(text)),
+            lambda text: logger.error(str(text)),
         )
     if smach.is_shutdown is log.is_shutdown:
         smach.set_shutdown_check(shutdown_check())

@@ -61,6 +61,8 @@ class ServiceState(RosState):
         keys = tuple(input_keys), tuple(output_keys)
         self._outgoing = Outgoing(
             name=service_name,
+            part="request",
+            kind=service_spec.Request,
             default=service_spec.Request() if request is None else request,
             key=request_key,
             slots=checked_slots(request_slots, ros.fields(service_spec.Request), "request"),

@@ -161,6 +161,14 @@ def ros_fields(ros: Ros, value: object, text: object, module: str, part: str) ->
     return CodeText(f"filled({message}(), {as_literal(value)})")
 
 
+def checking(callback: object, kind: str) -> CodeText:
+    """A callback of ROS 2 that calls another one, if there is one, and checks the message `kind`
+    that the state sends: `checking(Test.Goal, fill)`. The states of SMACH's own smach_ros, which a
+    program uses where it is installed, check nothing."""
+    given = "" if callback is None else f", {without_ticks(callback)}"
+    return CodeText(f"checking({kind}{given})")
+
+
 RELATED = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 """The parts of services and actions, which are messages."""
 
@@ -177,6 +185,7 @@ def filters(ros: Ros) -> dict[str, Callable[..., Any]]:
 
 
 FILTERS: Mapping[str, Callable[..., Any]] = {
+    "checking": checking,
     "exptostr": without_ticks,
     "literal": as_literal,
     "code": lambda value: CodeText(value) if isinstance(value, str) else value,

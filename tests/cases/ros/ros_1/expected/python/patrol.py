@@ -2,6 +2,7 @@
 """The state machine `patrol`."""
 
 import copy
+import io
 import os
 import signal
 import struct
@@ -10,6 +11,7 @@ import sys
 import threading
 import time
 
+import genpy
 import rospy
 import tf2_geometry_msgs
 import tf2_ros
@@ -260,6 +262,15 @@ def parse_transformstamped(data):
             Vector3(*map(float, translation)), Quaternion(*map(float, rotation))
         )
     return TransformStamped(transform=data)
+
+
+def checked(message):
+    """Return a message. Raises ValueError, with the path, if a value does not fit its field."""
+    try:
+        message.serialize(io.BytesIO())
+    except (genpy.SerializationError, OverflowError) as error:
+        raise ValueError(f"{message._type}: {error}") from None
+    return message
 
 
 PARSERS = {
@@ -660,7 +671,7 @@ class PublishMsgState(smach.State):
         if self.action == "stop":
             return self.publisher.stop(topic)
         try:
-            message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
+            message = checked(parse_message(userdata["msg"], optional(userdata, "msg_type")))
         except (TypeError, ValueError) as error:
             smach.logerr(f"the message is invalid: {error}")
             return "aborted"
@@ -744,7 +755,7 @@ class PublishObserverMsgState(smach.State):
         if self.action == "remove":
             return self.observer.remove(topic)
         try:
-            message = parse_message(userdata["msg"], optional(userdata, "msg_type"))
+            message = checked(parse_message(userdata["msg"], optional(userdata, "msg_type")))
         except (TypeError, ValueError) as error:
             smach.logerr(f"the message is invalid: {error}")
             return "aborted"

@@ -1,14 +1,14 @@
 # Made by smachac 0.1.0 from main.yml (sha256 b60880ba9ee335fa).
 """The state machine `patrol`."""
 
-import rclpy.duration
 from smachac.runtime.smach_ros2 import parameters, program
 from smachac.runtime.smach_ros2.bag_states import RecordROSBagState
-from smachac.runtime.smach_ros2.message_fields import filled
+from smachac.runtime.smach_ros2.message_fields import checking, filled
 from smachac.runtime.smach_ros2.publish_states import (
     PublishMsgState,
     PublishObserverMsgState,
 )
+from smachac.runtime.smach_ros2.ros import duration
 from smachac.runtime.smach_ros2.topics import ReadTopicState, WaitForMsgState
 from smachac.runtime.smach_ros2.transform_states import (
     TF2ListenerState,
@@ -54,9 +54,10 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
                 "count",
                 Fibonacci,
                 goal_slots=["order"],
+                goal_cb=checking(Fibonacci.Goal),
                 result_slots=["sequence"],
-                exec_timeout=rclpy.duration.Duration(seconds=patience),
-                server_wait_timeout=rclpy.duration.Duration(seconds=5.0),
+                exec_timeout=duration(patience),
+                server_wait_timeout=duration(5.0),
             ),
             transitions={
                 "succeeded": "COUNT_AGAIN",
@@ -101,7 +102,13 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
         # main.yml:45
         smach.StateMachine.add(
             "DOCK",
-            smach_ros.ServiceState(node, "dock", Trigger, request=Trigger.Request()),
+            smach_ros.ServiceState(
+                node,
+                "dock",
+                Trigger,
+                request=Trigger.Request(),
+                request_cb=checking(Trigger.Request),
+            ),
             transitions={
                 "succeeded": "BATTERY",
                 "aborted": "aborted",
@@ -160,8 +167,8 @@ def build(node, battery_topic="/battery", patience=60.0, mode="rotation"):
             smach_ros.ConditionState(
                 node,
                 lambda userdata: True,
-                poll_rate=rclpy.duration.Duration(seconds=0.1),
-                timeout=rclpy.duration.Duration(seconds=10.0),
+                poll_rate=duration(0.1),
+                timeout=duration(10.0),
                 max_checks=-1,
             ),
             transitions={"true": "FRAME", "false": "aborted", "preempted": "preempted"},

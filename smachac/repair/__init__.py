@@ -1,0 +1,1 @@
+"""Repairs of faults: operators propose edits, and a search proves them by a new check."""

@@ -1,0 +1,238 @@
+"""Operators: the changes of a text that are tried for a finding, a function for each kind of slip.
+
+An operator sees the text and the place of a finding, and proposes edits with a cost. It judges
+nothing: whether an edit corrects the fault, a new check shows (search.py).
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.diagnostics.negation import are_unlike
+from smachac.diagnostics.repair import Certainty, Edit, Repair
+from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.diagnostics.spelling import slips
+from smachac.frontend import schema
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
+from smachac.ir.nodes import Machine
+from smachac.ir.traversal import walk
+from smachac.ir.types import WORDS as TYPE_WORDS
+
+MOST_CANDIDATES = 8
+"""The most candidates for one finding: each costs a check of the whole script."""
+
+MOST_NEAR = 3
+"""The most names near to a word."""
+
+RENAME = "write another name"
+
+LONGEST_NAME = 100
+"""In characters: a comparison of two names takes quadratic time."""
+
+_NAME = re.compile(r"[A-Za-z_]\w{2,}")
+
+
+class Candidate(NamedTuple):
+    """A repair that may correct a fault. Of two that do, the one with the lower cost is meant."""
+
+    cost: float
+    repair: Repair
+
+    @property
+    def order(self) -> tuple[object, ...]:
+        """The place among all candidates: the same in every run."""
+        edits = self.repair.edits
+        return (self.cost, [(edit.span.source.name, *edit.span[1:], edit.text) for edit in edits])
+
+
+def candidate(cost: float, operator: str, *edits: Edit) -> Candidate:
+    """The candidate of an operator."""
+    return Candidate(cost, Repair(edits=edits, certainty=Certainty.LIKELY, operator=operator))
+
+
+class Text(NamedTuple):
+    """A source with what operators read of it: its tree, its names with how often each is, and the
+    names that can be meant: those of the source, of the machine and of its state types."""
+
+    source: Source
+    tree: Tree | None
+    counts: Counter[str]
+    names: tuple[str, ...]
+
+
+def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Text:
+    """A source, read for operators. `types` are the names of all state types."""
+    counts = Counter(_NAME.findall(source.text))
+    known = [*counts, *TYPE_WORDS, *types, *(_names_in(machine) if machine is not None else ())]
+    return Text(source, parse(source, []), counts, (*dict.fromkeys(known),))
+
+
+def _names_in(machine: Machine) -> Iterator[str]:
+    """The names that scripts with the states of a machine can have."""
+    yield from schema.VARIABLES
+    for name, type_ in machine.state_types.items():
+        yield name
+        yield from type_.variables
+        yield from (key.name for key in (*type_.input_keys, *type_.output_keys))
+        yield from (outcome.name for outcome in type_.outcomes)
+    for _, node in walk(machine.root):
+        yield node.name
+        yield from (key.name for key in (*node.inputs, *node.outputs))
+        yield from (outcome.name for outcome in node.outcomes)
+
+
+MOST_PLACES = 4
+"""The most places of a finding at which the structure of the text is changed."""
+
+
+def candidates(
+    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
+) -> list[Candidate]:
+    """The candidates for a finding, the best first; at most MOST_CANDIDATES. `read` returns what
+    operators read of a source; `others` are the names that the other findings are about."""
+    places = [item.span, *(related.span for related in item.finding.related)]
+    places = [span for span in places if span.source is not NOWHERE.source]
+    if not places or places[0] is not item.span:
+        return []
+    found = [*_near_names(item, read(item.span.source)), *_mentioned_names(item, others)]
+    for span in dict.fromkeys(places[:MOST_PLACES]):
+        tree = read(span.source).tree
+        path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
+        found += _turned_pairs(path)
+        found += _exchanged_values(path)
+        found += _repeated_parts(path, span.source)
+    unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
+    return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
+
+
+def _order(made: Candidate) -> tuple[object, ...]:
+    return made.order
+
+
+def _path_to(tree: Tree, start: int, end: int) -> Iterator[Tree | Entry]:
+    """The parts of a tree that hold a range, from the whole to the smallest."""
+    part: Tree | Entry | None = tree
+    while part is not None:
+        yield part
+        inside: list[Tree | Entry]
+        match part:
+            case Map(entries=entries):
+                inside = [*entries]
+            case Seq(items=items):
+                inside = [*items]
+            case Entry(key=key, value=value):
+                inside = [key, value]
+            case _:
+                return
+        part = next((each for each in inside if _start(each) <= start and end <= _end(each)), None)
+
+
+def _start(part: Tree | Entry) -> int:
+    return part.key.start if isinstance(part, Entry) else part.span.start
+
+
+def _end(part: Tree | Entry) -> int:
+    return part.value.span.end if isinstance(part, Entry) else part.span.end
+
+
+def _near_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
+    """A name at the place of the finding, or among its arguments, in place of a name that it is
+    like: at the place of the finding, and where a name that is like it is written only once."""
+    words = dict.fromkeys(_NAME.findall(item.span.text)[:MOST_NEAR])
+    for word in words:
+        for cost, name in _near(word, text):
+            cost += text.counts[name] < text.counts[word]
+            for span in _places(word, item.span):
+                yield candidate(cost, RENAME, Edit(span=span, text=name))
+    for word in dict.fromkeys((*words, *item.finding.arguments)):
+        if not _NAME.fullmatch(word):
+            continue
+        for cost, name in _near(word, text):
+            if text.counts[name] == 1:
+                for span in _places(name, Span(text.source, 0, len(text.source.text))):
+                    yield candidate(cost + 0.5, RENAME, Edit(span=span, text=word))
+
+
+def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candidate]:
+    """Another name that this or another finding is about, or that is at its other places, in place
+    of the one at its place."""
+    word = item.span.text
+    if not _NAME.fullmatch(word):
+        return
+    near = [related.span.text for related in item.finding.related]
+    for cost, names in ((1.6, (*item.finding.arguments, *near)), (1.7, others)):
+        for name in dict.fromkeys(names):
+            if name != word and _NAME.fullmatch(name):
+                yield candidate(cost, RENAME, Edit(span=item.span, text=name))
+
+
+def _places(word: str, span: Span) -> Iterator[Span]:
+    """The places of a name in a range."""
+    for found in re.finditer(rf"(?<!\w){re.escape(word)}(?!\w)", span.text):
+        yield Span(span.source, span.start + found.start(), span.start + found.end())
+
+
+def _near(word: str, text: Text) -> list[tuple[float, str]]:
+    """The names that a word is like, with costs: 1 for one slip, else 1 plus the difference."""
+    if len(word) > LONGEST_NAME:
+        return []
+    own, folded = set(slips(word)), word.casefold()
+    ranked = []
+    for name in text.names:
+        if name == word or len(name) > LONGEST_NAME or are_unlike(word, name):
+            continue
+        if not own.isdisjoint(slips(name)):
+            ranked.append((1.0 - 0.01 * min(text.counts[name], 9), name))
+            continue
+        if folded in name.casefold().split("_"):
+            ranked.append((1.5 - 0.01 * min(text.counts[name], 9), name))
+            continue
+        match = difflib.SequenceMatcher(None, word.casefold(), name.casefold())
+        if match.real_quick_ratio() > 0.6 and match.quick_ratio() > 0.6 and match.ratio() > 0.6:
+            ranked.append((2.0 - match.ratio(), name))
+    return sorted(ranked)[:MOST_NEAR]
+
+
+def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
+    """The innermost entry with two plain words, turned round."""
+    for part in reversed(path):
+        if isinstance(part, Entry) and isinstance(part.value, Scalar) and part.value.span.text:
+            key, value = part.key.span, part.value.span
+            edits = (Edit(span=key, text=value.text), Edit(span=value, text=key.text))
+            yield candidate(1.5, "exchange name and value", *edits)
+            return
+
+
+def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
+    """The single value of the innermost entry, exchanged with the others of its mapping."""
+    for around, entry in reversed([*pairwise(path)]):
+        if not isinstance(around, Map) or not isinstance(entry, Entry):
+            continue
+        own = entry.value.span
+        for other in around.entries if isinstance(entry.value, Scalar) and own.text else ():
+            value = other.value.span
+            if isinstance(other.value, Scalar) and value.text and value.text != own.text:
+                edits = (Edit(span=own, text=value.text), Edit(span=value, text=own.text))
+                yield candidate(1.8, "exchange two values", *edits)
+        return
+
+
+def _repeated_parts(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
+    """The lines of an entry or an item that is in its mapping or list twice, deleted."""
+    for around, part in reversed([*pairwise(path)]):
+        others: list[Tree | Entry] = []
+        if isinstance(around, Map):
+            others = [*around.entries]
+        elif isinstance(around, Seq):
+            others = [*around.items]
+        if sum(other == part for other in others) > 1:
+            start = source.text.rfind("\n", 0, _start(part)) + 1
+            end = source.text.find("\n", _end(part)) + 1 or len(source.text)
+            yield candidate(1.0, "delete a copy", Edit(span=Span(source, start, end), text=""))
+            return

@@ -1,0 +1,203 @@
+"""The search for what was meant: repairs of rules and of operators, each tried by a new check.
+
+A repair is proven if the script with it has fewer findings, none that is new, and if no less of it
+is understood: a state of an unknown type silences rules and corrects nothing. Literature: Lerner
+et al., Searching for type-error messages, PLDI 2007; Chen and Erwig, Counter-factual typing for
+debugging type errors, POPL 2014.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from itertools import chain
+from typing import NamedTuple, TypeAlias
+
+from smachac.batch import Batch, analyse_alone
+from smachac.diagnostics.clusters import Cluster
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, identity
+from smachac.diagnostics.repair import edited_texts
+from smachac.diagnostics.source import Source
+from smachac.driver import Analysis, MachineCheck, analyse
+from smachac.frontend.loader import Library
+from smachac.frontend.yaml_mends import parse_mended
+from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.traversal import walk
+from smachac.repair.operators import Candidate, Text, candidates, text_of
+
+MOST_CLUSTERS = 10
+"""The most findings of a script for which a repair is searched."""
+
+LONGEST_TEXT = 200_000
+"""In characters. In a longer text nothing is searched: each trial is a check."""
+
+Again: TypeAlias = "Callable[[Mapping[Source, str]], Analysis]"
+"""A function that analyses a script again after changes of its texts."""
+
+Mark: TypeAlias = "tuple[object, ...]"
+"""What stays of a finding when other text moves."""
+
+
+class Unknown(NamedTuple):
+    """How much of a script is not understood, in the order of the phases: texts that could not be
+    read, and states of an unknown type."""
+
+    unread: int
+    unresolved: int
+
+
+def clusters_of(
+    batch: Batch, shown: Report, extra: MachineCheck | None = None
+) -> tuple[Cluster, ...]:
+    """The clusters of the findings that are shown, of all scripts of a batch. They are disjoint.
+
+    `extra`: see `analyse`.
+    """
+    found: list[Cluster] = []
+    wanted = {identity(item) for item in shown}
+    for analysis in batch.analyses.values():
+        mine = [item for item in analysis.report if identity(item) in wanted]
+        if not mine:
+            continue
+        most = MOST_CLUSTERS - len(found)
+        for cluster in clusters(analysis, mine, again(analysis, extra), most):
+            found.append(cluster)
+            wanted -= {identity(item) for item in (cluster.finding, *cluster.explained)}
+    return (*found,)
+
+
+def again(analysis: Analysis, extra: MachineCheck | None = None) -> Again:
+    """The function that analyses the script of an analysis after changes of its texts."""
+    source, library = analysis.source, analysis.library
+
+    def analysed(texts: Mapping[Source, str]) -> Analysis:
+        assert source is not None
+        assert library is not None
+        changed = {old.name: Source(old.name, text) for old, text in texts.items()}
+        own = _with_texts(library, changed)
+        new = changed.get(source.name, source)
+        if analysis.alone:
+            return analyse_alone(new, own, [])
+        return analyse(new, own, [], extra, render=True)
+
+    return analysed
+
+
+def _with_texts(library: Library, changed: Mapping[str, Source]) -> Library:
+    """A library with other texts for some files. It keeps no trees of them."""
+    new = {*changed.values()}
+
+    def now(found: Source | None) -> Source | None:
+        return found if found is None else changed.get(found.name, found)
+
+    return replace(
+        library,
+        script=lambda name, caller: now(library.script(name, caller)),
+        template=lambda file: now(library.template(file)),
+        own_template=lambda file: now(library.own_template(file)),
+        parse=lambda source, report: (parse_mended if source in new else library.parse)(
+            source, report
+        ),
+    )
+
+
+def clusters(
+    analysis: Analysis, shown: Report, analysed: Again, most: int = MOST_CLUSTERS
+) -> list[Cluster]:
+    """The clusters of the errors and warnings that are shown, in order; at most `most`. Of two
+    repairs that correct the same finding, the one after which fewer are left is taken."""
+    if analysis.source is None or analysis.library is None:
+        return []
+    types = analysis.library.template_names()
+    read = cache(lambda source: text_of(source, analysis.machine, types))
+    serious = [item for item in shown if item.severity is not Severity.INFO]
+    proven: list[Proof] = []
+    for item in serious[:MOST_CLUSTERS]:
+        if len(item.span.source.text) > LONGEST_TEXT:
+            continue
+        named = (other.finding.arguments for other in serious if other is not item)
+        proposed = _proposals(item, read, [*chain.from_iterable(named)])
+        proof = _proof(item, analysis, analysed, proposed)
+        if proof is not None:
+            proven.append(proof)
+    found: dict[int, Cluster] = {}
+    covered: set[int] = set()
+    for proof in sorted(proven, key=lambda proof: proof.left.total()):
+        members = [item for item in _gone(proof, serious) if id(item) not in covered]
+        if id(proof.item) not in covered and len(found) < most:
+            others = tuple(item for item in members if item is not proof.item)
+            repair = proof.candidate.repair
+            found[id(proof.item)] = Cluster(finding=proof.item, repair=repair, explained=others)
+            covered.update(map(id, (proof.item, *others)))
+    return [found[id(item)] for item in serious if id(item) in found]
+
+
+class Proof(NamedTuple):
+    """A candidate that corrects a finding, and the findings that are left then."""
+
+    item: Diagnostic
+    candidate: Candidate
+    left: Counter[Mark]
+
+
+def _proof(
+    item: Diagnostic, analysis: Analysis, analysed: Again, proposed: Sequence[Candidate]
+) -> Proof | None:
+    """The candidate after which the fewest findings are left; None if none corrects the finding."""
+    best: Proof | None = None
+    before, marks = unknown(analysis), _marks(analysis.report)
+    for candidate in proposed:
+        after = analysed(edited_texts(candidate.repair.edits))
+        left = _marks(after.report)
+        if unknown(after) > before or left - marks or left[_mark(item)] >= marks[_mark(item)]:
+            continue
+        if best is None or left.total() < best.left.total():
+            best = Proof(item, candidate, left)
+        if not left:
+            break
+    return best
+
+
+def _proposals(
+    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
+) -> Sequence[Candidate]:
+    """The repairs of the finding, then those of the operators."""
+    own = enumerate(item.finding.all_repairs)
+    return [
+        *(Candidate(0.1 * number, repair) for number, repair in own),
+        *candidates(item, read, others),
+    ]
+
+
+def unknown(analysis: Analysis) -> Unknown:
+    """What an analysis has not understood."""
+    unread = sum(item.code in ("SM001", "SM006") for item in analysis.report)
+    if analysis.machine is None:
+        return Unknown(unread + 1, 0)
+    return Unknown(unread, _unresolved(analysis.machine))
+
+
+def _unresolved(machine: Machine) -> int:
+    return sum(isinstance(node, Leaf) and node.open for _, node in walk(machine.root))
+
+
+def _marks(report: Iterable[Diagnostic]) -> Counter[Mark]:
+    return Counter(_mark(item) for item in report if item.severity is not Severity.INFO)
+
+
+def _mark(item: Diagnostic) -> Mark:
+    return (item.code, item.severity, item.span.source.name, item.finding.arguments)
+
+
+def _gone(proof: Proof, shown: Report) -> list[Diagnostic]:
+    """The findings that a proven candidate corrects."""
+    left = proof.left.copy()
+    gone = []
+    for item in shown:
+        if left[_mark(item)]:
+            left[_mark(item)] -= 1
+        else:
+            gone.append(item)
+    return gone

@@ -1,0 +1,177 @@
+"""The search for repairs: proven by a new check, disjoint, the same in every run, never by knowing
+less of the script."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from smachac.commands.cli import main
+from smachac.diagnostics.clusters import Cluster
+from smachac.diagnostics.diagnostic import Diagnostic, Severity
+from smachac.diagnostics.repair import Certainty, edited_texts
+from smachac.diagnostics.source import Source
+from smachac.driver import Analysis, analyse
+from smachac.frontend.loader import memory_library
+from smachac.frontend.yaml_mends import parse_mended
+from smachac.repair.search import MOST_CLUSTERS, again, clusters
+from tests.trust.judged_repairs import ALL_MUTATIONS, judged
+from tests.trust.project_text import BUILT_IN, MAIN
+from tests.trust.unusual_projects import unusual_projects
+
+SCRIPT = """\
+name: sm
+template: Base
+outcomes: [succeeded, aborted]
+userdata: {block_pose: 1}
+states:
+  - LOOK:
+      template: ScriptedState
+      outcomes: [done, failed]
+      transitions: {done: PICK, failed: aborted}
+  - PICK:
+      template: ScriptedState
+      outcomes: [done]
+      input_keys: [block_pose]
+      transitions: {done: succeeded}
+"""
+
+SLIPS = {
+    "name of a state": ("done: PICK", "done: PIKC"),
+    "name of a key": ("input_keys: [block_pose]", "input_keys: [blok_poes]"),
+    "part of a name": ("input_keys: [block_pose]", "input_keys: [pose]"),
+    "name of a field": ("input_keys:", "imput_kyes:"),
+    "name of a state type": ("PICK:\n      template: Scripted", "PICK:\n      template: Scritpde"),
+    "name and value": ("failed: aborted", "aborted: failed"),
+    "declared name": ("outcomes: [succeeded,", "outcomes: [suceeded,"),
+    "lost bracket": ("[succeeded, aborted]", "[succeeded, aborted"),
+}
+
+
+def analysed(files: Mapping[str, str]) -> Analysis:
+    library = replace(memory_library(files, BUILT_IN), parse=parse_mended)
+    return analyse(Source(MAIN, files[MAIN]), library, [], render=True)
+
+
+def found_in(files: Mapping[str, str]) -> tuple[Analysis, list[Cluster]]:
+    analysis = analysed(files)
+    return analysis, clusters(analysis, analysis.report, again(analysis))
+
+
+def test_the_script_has_no_finding() -> None:
+    assert analysed({MAIN: SCRIPT}).report == []
+
+
+@pytest.mark.parametrize("slip", SLIPS)
+def test_the_repair_of_a_slip_restores_the_text(slip: str) -> None:
+    old, new = SLIPS[slip]
+    _, found = found_in({MAIN: SCRIPT.replace(old, new)})
+    assert edited_texts(found[0].repair.edits).popitem()[1] == SCRIPT
+
+
+def test_to_silence_a_rule_is_no_repair() -> None:
+    """With a state type that does not exist, no key would be missing."""
+    slip = SCRIPT.replace("input_keys: [block_pose]", "input_keys: [weight]")
+    _, found = found_in({MAIN: slip})
+    for cluster in found:
+        texts = [*edited_texts(cluster.repair.edits).values()]
+        assert "ScriptedState\n      outcomes: [done]" in texts[0]
+
+
+def test_a_sub_script_is_repaired_for_its_callers() -> None:
+    main = SCRIPT.replace(
+        "      template: ScriptedState\n      outcomes: [done]\n      input_keys: [block_pose]\n",
+        "      script: pick\n",
+    )
+    pick = (
+        "- PICK:\n    template: ScriptedState\n    outcomes: [done]\n    imput_keys: [block_pose]\n"
+    )
+    _, (cluster,) = found_in({MAIN: main, "pick.yml": pick})
+    ((source, text),) = edited_texts(cluster.repair.edits).items()
+    assert source.name == "pick.yml"
+    assert text == pick.replace("imput", "input")
+
+
+def mutants() -> list[tuple[str, str]]:
+    """A kind of damage and the name of a project for each of 60 texts."""
+    names = sorted(unusual_projects())
+    kinds = [*ALL_MUTATIONS]
+    return [(kinds[turn % len(kinds)], names[(11 * turn) % len(names)]) for turn in range(60)]
+
+
+def test_clusters_of_damaged_texts_obey_the_laws() -> None:
+    projects = unusual_projects()
+    count = 0
+    for kind, name in mutants():
+        mutant = judged(projects[name], kind, f"search {name}")
+        if mutant is None:
+            continue
+        analysis, found = found_in(mutant.files)
+        count += len(found)
+        assert len(found) <= MOST_CLUSTERS
+        assert_disjoint(analysis, found)
+        for cluster in found:
+            assert_proven(analysis, cluster)
+    assert count > 20
+
+
+def assert_disjoint(analysis: Analysis, found: list[Cluster]) -> None:
+    """Each finding of a report is in at most one cluster, and no cluster has another finding."""
+    members = [id(item) for cluster in found for item in (cluster.finding, *cluster.explained)]
+    assert len(set(members)) == len(members)
+    assert set(members) <= {id(item) for item in analysis.report}
+
+
+def assert_proven(analysis: Analysis, cluster: Cluster) -> None:
+    """With the repair a check has fewer findings, and not one of another kind."""
+    after = again(analysis)(edited_texts(cluster.repair.edits))
+    before, left = (serious(each) for each in (analysis, after))
+    assert len(left) < len(before)
+    assert {key(item) for item in left} <= {key(item) for item in before}
+
+
+def serious(analysis: Analysis) -> list[Diagnostic]:
+    return [item for item in analysis.report if item.severity is not Severity.INFO]
+
+
+def key(item: Diagnostic) -> tuple[object, ...]:
+    return item.code, item.span.source.name, item.finding.arguments
+
+
+def test_safe_repairs_stay_safe() -> None:
+    _, (cluster,) = found_in({MAIN: SCRIPT.replace("done: PICK", "done: PICKK")})
+    assert cluster.repair.certainty is Certainty.SAFE
+
+
+def test_the_report_is_the_same_with_another_hash_seed(tmp_path: Path) -> None:
+    slips = [SLIPS[name] for name in ("name of a key", "name of a state", "declared name")]
+    text = SCRIPT
+    for old, new in slips:
+        text = text.replace(old, new)
+    (tmp_path / "main.yml").write_text(text)
+    call = [sys.executable, "-m", "smachac", "check", "main.yml", "--format", "json"]
+    printed = {
+        subprocess.run(
+            call, cwd=tmp_path, env={"PYTHONHASHSEED": seed}, capture_output=True, check=False
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(printed) == 1
+    assert json.loads(printed.pop())["clusters"]
+
+
+def test_a_report_shows_the_repair_and_what_it_explains(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "main.yml").write_text(
+        SCRIPT.replace("input_keys: [block_pose]", "input_keys: [pose]")
+    )
+    assert main(["check", str(tmp_path / "main.yml")]) == 1
+    printed = capsys.readouterr().out
+    assert "help: did you mean `block_pose`?" in printed
