@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,12 @@ _WORDS_FOR_OFF = frozenset(["ignore", "none", "disable", "disabled", "false", "n
 MOST_DOTS = 200
 """The most dots of a line, and so the most parts of a key."""
 
+MOST_WRONG = 100
+"""The most faults of a project file that are reported: each costs a search for its place."""
+
+LONGEST_FILE = 100_000
+"""In characters: a larger `smachac.toml` is not read."""
+
 LONGEST_KEY = 200
 """The longest key that is looked for in the text, in characters."""
 
@@ -74,6 +80,12 @@ def read_project(
     without them the codes in the file are not checked.
     """
     crowded = next((line for line in source.text.split("\n") if line.count(".") > MOST_DOTS), None)
+    settings_of = len(source.text) if path.name == "smachac.toml" else 0
+    if settings_of > LONGEST_FILE:
+        message = f"the file has {settings_of:,} characters; the limit is {LONGEST_FILE:,}"
+        help = "keep only settings of smachac in it"
+        report.append(too_big(Span(source, 0, 0), message, help, arguments=("characters",)))
+        return Project(readable=False)
     if crowded is not None:  # tomllib takes time and memory quadratic in the parts of a key
         start = source.text.index(crowded)
         message = f"a line has {crowded.count('.'):,} dots; the limit is {MOST_DOTS}"
@@ -280,7 +292,9 @@ def _wrong(
     *,
     at_value: bool = False,
 ) -> None:
-    """SM007 at the key or at its value."""
+    """SM007 at the key or at its value; nothing after MOST_WRONG findings."""
+    if len(report) >= MOST_WRONG:
+        return
     span = _key(source, key)
     value = _VALUE.match(source.text, span.end) if at_value else None
     if value is not None:
@@ -288,15 +302,16 @@ def _wrong(
     report.append(unreadable_file(span, message, help, arguments=arguments))
 
 
-def folder_place(source: Source, setting: str, base: Path, folder: Path) -> Word:
-    """A folder as a setting names it, and its place: that of the setting, if no text is found.
-    `base` is the folder of the project file."""
+def folder_places(source: Source, setting: str, base: Path) -> Callable[[Path], Word]:
+    """A function from a folder of a setting to its text there, and its place: that of the setting,
+    if no text is found. `base` is the folder of the project file."""
     key = _key(source, setting)
+    written: dict[Path, Word] = {}
     for found in _PART.finditer(source.text, key.end):
         text = found[0][1:-1]
-        if found[0][0] in "'\"" and base / text == folder:
-            return Word(text, Span(source, *found.span()))
-    return Word(str(folder), key)
+        if found[0][0] in "'\"":
+            written.setdefault(base / text, Word(text, Span(source, *found.span())))
+    return lambda folder: written.get(folder) or Word(str(folder), key)
 
 
 def _key(source: Source, key: str) -> Span:

@@ -17,7 +17,7 @@ from smachac.frontend.config import (
     FOLDERS,
     PROJECT_FILES,
     Project,
-    folder_place,
+    folder_places,
     read_project,
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
@@ -304,12 +304,12 @@ def _inside_repository(project: Project, source: Source, report: Report) -> Proj
     root = next((each for each in above if (each / ".git").exists()), project.folder)
     kept: dict[str, list[Path]] = {setting: [] for setting in FOLDERS}
     for setting, folders in kept.items():
+        written = folder_places(source, setting, project.folder)
         for folder in getattr(project, setting):
             if lies_inside(folder, root):
                 folders.append(folder)
                 if not folder.is_dir():
-                    written = folder_place(source, setting, project.folder, folder)
-                    report.append(_no_folder(setting, written, folder))
+                    report.append(_no_folder(setting, written(folder), folder))
                 continue
             message = f"`{setting}` names a folder outside the project: `{folder}`"
             help = "move it into the project; `--scripts` and `--templates` may name any folder"

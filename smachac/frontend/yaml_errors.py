@@ -104,11 +104,7 @@ def _anchor_name(found: re.Match[str]) -> _Fault | None:
 def syntax_error(source: Source, error: Any) -> Diagnostic:
     """SM001 for an exception of the parser."""
     stop = _stop(source.text, error)
-    readers = (
-        *(_conflict, _space, _block_text, _anchor, _open_or_stray),
-        *(_colon, _indentation, _value, _other_parts),
-    )
-    faults = (reader(stop) for reader in readers)
+    faults = (reader(stop) for reader in (_READERS if _is_short(stop) else (_conflict,)))
     message = ", ".join(part for part in (stop.problem, stop.context) if part)
     unknown = _Fault(message or "this is not YAML", None, stop.at)
     return _diagnostic(source, next((fault for fault in faults if fault is not None), unknown))
@@ -128,6 +124,18 @@ def _diagnostic(source: Source, fault: _Fault) -> Diagnostic:
         arguments=("syntax", here),
         related=related,
     )
+
+
+LONGEST_LINE = 2_000
+"""In characters. A syntax error in a longer line is reported in the words of the parser: some
+searches for a cause take quadratic time."""
+
+
+def _is_short(stop: _Stop) -> bool:
+    """Whether the lines of both places of a syntax error have at most LONGEST_LINE characters."""
+    places = [stop.at] if stop.first is None else [stop.at, stop.first]
+    starts = [stop.text.rfind("\n", 0, place) + 1 for place in places]
+    return all(_line_end(stop.text, start) - start <= LONGEST_LINE for start in starts)
 
 
 def stopped_at(text: str, error: Any) -> list[int]:
@@ -762,3 +770,10 @@ def _other_parts(stop: _Stop) -> _Fault | None:
     if stop.text.startswith("!", start):
         return _Fault("a value cannot begin with `!`", _in_quotes(stop, start), start)
     return None
+
+
+_READERS = (
+    *(_conflict, _space, _block_text, _anchor, _open_or_stray),
+    *(_colon, _indentation, _value, _other_parts),
+)
+"""The searches for the cause of a syntax error; the first one that finds it decides."""
