@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -58,19 +58,26 @@ def candidate(cost: float, operator: str, *edits: Edit) -> Candidate:
 
 class Text(NamedTuple):
     """A source with what operators read of it: its tree, its names with how often each is, and the
-    names that can be meant: those of the source, of the machine and of its state types."""
+    names that can be meant: those of the source, of the machine and of its state types. `by_slip`
+    are the names by what they have in common with a name that is one slip away (`slips`)."""
 
     source: Source
     tree: Tree | None
     counts: Counter[str]
     names: tuple[str, ...]
+    by_slip: Mapping[str, list[str]]
 
 
 def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Text:
     """A source, read for operators. `types` are the names of all state types."""
     counts = Counter(_NAME.findall(source.text))
     known = [*counts, *TYPE_WORDS, *types, *(_names_in(machine) if machine is not None else ())]
-    return Text(source, parse(source, []), counts, (*dict.fromkeys(known),))
+    names = [name for name in dict.fromkeys(known) if len(name) <= LONGEST_NAME]
+    by_slip: dict[str, list[str]] = {}
+    for name in names:
+        for slip in dict.fromkeys(slips(name)):
+            by_slip.setdefault(slip, []).append(name)
+    return Text(source, parse(source, []), counts, (*names,), by_slip)
 
 
 def _names_in(machine: Machine) -> Iterator[str]:
@@ -178,25 +185,34 @@ def _places(word: str, span: Span) -> Iterator[Span]:
         yield Span(span.source, span.start + found.start(), span.start + found.end())
 
 
+MOST_COMPARED = 500
+"""With more names, only those one slip away are found: to compare all would take too long."""
+
+
 def _near(word: str, text: Text) -> list[tuple[float, str]]:
-    """The names that a word is like, with costs: 1 for one slip, else 1 plus the difference."""
+    """The names that a word is like, with costs: 1 for one slip, 1.5 for a name of which the word
+    is a part, else 2 minus the ratio of equal letters."""
     if len(word) > LONGEST_NAME:
         return []
-    own, folded = set(slips(word)), word.casefold()
-    ranked = []
-    for name in text.names:
-        if name == word or len(name) > LONGEST_NAME or are_unlike(word, name):
-            continue
-        if not own.isdisjoint(slips(name)):
-            ranked.append((1.0 - 0.01 * min(text.counts[name], 9), name))
+    ranked: dict[str, float] = {}
+    for slip in slips(word):
+        ranked.update(dict.fromkeys(text.by_slip.get(slip, ()), 1.0))
+    folded = word.casefold()
+    for name in text.names if len(text.names) <= MOST_COMPARED else ():
+        if name in ranked:
             continue
         if folded in name.casefold().split("_"):
-            ranked.append((1.5 - 0.01 * min(text.counts[name], 9), name))
+            ranked[name] = 1.5
             continue
-        match = difflib.SequenceMatcher(None, word.casefold(), name.casefold())
+        match = difflib.SequenceMatcher(None, folded, name.casefold())
         if match.real_quick_ratio() > 0.6 and match.quick_ratio() > 0.6 and match.ratio() > 0.6:
-            ranked.append((2.0 - match.ratio(), name))
-    return sorted(ranked)[:MOST_NEAR]
+            ranked[name] = 2.0 - match.ratio()
+    found = [
+        (cost - 0.01 * min(text.counts[name], 9), name)
+        for name, cost in ranked.items()
+        if name != word and not are_unlike(word, name)
+    ]
+    return sorted(found)[:MOST_NEAR]
 
 
 def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:

@@ -30,8 +30,12 @@ from smachac.repair.operators import Candidate, Text, candidates, text_of
 MOST_CLUSTERS = 10
 """The most findings of a script for which a repair is searched."""
 
-LONGEST_TEXT = 200_000
-"""In characters. In a longer text nothing is searched: each trial is a check."""
+MOST_CHECKED = 20_000
+"""The most states that all trials of a script check together: each trial is a check of the whole
+script, so that large ones get few trials."""
+
+MOST_FINDINGS = 100
+"""In a report of more findings nothing is searched."""
 
 Again: TypeAlias = "Callable[[Mapping[Source, str]], Analysis]"
 """A function that analyses a script again after changes of its texts."""
@@ -113,13 +117,18 @@ def clusters(
     types = analysis.library.template_names()
     read = cache(lambda source: text_of(source, analysis.machine, types))
     serious = [item for item in shown if item.severity is not Severity.INFO]
+    if len(serious) > MOST_FINDINGS:
+        return []
+    states = 1 if analysis.machine is None else sum(1 for _ in walk(analysis.machine.root))
+    trials = MOST_CHECKED // states
     proven: list[Proof] = []
     for item in serious[:MOST_CLUSTERS]:
-        if len(item.span.source.text) > LONGEST_TEXT:
-            continue
+        if trials <= 0:
+            break
         named = (other.finding.arguments for other in serious if other is not item)
         proposed = _proposals(item, read, [*chain.from_iterable(named)])
-        proof = _proof(item, analysis, analysed, proposed)
+        proof = _proof(item, analysis, analysed, proposed[:trials])
+        trials -= len(proposed)
         if proof is not None:
             proven.append(proof)
     found: dict[int, Cluster] = {}
