@@ -98,22 +98,32 @@ MOST_PLACES = 4
 """The most places of a finding at which the structure of the text is changed."""
 
 
-def candidates(
-    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
-) -> list[Candidate]:
-    """The candidates for a finding, the best first; at most MOST_CANDIDATES. `read` returns what
-    operators read of a source; `others` are the names that the other findings are about."""
+class Around(NamedTuple):
+    """What operators know beside a finding: `read` returns what they read of a source, `others` are
+    the names that the other findings are about, `types` the texts of interfaces by state type."""
+
+    read: Callable[[Source], Text]
+    others: Sequence[str]
+    types: Mapping[str, str]
+
+
+def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
+    """The candidates for a finding, the best first; at most MOST_CANDIDATES."""
     places = [item.span, *(related.span for related in item.finding.related)]
     places = [span for span in places if span.source is not NOWHERE.source]
     if not places or places[0] is not item.span:
         return []
-    found = [*_near_names(item, read(item.span.source)), *_mentioned_names(item, others)]
+    found = [
+        *_near_names(item, around.read(item.span.source)),
+        *_mentioned_names(item, around.others),
+    ]
     for span in dict.fromkeys(places[:MOST_PLACES]):
-        tree = read(span.source).tree
+        tree = around.read(span.source).tree
         path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
         found += _turned_pairs(path)
         found += _exchanged_values(path)
         found += _repeated_parts(path, span.source)
+        found += _other_types(path, around.types)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
     return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
 
@@ -236,6 +246,26 @@ def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
             if isinstance(other.value, Scalar) and value.text and value.text != own.text:
                 edits = (Edit(span=own, text=value.text), Edit(span=value, text=own.text))
                 yield candidate(1.8, "exchange two values", *edits)
+        return
+
+
+def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator[Candidate]:
+    """The state types that have all fields of the innermost state, in place of its own one."""
+    for part in reversed(path):
+        entry = part.get("template") if isinstance(part, Map) else None
+        if entry is None or not isinstance(part, Map):
+            continue
+        own = [str(each.key.value) for each in part.entries if each.key.value not in schema.LONG]
+        fields = [name for name in own if name not in schema.VARIABLES]
+        fitting = [
+            name
+            for name, text in types.items()
+            if fields and name != entry.value.span.text
+            if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
+        ]
+        if len(fitting) <= MOST_NEAR:
+            for name in fitting:
+                yield candidate(1.7, RENAME, Edit(span=entry.value.span, text=name))
         return
 
 

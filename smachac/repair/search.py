@@ -25,7 +25,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.yaml_mends import parse_mended
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
-from smachac.repair.operators import Candidate, Text, candidates, text_of
+from smachac.repair.operators import Around, Candidate, candidates, text_of
 
 MOST_CLUSTERS = 10
 """The most findings of a script for which a repair is searched."""
@@ -114,7 +114,7 @@ def clusters(
     repairs that correct the same finding, the one after which fewer are left is taken."""
     if analysis.source is None or analysis.library is None:
         return []
-    types = analysis.library.template_names()
+    types = _interfaces(analysis.library)
     read = cache(lambda source: text_of(source, analysis.machine, types))
     serious = [item for item in shown if item.severity is not Severity.INFO]
     if len(serious) > MOST_FINDINGS:
@@ -126,7 +126,7 @@ def clusters(
         if trials <= 0:
             break
         named = (other.finding.arguments for other in serious if other is not item)
-        proposed = _proposals(item, read, [*chain.from_iterable(named)])
+        proposed = _proposals(item, Around(read, [*chain.from_iterable(named)], types))
         proof = _proof(item, analysis, analysed, proposed[:trials])
         trials -= len(proposed)
         if proof is not None:
@@ -141,6 +141,19 @@ def clusters(
             found[id(proof.item)] = Cluster(finding=proof.item, repair=repair, explained=others)
             covered.update(map(id, (proof.item, *others)))
     return [found[id(item)] for item in serious if id(item) in found]
+
+
+MOST_TYPES = 200
+"""Of more state types, none is proposed in place of another: each has to be read."""
+
+
+def _interfaces(library: Library) -> dict[str, str]:
+    """The names of all state types with the texts of their interfaces."""
+    names = library.template_names()
+    if len(names) > MOST_TYPES:
+        return dict.fromkeys(names, "")
+    found = ((name, library.template(f"{name}.yml")) for name in names)
+    return {name: source.text if source is not None else "" for name, source in found}
 
 
 class Proof(NamedTuple):
@@ -169,14 +182,12 @@ def _proof(
     return best
 
 
-def _proposals(
-    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
-) -> Sequence[Candidate]:
+def _proposals(item: Diagnostic, around: Around) -> Sequence[Candidate]:
     """The repairs of the finding, then those of the operators."""
     own = enumerate(item.finding.all_repairs)
     return [
         *(Candidate(0.1 * number, repair) for number, repair in own),
-        *candidates(item, read, others),
+        *candidates(item, around),
     ]
 
 

@@ -22,7 +22,7 @@ HOSTILE_DOCS = (
     "'''\nevil()\n'''",
     '"quoted"',
     "\\N \\G \\\\",
-    "\ud800 \U0001f916",
+    "\U0001f916",
     "{{ evil() }} {% set evil = 1 %}",
     "-*- coding: utf-7 -*-",
 )

@@ -4,8 +4,8 @@
 // from `smachac::Arm` and `smachac::World`, and pass an object of each to the States of the
 // machine.
 //
-// Lengths are in metres, angles in radians, poses in the frame of the robot's base. The position of a
-// joint is in radians, or in metres if it slides; in the speed of a motion, 0.2 m of a joint that
+// Lengths are in metres, angles in radians, poses in the frame of the robot's base. The position of
+// a joint is in radians, or in metres if it slides; in the speed of a motion, 0.2 m of a joint that
 // slides count as 1 rad of one that turns.
 #ifndef SMACHAC_ARM_HPP
 #define SMACHAC_ARM_HPP

@@ -20,11 +20,11 @@ inline namespace v0_1_0 {
 
 namespace detail {
 
-/// The signal handling of a program, during the lifetime of the object: the first SIGINT, SIGTERM or
-/// SIGHUP sends a preempt request, the second one ends the program with the exit code 128 + signal
-/// number. Signals that are ignored, as SIGHUP is below nohup, stay so. A thread of the object
-/// receives the signals. They are blocked in the thread that creates the object and in the threads
-/// that it starts later.
+/// The signal handling of a program, during the lifetime of the object: the first SIGINT, SIGTERM
+/// or SIGHUP sends a preempt request, the second one ends the program with the exit code 128 +
+/// signal number. Signals that are ignored, as SIGHUP is below nohup, stay so. A thread of the
+/// object receives the signals. They are blocked in the thread that creates the object and in the
+/// threads that it starts later.
 class Listener {
 public:
   explicit Listener(Stop &stop) {
