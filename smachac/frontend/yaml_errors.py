@@ -745,6 +745,9 @@ def _anchor(stop: _Stop) -> _Fault | None:
 
 
 _ESCAPE = re.compile(r"\\[xuU][0-9A-Fa-f]{0,8}")
+_SURROGATES = re.compile(r"\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
+"""The two escapes with which JSON writes one character beyond U+FFFF."""
+
 _NO_CHARACTER = (
     "found invalid Unicode character escape code",
     "did not find expected hexdecimal number",
@@ -755,6 +758,12 @@ def _other_parts(stop: _Stop) -> _Fault | None:
     """Parts of YAML that scripts seldom have: directives, tags, escapes, ends of documents."""
     start = stop.at if stop.first is None else stop.first
     escape = _ESCAPE.match(stop.text, max(0, stop.at - 2))
+    pair = _SURROGATES.match(stop.text, max(0, stop.at - 2))
+    if pair is not None:
+        high, low = (int(digits, 16) for digits in pair.groups())
+        code = 0x10000 + ((high - 0xD800) << 10) + (low - 0xDC00)
+        message = f"`{pair[0]}` is one character in JSON, and no character in YAML"
+        return _Fault(message, f"write `\\U{code:08X}`, or the character itself", *pair.span())
     if stop.problem in _NO_CHARACTER and escape is not None:
         last = escape[0].startswith("\\U") and not escape[0].startswith(("\\U000", "\\U0010"))
         message = f"`{escape[0]}` is no character" + ": the last one is \\U0010FFFF" * last

@@ -341,6 +341,7 @@ def test_unusual_yaml_is_read(text: str, value: object) -> None:
         ("a: |0\n  b\n", (1, 5), "is 1 to 9", "remove the number"),
         ('a: "b\n--- c"\n', (1, 4), "is not closed before the line that ends", "same quote"),
         ('a: "\\ud800"\n', (1, 5), "`\\ud800` is no character", "the number"),
+        ('a: "\\ud83e\\udd16"\n', (1, 5), "one character in JSON", "write `\\U0001F916`"),
         ('a: "\\U00110000"\n', (1, 5), "the last one is \\U0010FFFF", "the number"),
         ('a: "\\x4"\n', (1, 5), "`\\x4` is no character", "the number"),
     ],
