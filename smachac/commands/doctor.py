@@ -148,11 +148,12 @@ def _writers(packages: set[str]) -> dict[str, list[_Writer]]:
 
     found: dict[str, list[_Writer]] = {}
     for distribution in distributions():
-        for file in distribution.files or ():
-            if file.parts[0] in packages:
-                digest = file.hash.value if file.hash is not None else ""
-                writer = (distribution.metadata["Name"], distribution.version, digest)
-                found.setdefault(str(file.locate()), []).append(writer)
+        own = [file for file in distribution.files or () if file.parts[0] in packages]
+        metadata = distribution.metadata if own else {}
+        for file in own:
+            digest = file.hash.value if file.hash is not None else ""
+            writer = (metadata["Name"], metadata["Version"], digest)
+            found.setdefault(str(file.locate()), []).append(writer)
     return found
 
 
