@@ -149,11 +149,12 @@ def _writers(packages: set[str]) -> dict[str, list[_Writer]]:
     found: dict[str, list[_Writer]] = {}
     for distribution in distributions():
         own = [file for file in distribution.files or () if file.parts[0] in packages]
-        metadata = distribution.metadata if own else {}
+        if not own:
+            continue
+        name, version = distribution.metadata["Name"], distribution.version
         for file in own:
             digest = file.hash.value if file.hash is not None else ""
-            writer = (metadata["Name"], metadata["Version"], digest)
-            found.setdefault(str(file.locate()), []).append(writer)
+            found.setdefault(str(file.locate()), []).append((name, version, digest))
     return found
 
 
