@@ -111,8 +111,7 @@ def clusters(
     analysis: Analysis, shown: Report, analysed: Again, most: int = MOST_CLUSTERS
 ) -> list[Cluster]:
     """The clusters of the errors and warnings that are shown, in order; at most `most`. Of two
-    repairs that correct the same finding, the first one by `_rank` is taken. A warning explains no
-    error."""
+    repairs that correct the same finding, the first one by `_rank` is taken."""
     if analysis.source is None or analysis.library is None:
         return []
     types = _interfaces(analysis.library)
@@ -135,11 +134,7 @@ def clusters(
     found: dict[int, Cluster] = {}
     covered: set[int] = set()
     for proof in sorted(proven, key=_rank):
-        members = [
-            item
-            for item in _gone(proof, serious)
-            if id(item) not in covered and not _is_worse(item, proof.item)
-        ]
+        members = [item for item in _gone(proof, serious) if id(item) not in covered]
         if id(proof.item) not in covered and len(found) < most:
             others = tuple(item for item in members if item is not proof.item)
             repair = proof.candidate.repair
@@ -176,10 +171,6 @@ def _rank(proof: Proof) -> tuple[int, bool, bool]:
     place = proof.candidate.repair.edits[0].span
     is_there = place.source is item.span.source and place.line == item.span.line
     return (proof.left.total(), item.severity is not Severity.ERROR, not is_there)
-
-
-def _is_worse(one: Diagnostic, other: Diagnostic) -> bool:
-    return one.severity is Severity.ERROR and other.severity is not Severity.ERROR
 
 
 def _proof(
