@@ -13,6 +13,7 @@ from functools import partial
 from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders, seed
 from smachac.commands.interrupts import end_at_once
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.swapped import swapped_option
 from smachac.commands.terminal import wants_colour
 from smachac.commands.view import PortError, browser, port, run_view
 
@@ -125,6 +126,8 @@ def run_command(arguments: Namespace) -> int:
     analysis = _analysis(arguments)
     if isinstance(analysis, str):
         return usage(analysis)
+    if analysis.checked is None and (right := swapped_option(arguments, "mock", "faults")):
+        return usage(right)
     machine = analysis.checked or _playable(analysis)
     expected = arguments.expect
     if machine is not None and expected is not None:
@@ -388,7 +391,17 @@ def perform(
     from smachac.frontend.files import module_folders
     from smachac.runtime.ros2_errors import ParameterError
     from smachac.sweep.play import FailedError
+    from smachac.targets.python.output_check import output_check
     from smachac.targets.python.runner import execute, failure_text
+
+    watched = observe
+    if not arguments.quiet:
+        check = output_check(machine)
+
+        def watched(event: Event) -> None:
+            observe(event)
+            for sentence in check(event):
+                print(f"warning: {sentence}", file=sys.stderr)
 
     gc.enable()  # from here on the user's program runs
     # The program may change the working folder.
@@ -398,7 +411,7 @@ def perform(
             name,
             text,
             machine,
-            observe,
+            watched,
             folders=folders,
             seed=arguments.seed,
             gui=arguments.gui,
@@ -478,48 +491,61 @@ def _raise_first(failures: list[OSError]) -> None:
         raise failures[0]
 
 
+NO_FAULTS = "the faults cannot be injected, so nothing is run"
+NO_SCENARIO = "the scenario cannot be played, so nothing is run"
+"""What the findings in a file of faults or a scenario have as their effect."""
+
+
 def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
     """The faults of a file; None, with findings in the report, if it has mistakes."""
-    from smachac.diagnostics.source import Span
     from smachac.frontend.data_files import plain, span_at
     from smachac.frontend.errors.script import wrong_shape
-    from smachac.frontend.files import read_source
-    from smachac.frontend.yaml_tree import parse
     from smachac.robots.faults import read_file
     from smachac.robots.fields import DataError
 
-    source = read_source(path, report)
-    tree = parse(source, report) if source is not None else None
+    tree = _read_tree(path, report, NO_FAULTS)
     if tree is None:
-        if source is not None and not report:
-            report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
         return None
     try:
         return read_file(plain(tree))
     except DataError as error:
-        report.append(wrong_shape(span_at(tree, error.place), error.message, error.help))
+        place = span_at(tree, error.place)
+        report.append(wrong_shape(place, error.message, error.help, effect=NO_FAULTS))
         return None
 
 
 def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:
     """The scenario of a file; None, with findings in the report, if it has faults."""
-    from smachac.diagnostics.source import Span
     from smachac.frontend.data_files import plain
     from smachac.frontend.errors.script import wrong_shape
-    from smachac.frontend.files import read_source
-    from smachac.frontend.yaml_tree import parse
     from smachac.interpreter.scenario import read_scenario
 
-    source = read_source(path, report)
-    tree = parse(source, report) if source is not None else None
+    tree = _read_tree(path, report, NO_SCENARIO)
     if tree is None:
-        if source is not None and not report:
-            report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
         return None
     scenario, found = read_scenario(plain(tree), machine)
     for problem in found:
-        report.append(wrong_shape(_place(problem, tree), problem.message))
+        place = _place(problem, tree)
+        report.append(wrong_shape(place, problem.message, effect=NO_SCENARIO))
     return None if report else scenario
+
+
+def _read_tree(path: Path, report: Report, effect: str) -> Tree | None:
+    """The YAML of a file that is no script; None if it cannot be read. Its findings have the effect
+    of such a file."""
+    from dataclasses import replace
+
+    from smachac.diagnostics.source import Span
+    from smachac.frontend.errors.script import wrong_shape
+    from smachac.frontend.files import read_source
+    from smachac.frontend.yaml_tree import parse
+
+    source = read_source(path, report)
+    tree = parse(source, report) if source is not None else None
+    if tree is None and not report and source is not None:
+        report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
+    report[:] = [replace(item, finding=replace(item.finding, effect=effect)) for item in report]
+    return tree
 
 
 def _place(problem: ScenarioProblem, tree: Tree) -> Span:

@@ -197,12 +197,10 @@ class Container(State):
             settings.logwarn(f"input keys absent in the parent's userdata: {missing}")
 
     def copy_output_keys(self, parent_ud: Any) -> None:
-        """Copy the output keys to the parent (UserData, Remapper or mapping; None: nothing)."""
-        if parent_ud is None or not self._output_keys:
-            return
-        missing = write_keys(parent_ud, self._output_keys, store(self.userdata))
-        if missing:
-            settings.logwarn(f"output keys never written: {missing}")
+        """Copy the output keys to the parent (UserData, Remapper or mapping; None: nothing). Keys
+        that were never written are left out, as in SMACH."""
+        if parent_ud is not None and self._output_keys:
+            write_keys(parent_ud, self._output_keys, store(self.userdata))
 
     def _view(self, state: State, remapping: Mapping[str, str]) -> Remapper:
         """The userdata of a child. Later changes of a State's keys apply to it too."""
