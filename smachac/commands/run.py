@@ -123,11 +123,11 @@ def run_command(arguments: Namespace) -> int:
         if path is not None and in_the_way(path, is_ours):
             what = "is a file of another kind: it was not overwritten"
             return usage(f"--{option} {path} {what}")
+    if right := swapped_option(arguments, "mock", "faults"):
+        return usage(right)
     analysis = _analysis(arguments)
     if isinstance(analysis, str):
         return usage(analysis)
-    if analysis.checked is None and (right := swapped_option(arguments, "mock", "faults")):
-        return usage(right)
     machine = analysis.checked or _playable(analysis)
     expected = arguments.expect
     if machine is not None and expected is not None:
@@ -305,11 +305,13 @@ def _where(errors: list[dict[str, Any]]) -> str:
 
 def sugar_of(machine: Machine) -> Sugar:
     """The containers made of sugar, for the progress of a run."""
-    from smachac.ir.script_paths import added_states, sugared_containers
+    from smachac.ir.script_paths import added_states, script_paths, sugared_containers
+    from smachac.ir.traversal import walk
     from smachac.runtime.tracing.progress import Repeated, Sugar
 
     found = sugared_containers(machine.root)
     repeated = {"retry": "attempt", "for_each": "item"}
+    shown = script_paths(machine.root)
     return Sugar(
         states={path: each.state for path, each in found.items()},
         repeated={
@@ -319,6 +321,7 @@ def sugar_of(machine: Machine) -> Sugar:
         },
         limits={path: each.limit for path, each in found.items() if each.role == "timeout"},
         added=added_states(machine.root),
+        catching=frozenset(shown.get(path, path) for path, node in walk(machine.root) if node.catches),
     )
 
 

@@ -185,10 +185,10 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     if source is None:
         print_report(report, arguments, sys.stderr)
         return FINDINGS
+    if right := swapped_option(arguments, "mock", "faults"):
+        return usage(right)
     analysis = analyse_script(source, arguments.scripts, arguments.templates)
     files, report = compile_script(analysis, TARGET)
-    if analysis.checked is None and (right := swapped_option(arguments, "mock", "faults")):
-        return usage(right)
     if arguments.mock is not None:
         report = analysis.report
     print_report(without_notes(report), arguments, sys.stderr)

@@ -96,8 +96,8 @@ class Container(State):
         _open.stack.pop()
         try:
             self.check_consistency()
-        except (InvalidStateError, InvalidTransitionError):
-            settings.logerr("the container is inconsistent")
+        except (InvalidStateError, InvalidTransitionError) as error:
+            settings.logerr(f"the container is inconsistent: {error}")
 
     def __enter__(self) -> None:
         self.open()
@@ -115,7 +115,7 @@ class Container(State):
         if error is None:
             raise InvalidStateError(f"a {type(self).__name__} is closed before what it contains")
         if not isinstance(error, (InvalidStateError, InvalidTransitionError)):
-            settings.logerr(f"construction failed: {described(error)}")
+            settings.log_raised(f"construction failed: {described(error)}")
 
     def _abandon(self) -> None:
         """Remove this container, and those left open inside it, from the stack."""

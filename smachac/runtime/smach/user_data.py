@@ -291,5 +291,5 @@ def _absent(key: object, data: Collection[str], own: object = None) -> KeyError:
     words = f"userdata key {called} is absent;{hint} present: {present}"
     if present is None:
         words = f"userdata key {called} is absent in a store of another kind"
-    settings.logerr(words)
+    settings.log_raised(words)
     return _AbsentKeyError(words)
