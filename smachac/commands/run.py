@@ -321,7 +321,9 @@ def sugar_of(machine: Machine) -> Sugar:
         },
         limits={path: each.limit for path, each in found.items() if each.role == "timeout"},
         added=added_states(machine.root),
-        catching=frozenset(shown.get(path, path) for path, node in walk(machine.root) if node.catches),
+        catching=frozenset(
+            shown.get(path, path) for path, node in walk(machine.root) if node.catches
+        ),
     )
 
 

@@ -66,7 +66,7 @@ def test_a_nested_machine_is_remapped() -> None:
     assert outer.userdata.keys() == ["x", "y"]
 
 
-def test_missing_inputs_at_a_border_are_warnings_and_missing_outputs_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_missing_inputs_at_a_border_are_warnings(monkeypatch: pytest.MonkeyPatch) -> None:
     warnings: list[str] = []
     monkeypatch.setattr(smach, "logwarn", warnings.append)
     inner = nested(lambda ud: None)

@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from smachac.interpreter.behaviours import builtin_behaviour
-from smachac.runtime.tracing.progress import Progress
+from smachac.runtime.tracing.progress import Progress, Sugar
 from tests.support.ir_machines import leaf, machine, ran
 
 
