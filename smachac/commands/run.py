@@ -231,15 +231,17 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
 
 def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
     """Play a scenario; the exit code."""
+    from smachac.driver import without_class_errors
     from smachac.sweep.play import play
 
-    print_report(without_notes(analysis.report), arguments, sys.stderr)
+    report = without_class_errors(analysis.report)
+    print_report(without_notes(report), arguments, sys.stderr)
     machine = analysis.checked or _playable(analysis)
     if machine is None:
         return FINDINGS
-    report: Report = []
-    scenario = read_scenario_file(arguments.mock, machine, report)
-    print_report(report, arguments, sys.stderr)
+    found: Report = []
+    scenario = read_scenario_file(arguments.mock, machine, found)
+    print_report(found, arguments, sys.stderr)
     if scenario is None:
         return FINDINGS
     if arguments.orders is not None:
@@ -255,8 +257,10 @@ def _playable(analysis: Analysis) -> Machine | None:
     """The machine of a script whose only errors are properties that fail: their counterexamples can
     be played."""
     from smachac.diagnostics.diagnostic import Severity
+    from smachac.driver import without_class_errors
 
-    errors = [item.code for item in analysis.report if item.severity is Severity.ERROR]
+    report = without_class_errors(analysis.report)
+    errors = [item.code for item in report if item.severity is Severity.ERROR]
     return analysis.machine if errors and set(errors) == {"SM701"} else None
 
 

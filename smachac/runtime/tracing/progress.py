@@ -28,8 +28,8 @@ class Sugar(NamedTuple):
     """The containers that time limits, retries and loops put around states, by path.
 
     `states` are the paths of the states inside, `repeated` the retries and loops, `limits` the time
-    limits in words. `added` are the timers and pauses, which are not shown. `catching` are the states
-    whose errors become an outcome: their lines have the message, as no error report follows.
+    limits in words. `added` are the timers and pauses, which are not shown. `catching` are the
+    states whose errors become an outcome: their lines have the message, as no report follows.
     """
 
     states: Mapping[str, str] = {}
