@@ -145,6 +145,9 @@ set_up() {
     say "note: going on without the fast YAML parser (the reason is in .venv/fast.log); the other reads the same"
     pip install -q -e '.[sim,dev]'
   fi
+  # In a folder of its own: beside the other packages it would replace the bundled runtime.
+  [[ $level == sim || -d .venv/standalone-smach/smach ]] ||
+    pip install -q --no-deps --target .venv/standalone-smach standalone-smach==0.0.9
   key >.venv/ready-sim
   [[ $level == sim ]] || key >.venv/ready-dev
   rm .venv/unfinished

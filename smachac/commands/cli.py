@@ -162,7 +162,7 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
                 known = any(option.startswith(name) for option in self._option_string_actions)
                 if word.startswith("--") and not known:
                     near = _near(name, self._option_string_actions)
-                    self.error(f"unknown option: {name}{near}")
+                    self.error(f"unrecognized arguments: {name}{near}")
             return super().parse_known_args(args, namespace)
 
         def _check_value(self, action: argparse.Action, value: Any) -> None:

@@ -27,6 +27,7 @@ MODULES = (
     ("networkx", "networkx", "graphs", "pip install smachac", True),
     ("lark", "lark", "expressions and types", "pip install smachac", True),
     ("jinja2", "Jinja2", "templates", "pip install smachac", True),
+    ("pyflakes", "pyflakes", "names in classes of states", "pip install smachac", True),
     ("shtab", "shtab", "completion for shells", "pip install smachac", True),
     ("_ruamel_yaml_clibz", "ruamel.yaml.clibz", "fast reading of large scripts",
      "pip install 'smachac[fast]'", False),

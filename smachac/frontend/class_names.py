@@ -85,9 +85,6 @@ def undefined_names(
         if name.id in done:
             continue
         fault = near.fault(name, method)
-        if fault is None and module.name:
-            word = Word(name.id, module.text.span(name))
-            fault = ClassFault(kind="undefined name", name=word)
         if fault is not None:
             done.add(name.id)
             found.append(fault)
@@ -169,8 +166,8 @@ class _Near:
         self.is_state = own.root == "state"
 
     def fault(self, node: ast.Name, method: Method | None) -> ClassFault | None:
-        """The fault of a name, where it is known what was meant, or that the name is another
-        scope's."""
+        """The fault of a name; None if another finding covers it, or if another template can
+        define it."""
         word = Word(node.id, self.module.text.span(node))
         bound = node.id in self.anywhere
         if node in self.owners and node.id in USUAL_MODULES and not bound:
@@ -200,8 +197,10 @@ class _Near:
             local = {name for part in ast.walk(method) for name in _bound(part)} if method else ()
             known = {*self.module.names, *local} if bound else self.anywhere - BUILT_IN
             near = guesser(sorted(known)).sure(node.id)
-        if near is None:
-            return ClassFault(kind="other scope", name=word) if bound else None
+        if near is None and not bound and not self.module.name:
+            return None
+        if near is None and bound:
+            return ClassFault(kind="other scope", name=word)
         return ClassFault(kind="undefined name", name=word, near=near)
 
     def _is_text(self, node: ast.Name, bound: bool) -> bool:
