@@ -21,7 +21,7 @@ echo "lowest versions: ${lowest[*]}"
 "$venv/bin/python" -m pip install -q --disable-pip-version-check -e . "${lowest[@]}" \
   'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20' 'ruff>=0.6' 'mypy>=1.11' 'ipython>=8.12'
 tests=("$@")
-# What uses ruamel.yaml, lark, networkx and jinja2; of the rules the examples of all codes, which
+# What uses PyYAML, networkx and jinja2; of the rules the examples of all codes, which
 # are checked and built. The other tests of rules see only the graph.
 ((${#tests[@]})) || tests=(tests/frontend tests/ir tests/analysis tests/targets tests/report tests/refactor
   tests/pipeline tests/checks/test_examples.py tests/checks/test_graph_laws.py)

@@ -139,12 +139,7 @@ set_up() {
   prepare_pybullet
   prepare_optional
   say "installing what is missing in .venv: a minute or two"
-  if [[ $level == sim ]]; then
-    pip install -q -e '.[sim]'
-  elif ! pip install -q -e '.[sim,dev,fast]' &>.venv/fast.log; then
-    say "note: going on without the fast YAML parser (the reason is in .venv/fast.log); the other reads the same"
-    pip install -q -e '.[sim,dev]'
-  fi
+  if [[ $level == sim ]]; then pip install -q -e '.[sim]'; else pip install -q -e '.[sim,dev]'; fi
   # In a folder of its own: beside the other packages it would replace the bundled runtime.
   [[ $level == sim || -d .venv/standalone-smach/smach ]] ||
     pip install -q --no-deps --target .venv/standalone-smach standalone-smach==0.0.9
@@ -164,17 +159,18 @@ prepare_ros() {
   ((${#missing[@]} == 0)) || install_packages "${missing[@]}"
 }
 
-# 75 packages, 170 MB installed; wheels for x86_64 and arm64, Python 3.10 to 3.13. `interfaces` are
+# 75 packages, 170 MB installed; wheels for x86_64 and arm64, Python 3.10 to 3.14. `interfaces` are
 # the messages of the tests' own, built with cmake.
 prepare_ros2() {
   local stamp=.venv-ros2/ready interfaces=tests/ros2/interfaces state
   state=$(find "$interfaces" scripts/setup.sh scripts/ros2.txt -type f -exec cat {} + | cksum)
   [[ -e $stamp && $(<"$stamp") == "$state $PWD" ]] && return
   command -v cmake >/dev/null && command -v g++ >/dev/null || install_packages cmake g++ || return 1
-  [[ -x .venv/bin/python ]] || fail "first: setup.sh dev"
+  [[ ! -x .venv/bin/python ]] || PYTHON=${PYTHON:-.venv/bin/python}
+  choose_python
   say "installing ROS 2 in .venv-ros2: a minute or two"
   rm -f "$stamp"
-  .venv/bin/python -m venv .venv-ros2
+  "$python" -m venv --clear .venv-ros2
   .venv-ros2/bin/python -m pip --disable-pip-version-check --no-input install -q -r scripts/ros2.txt \
     </dev/null || return 1
   build_interfaces "$interfaces" &>.venv-ros2/interfaces.log || {

@@ -163,13 +163,13 @@ def compile(
     `target` is the name of an installed target, or a `Target`. Nothing is written. Raises
     ScriptError, LookupError for an unknown target, ValueError for a bad option.
     """
-    from smachac.driver import compile_script
+    from smachac.driver import compile_files
     from smachac.targets import load_target
 
     found = load_target(target) if isinstance(target, str) else target
     if found is None:
         raise LookupError(f"there is no target `{target}`")
-    compiled = compile_script(_analysis(source, name, scripts, templates), found, options)
+    compiled = compile_files(_analysis(source, name, scripts, templates), found, options)
     if not compiled.files:
         raise ScriptError(compiled.report)
     return compiled.files

@@ -37,6 +37,7 @@ from smachac.frontend.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.targets import BuildContext, Files, Target, errors, load_target
+from smachac.targets.hiding_files import hiding_files
 from smachac.targets.interface_check import (
     OF_CLASSES,
     code_faults,
@@ -308,6 +309,18 @@ def compile_script(
         context = BuildContext(library=analysis.library, options=options or {}, levels=levels)
         files |= runtime_files(target.runtime(analysis.checked, context))
     return Compiled(files, merged(without_class_errors(analysis.report), found))
+
+
+def compile_files(
+    analysis: Analysis,
+    target: Target,
+    options: Mapping[str, str] | None = None,
+    levels: int = 0,
+) -> Compiled:
+    """As `compile_script`, for files that are written: none of them hides a module (SM611)."""
+    files, report = compile_script(analysis, target, options, levels)
+    hiding = list(hiding_files(files, analysis.checked)) if analysis.checked is not None else []
+    return Compiled({} if hiding else files, merged(report, hiding))
 
 
 def build(

@@ -6,7 +6,7 @@ stands for the nearest known name, and an open leaf can have every outcome that 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import pairwise
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.diagnostics.negation import are_opposite
-from smachac.diagnostics.spelling import Guesser, guesser, words_of
+from smachac.diagnostics.spelling import MOST_COMPARED, Guesser, guesser, words_of
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, edges, reachable
 from smachac.ir.nodes import (
@@ -86,20 +86,33 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
             found[left[0]] = MeantTarget(choices[0], free(left[0]) != choices[0])
             left = []
     shouted = all(name.isupper() for name in names)
+    by_word = _names_by_word(names) if left else {}
     for target in left:
         # A state to which other transitions lead is hardly meant by a name that is not near to it.
-        near = free(target) or _longer_name(target, names)
+        near = free(target) or _longer_name(target, by_word)
         near = near or (None if shouted and target.isupper() else every(target))
         if near is not None:
             found[target] = MeantTarget(near)
     return found
 
 
-def _longer_name(target: str, names: Collection[str]) -> str | None:
+def _names_by_word(names: Iterable[str]) -> dict[str, list[str]]:
+    """The names that contain each word."""
+    found: dict[str, list[str]] = {}
+    for name in names:
+        for word in words_of(name):
+            found.setdefault(word, []).append(name)
+    return found
+
+
+def _longer_name(target: str, by_word: Mapping[str, list[str]]) -> str | None:
     """The only state whose name has all words of a target and one more, which means no failure:
-    `PARK_ARM` for `PARK`."""
+    `PARK_ARM` for `PARK`. None if each of these words is in more than MOST_COMPARED names."""
     words = words_of(target)
-    found = [name for name in names if words < words_of(name)]
+    rarest = min((by_word.get(word, []) for word in words), key=len, default=[])
+    if len(rarest) > MOST_COMPARED:
+        return None
+    found = [name for name in rarest if words < words_of(name)]
     if len(found) != 1 or is_failure(found[0]) != is_failure(target):
         return None
     return found[0] if len(words_of(found[0]) - words) == 1 else None

@@ -26,6 +26,11 @@ class UnknownRemap(NamedTuple):
     certain: str | None
 
 
+MOST_STATES = 200
+"""In a container of more states, no key is meant because no other one is left: each search looks at
+all states."""
+
+
 def unknown_remaps(node: Node, around: Container | None = None) -> list[UnknownRemap]:
     """The remaps of keys that a state does not have. With the container `around` it, one that is
     like none of its keys means the only key of the state that can be meant."""
@@ -42,7 +47,8 @@ def unknown_remaps(node: Node, around: Container | None = None) -> list[UnknownR
     taken = {remap.key for remap in node.remaps}
     guess = guesser(sorted(own - taken))
     found = [UnknownRemap(each, guess(each.key), guess.sure(each.key)) for each in wrong]
-    if around is not None and len(found) == 1 and found[0].meant is None:
+    is_alone = len(found) == 1 and found[0].meant is None
+    if is_alone and around is not None and len(around.children) <= MOST_STATES:
         return [found[0]._replace(meant=_lone_key(node, found[0].remap, around))]
     return found
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, NamedTuple, TypeAlias
@@ -181,6 +181,12 @@ class _Judge:
             guards = part.guards.union(self.keys(*asked))
             return _Part(expr=expr, always=False, guards=guards)
 
+        def after(asked: Iterable[Expr], exprs: Iterable[Expr]) -> Iterator[_Part]:
+            guards = part.guards.union(self.keys(*asked))
+            for expr in exprs:
+                yield _Part(expr=expr, always=False, guards=guards)
+                guards = guards.union(self.keys(expr))
+
         match part.expr:
             case Lambda():
                 # What it will be called with is not known.
@@ -190,13 +196,12 @@ class _Judge:
                 yield perhaps(then, test)
                 yield perhaps(otherwise, test)
             case Boolean(_, exprs):
-                for place, expr in enumerate(exprs):
-                    yield perhaps(expr, *exprs[:place]) if place else sure(expr)
+                yield sure(exprs[0])
+                yield from after(exprs[:1], exprs[1:])
             case Compare(first, rest):
                 second, *others = (expr for _, expr in rest)
                 yield from map(sure, (first, second))
-                for place, expr in enumerate(others, 1):
-                    yield perhaps(expr, first, *(each for _, each in rest[:place]))
+                yield from after((first, second), others)
             case _:
                 yield from map(sure, parts(part.expr))
 

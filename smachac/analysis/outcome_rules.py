@@ -25,7 +25,7 @@ Combination = dict[str, str]
 Domains = Mapping[str, Sequence[str]]
 """The outcomes that each child can end with, those to show first in front."""
 
-MOST_LOOKED_AT = 1_000_000
+MOST_LOOKED_AT = 300_000
 """The most children that one rule of the checker looks at for one concurrence. Forty
 branches with forty rules take some thousands."""
 
@@ -142,13 +142,16 @@ class Rules:
             if effects[child] & left:
                 needed.append(child)
                 left &= ~effects[child]
-        for child in list(needed):
-            others = 0
-            for other in needed:
-                others |= effects[other] if other != child else 0
-            if others == avoided:
-                needed.remove(child)
-        kept = {*given, *needed}
+        self._look_at(len(combination))
+        after = [0]
+        for child in reversed(needed):
+            after.append(after[-1] | effects[child])
+        kept, before = {*given}, 0
+        for child in needed:
+            after.pop()
+            if before | after[-1] != avoided:
+                kept.add(child)
+                before |= effects[child]
         return {child: outcome for child, outcome in combination.items() if child in kept}
 
 

@@ -31,6 +31,10 @@ MOST_PAIRS, PAIRS_BY_STATE = 50_000, 30
 seconds of CPU time, and so many more for each state of the machine. Each property that is not
 decided halves it for the others."""
 
+STEPS_OF_A_PAIR = 6
+"""The limit on the steps that are examined, for each pair of the limit above: a configuration of
+many branches has many steps."""
+
 MOST_IN_ALL = 5_000_000
 """Limit on the pairs that are examined for all properties of a machine."""
 
@@ -183,6 +187,7 @@ class _Search:
         """A shortest violation; None if there is none. Raises TooLargeError."""
         todo: deque[Pair] = deque()
         steps: dict[Config, list[ExecutionStep]] = {}
+        examined = 0
         for step in self.execution.start(self.watched):
             if (bad := self._follow(None, 0, step, todo)) is not None:
                 return self._counterexample(None, step, bad)
@@ -195,7 +200,8 @@ class _Search:
             for step in following:
                 if (bad := self._follow(pair, state, step, todo)) is not None:
                     return self._counterexample(pair, step, bad)
-            if len(self.before) > limit:
+            examined += len(following)
+            if len(self.before) > limit or examined > STEPS_OF_A_PAIR * limit:
                 raise TooLargeError
         return None
 

@@ -143,12 +143,8 @@ def _outside(flow: DataFlow, path: str, key: str, provided: Callable[[str], Prov
 
 
 def _remapped(scope: UserdataScope, vertex: Vertex, key: str) -> bool:
-    return any(
-        remap.to == key
-        for child in scope.container.children
-        if child.name == vertex
-        for remap in child.remaps
-    )
+    child = scope.children.get(str(vertex))
+    return child is not None and any(remap.to == key for remap in child.remaps)
 
 
 def _kept_inside(

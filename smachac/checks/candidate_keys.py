@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from itertools import chain
+from itertools import chain, islice
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
@@ -16,7 +16,7 @@ from smachac.analysis.type_lattice import fits, is_open, misfit, widened
 from smachac.analysis.unset_reads import Missing, Reader, Witness, reader_at
 from smachac.checks.messages import added_remapping
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import Guesser, guesser, words_of
+from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, words_of
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Node, Remap
 from smachac.ir.script_paths import sugared_child
@@ -284,7 +284,7 @@ def meant_by_types(context: Context) -> set[tuple[str, str]]:
     """The keys that nothing reads and that SM301 names as the only ones of the type that a state
     reads from a key that nothing sets, each with the path of its container."""
     found: set[tuple[str, str]] = set()
-    for missing in context.missing_keys("nowhere"):
+    for missing in islice(context.missing_keys("nowhere"), MOST_EXPLAINED):
         scope = missing.scope
         reader = reader_at(scope, missing.vertices[0], missing.key)
         wanted = _input_type(context.types, reader)

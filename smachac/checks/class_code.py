@@ -26,7 +26,7 @@ from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.traversal import enclosing, outcome_names, remapping
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
@@ -362,14 +362,15 @@ def _owner(word: Word) -> str:
 
 def unknown_reads(context: Context) -> Iterator[Finding]:
     """The keys that the code of a type reads without an input in its interface (SM310)."""
-    containers = dict(context.containers)
+    containers = enclosing(context.machine.root)
     names = _names_by_type(context)
     for path, leaf, facts in leaves_by_type(context, declared=True):
         _, inputs, outputs = names.get(leaf.type, _own_names(leaf))
-        around = containers[path.rpartition("/")[0]]
+        above, around = containers[path]
         levels = [around]
-        while levels[-1].sugar and (path_ := path.rsplit("/", len(levels) + 1)[0]) in containers:
-            levels.append(containers[path_])
+        while levels[-1].sugar and above in containers:
+            above, container = containers[above]
+            levels.append(container)
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
         used = {word.text for word in facts.reads}
         old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)

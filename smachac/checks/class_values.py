@@ -35,6 +35,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import Part, Step, TableLookUp
 from smachac.ir.expressions import Binary, Call, Compare
 from smachac.ir.nodes import Data, Key, Leaf, Struct
+from smachac.ir.python_code import parse_code
 from smachac.ir.types import ANY, Type
 
 MOST_ITEMS = 20
@@ -116,7 +117,7 @@ def _field_help(given: Type, type_: Type) -> str | None:
 def _plain_help(text: str, type_: Type) -> str | None:
     """The help for a choice that is one slip away, and for a value in a needless `str()`."""
     wanted = present(type_)
-    node = ast.parse(f"({text})", mode="eval").body
+    node = parse_code(f"({text})")
     match node:
         case ast.Constant(value=str(word)) if wanted.name == "one_of":
             return did_you_mean(guesser([str(each) for each in wanted.args])(word))
@@ -168,8 +169,8 @@ def _changed_key(text: str) -> tuple[str, str, str, str] | None:
     if not text.endswith(")"):
         return None
     try:
-        node = ast.parse(f"({text})", mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        node = parse_code(f"({text})")
+    except SyntaxError:
         return None
     match node:
         case ast.Call(
@@ -367,8 +368,8 @@ def missing_choices(context: Context) -> Iterator[Finding]:
 def _length_help(text: str, userdata: str, lists: AbstractSet[str]) -> str | None:
     """The help for an order of a number and a list: the length of the list is meant."""
     try:
-        node = ast.parse(text, mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        node = parse_code(text)
+    except SyntaxError:
         return None
     match node:
         case ast.Compare(ops=[ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE()]):
@@ -554,8 +555,8 @@ def type_of_code(text: str) -> Type | None:
     """The type of an expression of Python that is a literal, or obvious without its names; None
     for any other."""
     try:
-        node = ast.parse(f"({text})", mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        node = parse_code(f"({text})")
+    except SyntaxError:
         return None
     match node:
         case (

@@ -49,7 +49,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Expression, Node, VariableRole
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import enclosing, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -613,12 +613,12 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
             continue
         if facts.reads and not swapped(facts.parameters, slot.arguments):  # SM317
             calls_of.setdefault(slot.code.text, []).append(call)
-    containers = dict(context.containers) if calls_of else {}
+    containers = enclosing(context.machine.root) if calls_of else {}
     for used in calls_of.values():
         known = {key.name for _, node, _, _ in used for key in (*node.inputs, *node.outputs)}
         path, node, slot, facts = used[0]
         guess, read = guesser(key.name for key in node.inputs), {word.text for word in facts.reads}
-        around = containers[path.rpartition("/")[0]]
+        _, around = containers[path]
         for word in {each.text: each for each in reversed(facts.reads)}.values():
             if word.text not in known:
                 yield Finding(

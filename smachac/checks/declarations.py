@@ -53,7 +53,7 @@ from smachac.checks.word_loops import (
 )
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
-from smachac.diagnostics.spelling import guesser, is_plain, respelt
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.references import short_value
 from smachac.frontend.errors.script import number_before
@@ -119,6 +119,11 @@ def dead_key(context: Context) -> Iterator[Finding]:
         if context.of_container(sees_everything, scope.path, scope) or container.sugar:
             continue
         read = context.of_container(used_in, scope.path, scope)
+        remapped = _names_in_unknown_remaps(container)
+        misplaced = _misplaced_keys(container)
+        near_unset = guesser(sorted(unset.get(scope.path, ())))
+        type_keys = _type_keys(container)
+        explained = 0
         yield from loops_over_names_of_lists(scope, read)
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
@@ -132,14 +137,20 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 if wrong.declared:
                     yield misnamed_finding(wrong, scope.path, container_name(scope, span))
                 continue  # otherwise SM301
-            if any(guesser([key])(name) for name in unset.get(scope.path, ())):
+            explained += 1
+            is_searched = explained <= MOST_EXPLAINED
+            near = near_unset.names[:MOST_EXPLAINED] if is_searched else []
+            if near_unset.sure(key) or any(guesser([key])(name) for name in near):
                 continue  # SM301 or SM302 is about the same slip
-            if any(_remaps_unknown(child, key) for child in container.children):
+            if key in remapped:
                 continue  # SM302
-            if _is_type_key(container, key):
+            if key in type_keys:
                 continue  # SM515
-            if not {key.rpartition("_")[2], key}.isdisjoint(_misplaced_keys(container)):
+            if not misplaced.isdisjoint([key.rpartition("_")[2], key]):
                 continue  # SM003 is about the same value
+            if not is_searched:
+                yield _unread_key(scope, key, node, span, None, is_searched=False)
+                continue
             # The userdata of the machine can be read after the run.
             loop = loop_over_the_word(container, key)
             if loop is not None:
@@ -159,24 +170,30 @@ def dead_key(context: Context) -> Iterator[Finding]:
             yield _lost_result(scope, child, remap, meant)
 
 
-def _is_type_key(container: Container, key: str) -> bool:
-    """Whether a key probably holds the type of a message that a state reads without its type."""
+def _type_keys(container: Container) -> Collection[str | None]:
+    """The keys that probably hold the type of a message that a state reads without its type."""
     if not any(map(lacks_type_key, container.children)):
-        return False
-    return key in (TYPE_KEY, type_key_meant(container))
+        return ()
+    return (TYPE_KEY, type_key_meant(container))
 
 
 def _unread_key(
-    scope: UserdataScope, key: str, node: Node, span: Span, back: str | None
+    scope: UserdataScope,
+    key: str,
+    node: Node,
+    span: Span,
+    back: str | None,
+    *,
+    is_searched: bool = True,
 ) -> Finding:
     """SM305 for a key of a container that a node sets. `back`: the key that is meant, if name and
-    value have changed places."""
+    value have changed places; `is_searched`: a state that can read the key is searched."""
     where = container_name(scope, span)
     return Finding(
         span=span,
         message=f"`{key}` is set, but nothing in {where} reads it",
         arguments=(key,),
-        help=_reader_help(scope, key, node)
+        help=(_reader_help(scope, key, node) if is_searched else None)
         or (f"write `{back}: {key}`: the name of the key comes first" if back else None)
         or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
         f" it, or to the `output_keys` of {where}",
@@ -283,9 +300,10 @@ def _turned_preset(scope: UserdataScope, key: str, known: Collection[str]) -> st
     return value if isinstance(value, str) and value in known and value not in values else None
 
 
-def _remaps_unknown(node: Node, key: str) -> bool:
-    """Whether a remapping of a state has a key of the container in place of its own."""
-    return any(key in (each.remap.key, each.meant) for each in unknown_remaps(node))
+def _names_in_unknown_remaps(container: Container) -> set[str | None]:
+    """The names in remappings of states that are none of their keys, and those that are meant."""
+    unknown = (each for child in container.children for each in unknown_remaps(child))
+    return {name for each in unknown for name in (each.remap.key, each.meant)}
 
 
 def _written_in(scope: UserdataScope) -> set[str]:

@@ -40,9 +40,6 @@ from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct, is_number
 from smachac.ir.traversal import expressions, outcome_names, remapping, values
 
-MAX_LEVELS = 500
-"""The most levels of an expression; Python compiles no more than about 1,000 frames deep."""
-
 
 @rule(
     "SM016",
@@ -158,14 +155,12 @@ def _slips(text: str, compares: bool) -> list[Slip]:
     tree = python_tree(text)
     if tree is None:
         return slips(text, compares=compares)
-    whole = Slip(0, len(text), f"it is nested deeper than {MAX_LEVELS} levels")
     if "yield" in text or "await" in text:
         for node in ast.walk(tree):
             if isinstance(node, ast.Yield | ast.YieldFrom | ast.Await):
                 what = "`yield` and `await` are allowed only in functions of a module"
                 return [Slip(*node_range(text, node), what)]
-    # Every level takes a character or more.
-    return [whole] if len(text) > MAX_LEVELS and _is_deeper(tree) else []
+    return []
 
 
 def _cures(code: Expression, found: list[Slip]) -> tuple[Edit, ...]:
@@ -178,15 +173,6 @@ def _cures(code: Expression, found: list[Slip]) -> tuple[Edit, ...]:
         for span, cure in places
         if span != code.span and cure is not None
     )
-
-
-def _is_deeper(tree: ast.AST) -> bool:
-    level = [tree]
-    for _ in range(MAX_LEVELS):
-        level = [child for node in level for child in ast.iter_child_nodes(node)]
-        if not level:
-            return False
-    return True
 
 
 def _missing_code(leaf: Leaf, path: str) -> Iterator[Finding]:

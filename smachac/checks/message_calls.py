@@ -10,6 +10,7 @@ from smachac.checks.message_values import ValueFault, value_faults
 from smachac.diagnostics.source import Span
 from smachac.ir.message_types import Definitions, FieldType, Message
 from smachac.ir.nodes import Data, Expression, Struct
+from smachac.ir.python_code import parse_code
 
 CHECK_FIELDS = "check_fields"
 """The argument of the classes of ROS 2 that is no field."""
@@ -43,8 +44,8 @@ def call_faults(
 
 def _tree(text: str) -> ast.AST:
     try:
-        return ast.parse(text.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return parse_code(text.strip())
+    except SyntaxError:
         return ast.Module(body=[], type_ignores=[])
 
 

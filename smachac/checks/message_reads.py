@@ -27,6 +27,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.function_facts import Operand, Part
 from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
 from smachac.ir.nodes import Leaf, Node
+from smachac.ir.python_code import parse_code
 
 METHODS = frozenset(
     ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy"]  # ROS 1
@@ -201,7 +202,7 @@ def _operand_help(operand: Operand, message: Message) -> str:
 
 def _item(text: str) -> str | None:
     """The text between the brackets of code such as `message["data"]`."""
-    match ast.parse(text, mode="eval").body:
+    match parse_code(text):
         case ast.Subscript(slice=ast.Constant(value=str(name))):
             return name
     return None

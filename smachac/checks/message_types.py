@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import re
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 
 from smachac.analysis.message_code import MOST_CODE
@@ -16,6 +15,7 @@ from smachac.diagnostics.wording import either, listed
 from smachac.ir.leaf import type_text, variable_of
 from smachac.ir.message_types import PARTS, DefinitionKind, Missing, MissingDefinitions
 from smachac.ir.nodes import DEFINITION_KINDS, Expression, Leaf
+from smachac.ir.python_code import parse_code
 
 USUAL_NAMES: Mapping[str, str] = {"double": "Float64", "integer": "Int32", "text": "String"}
 """The messages of std_msgs that are meant by words of other languages."""
@@ -144,10 +144,8 @@ def call_of(text: str) -> ast.Call | None:
     if len(text) > MOST_CODE:
         return None
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        tree = parse_code(text.strip())
+    except SyntaxError:
         return None
     return tree if isinstance(tree, ast.Call) else None
 

@@ -61,7 +61,8 @@ def too_fast(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: done, aborted: failed, preempted: failed}
     """
     robot = context.machine.robot
-    speeds = [joint.velocity for joint in robot.joints] if robot is not None else []
+    joints = robot.joints if robot is not None else ()
+    speeds = [joint.velocity for joint in joints if joint.turns]
     most = max(speeds, default=math.inf)
     for flow in context.types.constants if math.isfinite(most) else ():
         if role_of(flow.cell) != "joint_speed" or not is_number(flow.value):

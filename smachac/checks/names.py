@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
+from functools import cached_property
 from itertools import count
 from typing import NamedTuple
 
@@ -33,7 +34,7 @@ from smachac.checks.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import Guesser, guesser, respelt, words_of
+from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, respelt, words_of
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
@@ -43,12 +44,52 @@ EXCEPTIONS = "error"
 """The name by which a script refers to the exceptions of a state (docs/language.md)."""
 
 
+class _Targets:
+    """The targets in a container, for its transitions with an unknown one."""
+
+    def __init__(self, container: Linear) -> None:
+        self.container = container
+
+    @cached_property
+    def listed(self) -> str:
+        """The names that a transition can have as its target."""
+        return listed([*self.states, *outcome_names(self.container)])
+
+    @cached_property
+    def states(self) -> frozenset[str]:
+        return children_names(self.container)
+
+    @cached_property
+    def all_upper(self) -> bool:
+        """Whether all names of states are in upper case."""
+        return all(name.isupper() for name in self.states)
+
+    @cached_property
+    def unentered(self) -> Mapping[str, tuple[Span, ...]]:
+        """The places of the states that no transition leads to."""
+        found: dict[str, tuple[Span, ...]] = {}
+        for child in self.container.children:
+            if child.name not in self.places and child.name != self.container.initial:
+                found[child.name] = (*found.get(child.name, ()), child.span)
+        return found
+
+    @cached_property
+    def places(self) -> Mapping[str, set[Span]]:
+        """The places where each target is written."""
+        found: dict[str, set[Span]] = {}
+        for child in self.container.children:
+            for step in child.transitions:
+                found.setdefault(step.target, set()).add(step.target_span)
+        return found
+
+
 class _Lost(NamedTuple):
     """A transition with an unknown target. `meant` is the known name that is meant; `sure`, the
     only known name one slip away; `paired`: nothing else leads to the name that is meant."""
 
     path: str
     container: Linear
+    targets: _Targets
     child: Node
     step: Transition
     meant: str | None
@@ -125,15 +166,17 @@ def unknown_target(context: Context) -> Iterator[Finding]:
 
 def _lost(path: str, container: Linear) -> Iterator[_Lost]:
     guess: Guesser | None = None
-    targets: Mapping[str, MeantTarget] = {}
+    near: Mapping[str, MeantTarget] = {}
+    targets = _Targets(container)
     copied = copied_name(container)
     for _, _, child, step in stray_transitions(path, container):
         if guess is None:
-            guess, targets = places_of(container), meant_targets(container)
+            guess, near = places_of(container), meant_targets(container)
         if not _was_reported(step) and step.target != copied:  # SM106
-            meant = targets.get(step.target)
+            meant = near.get(step.target)
             name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
-            yield _Lost(path, container, child, step, name, guess.sure(step.target), paired)
+            sure = guess.sure(step.target)
+            yield _Lost(path, container, targets, child, step, name, sure, paired)
 
 
 def copied_name(container: Container) -> str | None:
@@ -173,37 +216,35 @@ def _with_others(found: Finding, others: list[_Lost]) -> Finding:
     )
 
 
-def _targets(container: Linear) -> str:
-    """The names that a transition in a container can have as its target."""
-    return listed([*(child.name for child in container.children), *outcome_names(container)])
-
-
-def _add_or_use(container: Linear, child: Node, target: str) -> str:
+def _add_or_use(fault: _Lost) -> str:
     """The help for an unknown target of a state that no name resembles: a state that is missing, if
     it is written like one, or the only other state."""
-    known = f"use a state or an outcome of `{container.name}`: {_targets(container)}"
-    if not target.isupper() or not all(each.name.isupper() for each in container.children):
+    container, target = fault.container, fault.step.target
+    known = f"use a state or an outcome of `{container.name}`: {fault.targets.listed}"
+    if not target.isupper() or not fault.targets.all_upper:
         return known
-    others = [each.name for each in container.children if each is not child]
-    return f"add the state `{target}`, or {f'write `{others[0]}`' if len(others) == 1 else known}"
+    if len(container.children) == 2:
+        other = next(each.name for each in container.children if each is not fault.child)
+        return f"add the state `{target}`, or write `{other}`"
+    return f"add the state `{target}`, or {known}"
 
 
 def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
     """SM101 for a transition; `loop` is the help if its target is a word for a loop."""
-    path, container, child, step, meant, sure, paired = fault
+    path, container, targets, child, step, meant, sure, paired = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
         whole = f"the transition for outcome `{step.outcome}` of `{child.name}` has no target"
     above = elsewhere.rpartition("/")[0] if elsewhere else ""
     help = did_you_mean(meant)
     if paired:
-        is_state = meant in children_names(container)
+        is_state = meant in targets.states
         help = f"{help} {'no transition leads to it' if is_state else 'no state ends with it'}"
         if is_state and words_of(step.target).isdisjoint(words_of(str(meant))):
             help = f"write `{meant}`, to which no transition leads, or add the state"
             help += f" `{step.target}`"
     elif above:
-        help = _through_outcome(container, step, above)
+        help = _through_outcome(fault, above)
         sure = None
     if sure is not None and not _same_case(step.target, sure):
         sure = None
@@ -215,31 +256,29 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
             step.target,
             *(() if step.target else (step.outcome,)),
         ),
-        help=loop or help or _add_or_use(container, child, step.target),
+        help=loop or help or _add_or_use(fault),
         effect="SMACH refuses to run such a container: none of its states runs",
-        related=(*_unentered(container, step.target, fault.sure), *calls(child, step.target_span)),
+        related=(*_unentered(fault), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
     )
 
 
-def _unentered(container: Linear, target: str, name: str | None) -> Iterator[Related]:
+def _unentered(fault: _Lost) -> Iterator[Related]:
     """The place of a state that no transition leads to, where several have the same unknown target:
     the name of the state is probably the misspelt one."""
-    steps = [step for child in container.children for step in child.transitions]
-    entered = {step.target for step in steps}
-    if len({step.target_span for step in steps if step.target == target}) < 2:
+    targets = fault.targets
+    if fault.sure is None or len(targets.places.get(fault.step.target, ())) < 2:
         return
-    for child in container.children:
-        if child.name == name and name not in {*entered, container.initial}:
-            yield from other_place(child.span, f"no transition leads to `{name}`")
+    for span in targets.unentered.get(fault.sure, ()):
+        yield from other_place(span, f"no transition leads to `{fault.sure}`")
 
 
-def _through_outcome(container: Linear, step: Transition, above: str) -> str:
+def _through_outcome(fault: _Lost, above: str) -> str:
     """The help for a transition to a state in another container: it leads there through an outcome
     of its own container; an outcome that has another use does not get a second one."""
+    container, step, used = fault.container, fault.step, fault.targets.places
     target, name = step.target, container.name
-    used = {each.target for child in container.children for each in child.transitions}
     for outer in container.transitions:
         if outer.target == target and outer.outcome in used:
             own = step.outcome
@@ -253,7 +292,7 @@ def _through_outcome(container: Linear, step: Transition, above: str) -> str:
                 f" `{name}` leads to `{target}`"
             )
     return (
-        f"use a state or an outcome of `{name}`: {_targets(container)}; the state `{target}` in"
+        f"use a state or an outcome of `{name}`: {fault.targets.listed}; the state `{target}` in"
         f" `{above}` cannot be a target here"
     )
 
@@ -382,7 +421,8 @@ def _unknown_steps(
 ) -> Iterator[Finding]:
     guess = guesser([*outcome_names(child), EXCEPTIONS])
     default = missing_default(child)
-    for step, known_meant in unknown:
+    for number, (step, known_meant) in enumerate(unknown):
+        is_searched = number < MOST_EXPLAINED
         meant = known_meant or guess.sure(step.outcome)
         retried = _retried(child, step.outcome)
         message = f"`{child.name}` has no outcome `{step.outcome}`"
@@ -397,9 +437,9 @@ def _unknown_steps(
             arguments=(own_name(child, step.span), step.outcome),
             help=(f"add `default_outcome: {step.outcome}` to `{child.name}`" if default else None)
             or retried
-            or _catch_all(child, step)
+            or (_catch_all(child, step) if is_searched else None)
             or did_you_mean(meant)
-            or other_outcome(child, step),
+            or (other_outcome(child, step) if is_searched else "remove this transition"),
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=()
@@ -490,10 +530,10 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
     """
     for path, container in context.containers:
         first: dict[str, Node] = {}
+        meant = copied_name(container)
         for child in container.children:
             known = first.setdefault(child.name, child)
             if known is not child:
-                meant = copied_name(container)
                 help = (
                     f"rename one of the two, for example to `{_new_name(child.name, first)}`,"
                     " also in the transitions that mean it"

@@ -16,7 +16,7 @@ from smachac.analysis.control_flow import (
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.diagnostics.spelling import written_name
+from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
 from smachac.diagnostics.wording import both
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
@@ -30,7 +30,7 @@ from smachac.ir.nodes import (
     OutcomeRule,
     Transition,
 )
-from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, successes
+from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, failures_of, successes
 from smachac.ir.traversal import outcome_names
 
 
@@ -292,18 +292,22 @@ def _targets(
     the numbers of all states."""
     found: dict[str, str] = {}
     rest = [each.name for each in left]
-    good = [name for name in rest if name in successes(child) or not fails(child, name)]
-    good = [name for name in good if name != PREEMPTED]
-    bad = [name for name in rest if name not in good and name != PREEMPTED]
-    for outcome in (*good, *bad):
+    sure, failures = successes(child), failures_of(child)
+    good = [name for name in rest
+            if name != PREEMPTED and (name in sure or name not in failures)]  # fmt: skip
+    bad = [name for name in rest
+           if name != PREEMPTED and name in failures and name not in sure]  # fmt: skip
+    for outcome in (*good, *bad) if len(rest) <= MOST_EXPLAINED else ():
         after = (name for name in free if order[name] > order[child.name])
         choice = next(after, next((name for name in free if name != child.name), None))
         if choice is not None:
             found[outcome] = choice
             free.remove(choice)
-    for outcome in rest:
+    for outcome in rest[:MOST_EXPLAINED]:
         if outcome not in found:
             found[outcome] = _target(container, child, outcome)
+    last = found[rest[:MOST_EXPLAINED][-1]]
+    found |= dict.fromkeys(rest[MOST_EXPLAINED:], last)
     return {name: found[name] for name in rest}
 
 

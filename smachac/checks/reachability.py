@@ -23,7 +23,7 @@ from smachac.checks.rule_slips import lost_condition
 from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Word
-from smachac.diagnostics.spelling import guesser, respelt, written_name
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
@@ -140,14 +140,18 @@ def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
         first = _first_hidden(container, hidden, before, seen)
         previous = {each.name: one for one, each in pairwise(container.children)}
         led_twice = _led_twice(container, seen)
+        order = {child.name: at for at, child in enumerate(hidden)}
+        groups = 0
         for child in hidden:
             if child.name not in first or f"{path}/{child.name}" in missed:
                 continue  # SM701 reports the transition that must lead to it, SM101 its place
+            groups += 1
             alone, one = not before.get(child.name), previous.get(child.name)
+            is_searched = alone and groups <= MOST_EXPLAINED
             others = first[child.name] - {child.name}
-            group = [child, *(each for each in hidden if each.name in others)]
-            past = _led_past(container, one, group, seen) if alone else None
-            if past is None and led_twice is None and alone:
+            group = [child, *(hidden[at] for at in sorted(map(order.__getitem__, others)))]
+            past = _led_past(container, one, group, seen) if is_searched else None
+            if past is None and led_twice is None and is_searched:
                 past = _led_out(container, one, group, seen)
             way_out = _way_out(container, one, seen) if past is None else None
             yield _Hidden(path, container, group, past, way_out, led_twice if alone else None)

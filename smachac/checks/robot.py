@@ -29,7 +29,7 @@ ROTATION_TOLERANCE = 10e-3
 tf2/src/buffer_core.cpp, QUATERNION_NORMALIZATION_TOLERANCE)."""
 
 JOINT_TOLERANCE = 1e-4
-"""Tolerance for joint limits in rad: they are given with four decimals."""
+"""Tolerance for joint limits in rad or m: they are given with four decimals."""
 
 
 @rule(
@@ -100,7 +100,8 @@ def joint_limit(context: Context) -> Iterator[Finding]:
 
     Exactly: the limits are those of the robot that `robot:` names, a built-in arm (panda, baxter)
     or a URDF file. The rule checks the literals that a state with a claim on an arm reads: lists of
-    angles, one for each joint of a limb, and mappings of joint names to angles.
+    positions, one for each joint of a limb, and mappings of joint names to positions. They are in
+    rad, or in m for a joint that slides.
 
     Wrong:
         name: sm
@@ -132,9 +133,9 @@ def joint_limit(context: Context) -> Iterator[Finding]:
         if not moves_arm(flow):
             continue
         faults = joint_faults(flow, robot)
-        degrees = [each for each in faults if abs(as_float(each[2])) > 2 * math.pi]
+        degrees = [fault for fault in faults if _seems_degrees(fault[1], fault[2])]
         if degrees and isinstance(flow.value, tuple):
-            yield _in_degrees(flow, faults)
+            yield _in_degrees(flow, robot, faults)
             continue
         for number, joint, angle in faults:
             in_list = isinstance(flow.value, tuple)
@@ -142,24 +143,33 @@ def joint_limit(context: Context) -> Iterator[Finding]:
             limits = f"{joint.lower:g} to {joint.upper:g}"
             yield at(
                 flow,
-                f"{what} of `{flow.origin.cell.key}` is {angle} rad, outside its limits {limits}",
+                f"{what} of `{flow.origin.cell.key}` is {angle} {joint.unit}, outside its limits"
+                f" {limits}",
                 f"convert the angle from degrees to radians: `{_radians(angle)}`"
-                if abs(as_float(angle)) > 2 * math.pi
-                else _angle_help(joint, as_float(angle), limits),
+                if _seems_degrees(joint, angle)
+                else _position_help(joint, as_float(angle), limits),
                 (str(number) if in_list else joint.name,),
                 other_place(joint.span, f"the limits of `{joint.name}`"),
                 part=(number - 1,) if in_list else (joint.name,),
             )
 
 
-def _angle_help(joint: Joint, angle: float, limits: str) -> str:
-    """The help for an angle outside the limits of a joint: the angle with the other sign, if that
-    is within them."""
-    help = f"write an angle from {limits}, in radians"
-    return f"{help}: did you mean `{-angle:g}`?" if _within(joint, -angle) else help
+def _seems_degrees(joint: Joint, angle: Data) -> bool:
+    """Whether a position is larger than a full turn in radians."""
+    return joint.turns and abs(as_float(angle)) > 2 * math.pi
 
 
-def _in_degrees(flow: TypeFlow, faults: list[tuple[int, Joint, Data]]) -> Finding:
+def _position_help(joint: Joint, position: float, limits: str) -> str:
+    """The help for a position outside the limits of a joint: that with the other sign, or in
+    metres, if it is within them."""
+    if not joint.turns and _within(joint, position / 1000):
+        return f"write `{position / 1000:g}`: positions of joints that slide are in metres"
+    help = f"write {'an angle' if joint.turns else 'a position'} from {limits}, in "
+    help += "radians" if joint.turns else "metres"
+    return f"{help}: did you mean `{-position:g}`?" if _within(joint, -position) else help
+
+
+def _in_degrees(flow: TypeFlow, robot: Robot, faults: list[tuple[int, Joint, Data]]) -> Finding:
     """SM502 for a list in which an angle is larger than a full turn in radians."""
     assert isinstance(flow.value, tuple)
     number, joint, angle = faults[0]
@@ -171,7 +181,10 @@ def _in_degrees(flow: TypeFlow, faults: list[tuple[int, Joint, Data]]) -> Findin
     if len(faults) == 1:
         limits = f"outside its limits {joint.lower:g} to {joint.upper:g}"
         message = f"joint {number} of `{flow.origin.cell.key}` is {angle} rad, {limits}"
-    new = ", ".join(_radians(each) if is_number(each) else str(each) for each in flow.value)
+    rows = _angles(flow.value, robot)
+    new = ", ".join(
+        _radians(given) if is_number(given) and joint.turns else str(given) for joint, given in rows
+    )
     return at(
         flow,
         message,
@@ -439,7 +452,7 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
         == arm.urdf ==
-        <robot name="arm"><link name="base"/><link name="hand"/></robot>
+        <robot name="arm"><link name="hand"/></robot>
 
     Right:
         name: sm
@@ -455,7 +468,7 @@ def unknown_frame(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: done}
         == arm.urdf ==
-        <robot name="arm"><link name="base"/><link name="hand"/></robot>
+        <robot name="arm"><link name="hand"/></robot>
     """
     slashed = [flow for flow in context.types.constants if _begins_with_slash(context, flow)]
     for flow in reaching_flows(slashed):

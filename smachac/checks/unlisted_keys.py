@@ -12,14 +12,15 @@ from smachac.checks.messages import did_you_mean
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.nodes import Leaf
+from smachac.ir.traversal import enclosing
 
 
 def unlisted_reads(context: Context) -> Iterator[Finding]:
     """The keys that such a class reads (SM310)."""
-    containers = dict(context.containers)
+    containers = enclosing(context.machine.root)
     for path, leaf, facts in leaves_by_type(context, declared=True):
         guess, used = guesser(key.name for key in leaf.inputs), {each.text for each in facts.reads}
-        around = containers[path.rpartition("/")[0]]
+        _, around = containers[path]
         for word in first_of_each(facts.unlisted_reads, DICTIONARY_METHODS):
             near = meant_input(word.text, guess, used, around)
             yield Finding(

@@ -85,10 +85,11 @@ def unset_read(
     missing: Missing,
     witness: Witness,
     users: list[Use],
-    guesses: Guesses,
+    guesses: Guesses | None,
     types: Types,
 ) -> Finding:
-    """SM301 for a key where a state reads it. `users` are the uses of the key in its container."""
+    """SM301 for a key where a state reads it. `users` are the uses of the key in its container.
+    Without `guesses` no key is searched that can be meant."""
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
     value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
@@ -107,8 +108,9 @@ def unset_read(
             help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
-        cure, related = _meant_key(missing, witness, guesses, types)
-        help = cure or help
+        if guesses is not None:
+            cure, related = _meant_key(missing, witness, guesses, types)
+            help = cure or help
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",

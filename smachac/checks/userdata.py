@@ -46,7 +46,7 @@ from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser, respelt, written_name
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
 from smachac.diagnostics.wording import either, listed
 from smachac.ir import nodes
 from smachac.ir.message_types import Definitions
@@ -124,8 +124,9 @@ def read_before_write(context: Context) -> Iterator[Finding]:
         yield together_finding(context, lacking)
         together = {id(each) for each in lacking}
         causes = [each for each in causes if id(each) not in together]
-    for missing in causes:
-        swapped = swapped_loop(missing)
+    for number, missing in enumerate(causes):
+        is_searched = number < MOST_EXPLAINED
+        swapped = swapped_loop(missing) if is_searched else None
         if swapped is not None:
             yield _swapped(missing, swapped)
             continue
@@ -139,7 +140,8 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             if witness.reader.key in misplaced and not witness.also:
                 continue  # SM003 reports the cause
             users = used(missing.scope.path).get(missing.key, [])
-            finding = unset_read(missing, witness, users, guesses, context.types)
+            guess = guesses if is_searched else None
+            finding = unset_read(missing, witness, users, guess, context.types)
             if wrong is not None:
                 help = f"did you mean `{wrong.word.text}`?"
                 finding = _with_unread(finding, help, wrong.word)
@@ -158,6 +160,7 @@ def _with_their_own_cause(context: Context) -> list[Missing]:
     unwritten = set(read_unwritten(context, unwritten_keys(context)).values()) | raced_keys(context)
     found: list[Missing] = []
     hidden: dict[tuple[str, str], frozenset[str]] | None = None
+    dropped = cache(lambda path: _dropped(context.corrected_flow.scopes[path].container))
     for missing in context.missing_keys("unset", "nowhere"):
         place = missing.scope.path, missing.key
         if missing.cause == "unset" and hidden is None:
@@ -165,7 +168,7 @@ def _with_their_own_cause(context: Context) -> list[Missing]:
         if hidden and place in hidden and hidden[place].isdisjoint(map(str, missing.vertices)):
             continue  # SM201
         wrong = misnamed.get(place)
-        if missing.cause == "nowhere" and _is_dropped(missing):
+        if missing.cause == "nowhere" and missing.key in dropped(missing.scope.path):
             continue  # SM308
         if place not in unwritten and (wrong is None or not wrong.declared):
             found.append(missing)
@@ -259,11 +262,12 @@ def _swapped(missing: Missing, loop: nodes.Iterator) -> Finding:
     )
 
 
-def _is_dropped(missing: Missing) -> bool:
-    """Whether the code of a state sets the key, which its interface does not declare."""
-    return any(
-        word.text == missing.key
-        for child in missing.scope.container.children
+def _dropped(container: Container) -> frozenset[str]:
+    """The keys that the code of a state in a container sets, also those that its interface does not
+    declare."""
+    return frozenset(
+        word.text
+        for child in container.children
         if isinstance(child, nodes.Leaf) and child.class_facts is not None
         for word in child.class_facts.writes
     )

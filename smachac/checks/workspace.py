@@ -180,29 +180,25 @@ def _solved(wanted: Iterable[Reach], name: str, folder: Path) -> Report:
     solvers: dict[str, Kinematics] = {}
     known: dict[tuple[str, Pose], bool] = {}
     found: Report = []
-    try:
-        for each in wanted:
-            named = [arm for arm in arms if arm[1].name == each.limb]
-            part, limb = (named or arms)[0]
-            if not named and (each.limb is not None or len(arms) > 1):
-                continue
-            try:
-                pose = as_pose(grasp_pose(each.pose, limb.grasp) if each.grasp else each.pose)
-                pose = shifted(pose, IDENTITY if each.offset is None else as_pose(each.offset))
-            except ValueError:
-                continue
-            key = limb.name, pose
-            if key not in known:
-                if part.name not in solvers:
-                    solvers[part.name] = Kinematics(part)
-                goal = compose(inverse(part.base), compose(robot.base, pose))
-                known[key] = solvers[part.name].solve(limb, goal) is not None
-            if not known[key]:
-                point = ", ".join(f"{number:.3f}" for number in pose[0])
-                found.append(out_of_reach(each.flow, f"({point})"))
-    finally:
-        for solver in solvers.values():
-            solver.close()
+    for each in wanted:
+        named = [arm for arm in arms if arm[1].name == each.limb]
+        part, limb = (named or arms)[0]
+        if not named and (each.limb is not None or len(arms) > 1):
+            continue
+        try:
+            pose = as_pose(grasp_pose(each.pose, limb.grasp) if each.grasp else each.pose)
+            pose = shifted(pose, IDENTITY if each.offset is None else as_pose(each.offset))
+        except ValueError:
+            continue
+        key = limb.name, pose
+        if key not in known:
+            if part.name not in solvers:
+                solvers[part.name] = Kinematics(part)
+            goal = compose(inverse(part.base), compose(robot.base, pose))
+            known[key] = solvers[part.name].solve(limb, goal) is not None
+        if not known[key]:
+            point = ", ".join(f"{number:.3f}" for number in pose[0])
+            found.append(out_of_reach(each.flow, f"({point})"))
     return found
 
 

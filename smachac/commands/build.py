@@ -60,7 +60,7 @@ def build_command(arguments: Namespace) -> int:
     """Generate code; the exit code."""
     from smachac.commands.cpu_time import CpuTimeError, limited_time
     from smachac.commands.memory import limited_memory
-    from smachac.driver import analyse_script, compile_script
+    from smachac.driver import analyse_script, compile_files
     from smachac.targets import OptionError, load_target, target_names
 
     target = load_target(arguments.target)
@@ -84,7 +84,7 @@ def build_command(arguments: Namespace) -> int:
         with limited_memory(arguments.memory_limit), limited_time(arguments.time_limit):
             analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
             levels = _levels(arguments.script, arguments.output)
-            files, report = compile_script(analysis, target, options, levels)
+            files, report = compile_files(analysis, target, options, levels)
     except OptionError as error:
         return usage(f"--option {error}")
     except CpuTimeError as error:

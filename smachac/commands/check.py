@@ -116,8 +116,9 @@ def check_command(arguments: Namespace) -> int:
 def _wrong_usage() -> tuple[type[Exception], ...]:
     """The exceptions that mean wrong usage."""
     from smachac.checks.workspace import NoSimulationError
+    from smachac.commands.git import GitError
     from smachac.diagnostics.baseline import BaselineError
-    from smachac.frontend.discovery import GitError, NothingFoundError
+    from smachac.frontend.discovery import NothingFoundError
 
     return NothingFoundError, GitError, BaselineError, NoSimulationError
 
@@ -134,8 +135,9 @@ def _check_once(
     `previous`: see `check_scripts`."""
     from smachac.batch import check_scripts
     from smachac.checks.workspace import unreachable
+    from smachac.commands.git import changed_since
     from smachac.diagnostics.diagnostic import Severity
-    from smachac.frontend.discovery import changed_since, scripts_of
+    from smachac.frontend.discovery import scripts_of
     from smachac.frontend.files import Disk
 
     started = time.perf_counter()
@@ -148,7 +150,8 @@ def _check_once(
 
     whole = check(disk, previous)
     used.update(*whole.uses.values())
-    changed = changed_since(arguments.changed_since) if arguments.changed_since else None
+    revision = arguments.changed_since
+    changed = changed_since(revision, frozenset(used)) if revision else None
     found, notes = _select(whole, changed, arguments)
     if arguments.write_baseline:
         return _write_baseline(arguments, found.report)

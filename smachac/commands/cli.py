@@ -77,8 +77,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return _whole_program() if arguments is None else _guarded(arguments)
     except KeyboardInterrupt:
+        from smachac.runtime.signals import exit_code
+
         print("interrupted", file=sys.stderr, flush=True)
-        return INTERRUPTED
+        return exit_code(INTERRUPTED)
     finally:
         if collecting and arguments is not None:  # the process of the caller goes on
             gc.enable()
@@ -118,13 +120,25 @@ def _guarded(words: Sequence[str]) -> int:
     except MemoryError:
         print("there is not enough memory", file=sys.stderr, flush=True)
         return FAILED
-    except Exception:
+    except Exception as error:
+        if isinstance(error, ImportError) and _is_required(error.name or ""):
+            print(f"a package that smachac requires is missing or broken: {error};"
+                  " `smachac doctor` lists them", file=sys.stderr)  # fmt: skip
+            return FAILED
         import traceback
 
         traceback.print_exc()
         print(f"\nsmachac {__version__}: this is a bug in smachac, please report it with the"
               " lines above and the script", file=sys.stderr)  # fmt: skip
         return BUG
+
+
+def _is_required(module: str) -> bool:
+    """Whether a module belongs to a package that smachac requires."""
+    from smachac.commands.doctor import MODULES
+
+    package = module.partition(".")[0]
+    return any(name.partition(".")[0] == package for name, *_, required in MODULES if required)
 
 
 def _run(words: Sequence[str]) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 from argparse import Namespace
@@ -52,7 +53,8 @@ def diff_arguments(parser: argparse.ArgumentParser) -> None:
 
 def diff_command(arguments: Namespace) -> int:
     """Compare scripts and print the differences; the exit code."""
-    from smachac.frontend.discovery import GitError, NothingFoundError
+    from smachac.commands.git import GitError
+    from smachac.frontend.discovery import NothingFoundError
 
     try:
         pairs = _analyses(arguments)
@@ -72,7 +74,7 @@ def _analyses(arguments: Namespace) -> list[tuple[Analysis | None, Analysis | No
     paths = [_from_here(path) for path in arguments.script] or [as_path(".")]
     revisions = (arguments.old, arguments.new)
     if revisions == (None, None) and len(paths) == 2 and not any(map(os.path.isdir, paths)):
-        one, other = (_checked([path], arguments)[str(path)] for path in paths)
+        one, other = (_checked([path], None, arguments)[str(path)] for path in paths)
         return [(one, other)]
     before = _at("HEAD" if arguments.old is None else arguments.old, paths, arguments)
     after = _at(arguments.new, paths, arguments)
@@ -89,34 +91,42 @@ def _from_here(path: Path) -> Path:
 def _at(
     revision: str | None, paths: Sequence[Path], arguments: Namespace
 ) -> Mapping[str, Analysis]:
-    """The analyses of the scripts in a revision, or on disk, by name."""
-    from smachac.commands.revisions import checked_out
+    """The analyses of the scripts in a revision, or on disk, by name. A link that leads out of the
+    repository is not followed, also if it is named. Raises GitError."""
+    from smachac.commands.git import GitError, checked_out, top_folder
 
+    top = top_folder()
+    for path in paths:
+        named = path.parent if os.path.islink(path) else path  # noqa: PTH114 (a name too long)
+        if not as_path(os.path.realpath(named)).is_relative_to(top):
+            raise GitError(f"`{path}` is not in the git repository {top}")
     if revision is None:
-        return _checked(_existing(paths), arguments)
-    with checked_out(revision, paths):
-        return _checked(_existing(paths), arguments)
+        return _checked(paths, top, arguments)
+    with checked_out(revision) as folder:
+        return _checked(paths, folder, arguments)
 
 
-def _existing(paths: Sequence[Path]) -> list[Path]:
-    """The scripts that files, folders and patterns match; none where there is no such file."""
+def _checked(
+    paths: Sequence[Path], top: Path | None, arguments: Namespace
+) -> Mapping[str, Analysis]:
+    """The analyses of the scripts that files, folders and patterns match, by name; none where there
+    is no such file. Links that lead out of the folder `top` are not followed."""
+    from smachac.batch import check_scripts
     from smachac.frontend.discovery import NothingFoundError, scripts_of
-    from smachac.frontend.files import Disk
+    from smachac.frontend.files import Disk, leads_out, lies_inside
 
     found: list[Path] = []
+    disk = Disk()
     for path in paths:
-        try:
-            found += [each for each in scripts_of([path], Disk()) if os.path.lexists(each)]
-        except NothingFoundError:
-            continue
-    return list(dict.fromkeys(found))
-
-
-def _checked(paths: Sequence[Path], arguments: Namespace) -> Mapping[str, Analysis]:
-    from smachac.batch import check_scripts
-    from smachac.frontend.files import Disk
-
-    return check_scripts(paths, Disk(), arguments.scripts, arguments.templates).analyses
+        if top is not None and not lies_inside(path, top):
+            folder = as_path(os.path.relpath(top))
+            disk.refused[str(path)] = leads_out(path, folder, can_be_named=False)
+            found += [path] if os.path.lexists(path) else []
+        else:
+            with contextlib.suppress(NothingFoundError):
+                found += [each for each in scripts_of([path], disk) if os.path.lexists(each)]
+    scripts = list(dict.fromkeys(found))
+    return check_scripts(scripts, disk, arguments.scripts, arguments.templates).analyses
 
 
 def _put(arguments: Namespace, pairs: Sequence[tuple[Analysis | None, Analysis | None]]) -> int:

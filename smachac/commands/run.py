@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders, seed
-from smachac.commands.interrupts import end_at_once
+from smachac.commands.interrupts import end_at_stop_signals
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.swapped import swapped_option
 from smachac.commands.terminal import wants_colour
@@ -34,10 +34,11 @@ if TYPE_CHECKING:
     from smachac.robots.faults import Fault
     from smachac.runtime.tracing.gate import Gate
     from smachac.runtime.tracing.progress import Sugar
+    from smachac.view.control import Control
     from smachac.view.live import LiveTrace
 
     Event = dict[str, Any]
-    Go = Callable[[Callable[[Event], None], Gate | None], str]
+    Go = Callable[[Callable[[Event], None], Control | None], str]
 
 EXAMPLES = """\
 examples:
@@ -54,7 +55,8 @@ examples:
   smachac run main.yml --ros --ros-args -p speed:=0.2 -r __ns:=/robot_1
 
 exit codes: 0 the machine ended with an outcome (the one of --expect), 1 the run failed or the
-script has errors, 2 wrong usage, 70 a bug in smachac, 130 interrupted
+script has errors, 2 wrong usage, 70 a bug in smachac, 130 after Ctrl-C, 143 after SIGTERM,
+129 after SIGHUP, whatever the outcome
 """
 
 
@@ -83,6 +85,7 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--orders", type=count, metavar="N",
                         help="with --mock: try N orders of turns; fail if the results"
                         " differ")  # fmt: skip
+    max_steps(parser)
     parser.add_argument("--view", type=port, nargs="?", const=0, metavar="PORT",
                         help="show the run in a browser (default of PORT: one that is"
                         " free)")  # fmt: skip
@@ -97,13 +100,25 @@ def run_arguments(parser: argparse.ArgumentParser) -> None:
     colour(parser)
 
 
+def max_steps(parser: argparse.ArgumentParser) -> None:
+    """`--max-steps`."""
+    parser.add_argument("--max-steps", type=count, metavar="N",
+                        help="with --mock: fail after N states (default: 10000)")  # fmt: skip
+
+
+MAX_STEPS_NEEDS = "--max-steps needs --mock: a program runs until its machine ends"
+
+
 def run_command(arguments: Namespace) -> int:
     """Run a script; the exit code."""
     from smachac.ir.traversal import outcome_names
 
+    end_at_stop_signals()
     record: Path | None = arguments.record
     if record is not None and record.suffix.lower() not in (".gif", ".mp4"):
         return usage(f"--record writes .gif and .mp4, not `{record}`")
+    if arguments.mock is None and arguments.max_steps:
+        return usage(MAX_STEPS_NEEDS)
     if arguments.mock is None and (arguments.schedule or arguments.orders):
         return usage("--schedule and --orders need --mock: the turns of threads cannot be chosen")
     if arguments.mock is not None and (record is not None or arguments.gui or arguments.faults):
@@ -232,7 +247,10 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
 def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
     """Play a scenario; the exit code."""
     from smachac.driver import without_class_errors
-    from smachac.sweep.play import play
+    from smachac.interpreter.interpreter import MAX_STEPS
+    from smachac.runtime.signals import StopSignals, end_now
+    from smachac.sweep.play import SHOWN_STATES, FailedError, play
+    from smachac.view.control import Control
 
     report = without_class_errors(analysis.report)
     print_report(without_notes(report), arguments, sys.stderr)
@@ -240,17 +258,36 @@ def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
     if machine is None:
         return FINDINGS
     found: Report = []
-    scenario = read_scenario_file(arguments.mock, machine, found)
+    scenario, last_steps = read_scenario_file(arguments.mock, machine, found)
     print_report(found, arguments, sys.stderr)
     if scenario is None:
         return FINDINGS
+    seed, most = arguments.seed, arguments.max_steps or MAX_STEPS
     if arguments.orders is not None:
-        text, agree = play_orders(machine, scenario, arguments.seed, arguments.orders)
+        text, agree = play_orders(machine, scenario, seed, arguments.orders, max_steps=most)
         print(text)
         return OK if agree else FINDINGS
-    seed, schedule = arguments.seed, arguments.schedule
-    go = partial(play, machine, scenario, seed, schedule)
+
+    def go(observe: Callable[[Event], None], gate: Control | None) -> str:
+        control = gate or Control()
+        schedule = arguments.schedule
+        try:
+            with StopSignals(partial(_stop, control), end_now):
+                return play(machine, scenario, seed, schedule, observe, control, max_steps=most)
+        except FailedError as error:
+            places = [last_steps[path] for path in error.cycle if path in last_steps]
+            repeats = "".join(
+                f"\n  --> {span}: this step repeats" for span in places[:SHOWN_STATES]
+            )
+            raise FailedError(f"{error}{repeats}") from None
+
     return _observed(arguments, machine, analysis.report, go)
+
+
+def _stop(control: Control) -> None:
+    """Send a stop request to the machine of a control."""
+    _print_stop()
+    control.act("stop")
 
 
 def _playable(analysis: Analysis) -> Machine | None:
@@ -266,13 +303,13 @@ def _playable(analysis: Analysis) -> Machine | None:
 
 def _observed(arguments: Namespace, machine: Machine, report: Report, go: Go) -> int:
     """Run a machine, with a view if the arguments require one; the exit code."""
+    from smachac.runtime.signals import exit_code
+
     if arguments.view is None:
-        return _traced(arguments, machine, go, None)
+        return exit_code(_traced(arguments, machine, go, None))
     try:
         with run_view(arguments, machine, report) as view:
-            code = _traced(arguments, machine, go, view)
-            view.stay()
-            return code
+            return view.stay(exit_code(_traced(arguments, machine, go, view)))
     except PortError as error:
         return usage(str(error))
 
@@ -331,7 +368,9 @@ def sugar_of(machine: Machine) -> Sugar:
     )
 
 
-def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> tuple[str, bool]:
+def play_orders(
+    machine: Machine, scenario: Scenario, seed: int, most: int, *, max_steps: int
+) -> tuple[str, bool]:
     """Play a scenario with up to `most` orders of turns of concurrent branches.
 
     The results as text, and whether all results are the same.
@@ -350,7 +389,9 @@ def play_orders(machine: Machine, scenario: Scenario, seed: int, most: int) -> t
     secret = secret_keys(machine).get(machine.root.name, ())
     ends: dict[str, list[InterpreterResult]] = {}
     orders = explore(
-        machine, lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed)
+        machine,
+        lambda: scenario_behaviour(scenario, machine, builtin_behaviour(seed), seed),
+        max_steps=max_steps,
     )
     for result in islice(orders, most):
         end = f"outcome: {result.outcome}"
@@ -429,10 +470,7 @@ def perform(
             poses=arguments.poses,
             arguments=arguments.node,
             gate=gate,
-            on_preempt=lambda: print(
-                "preemption requested: the states stop; Ctrl-C again ends at once", file=sys.stderr
-            ),
-            on_interrupt=end_at_once,  # a container would wait for branches that may never return
+            on_preempt=_print_stop,
         ).outcome
     except ParameterError as error:
         print(error, file=sys.stderr)
@@ -442,6 +480,11 @@ def perform(
     if outcome is None:
         raise FailedError("the machine ended without an outcome")
     return outcome
+
+
+def _print_stop() -> None:
+    text = "preemption requested: the states stop; Ctrl-C again ends at once"
+    print(text, file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -523,20 +566,33 @@ def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
         return None
 
 
-def read_scenario_file(path: Path, machine: Machine, report: Report) -> Scenario | None:
-    """The scenario of a file; None, with findings in the report, if it has faults."""
+def read_scenario_file(
+    path: Path, machine: Machine, report: Report
+) -> tuple[Scenario | None, Mapping[str, Span]]:
+    """The scenario of a file, and the places of the last steps of its states, by full path; None,
+    with findings in the report, if it has faults."""
     from smachac.frontend.data_files import plain
     from smachac.frontend.errors.script import wrong_shape
+    from smachac.frontend.yaml_tree import Map, Seq
     from smachac.interpreter.scenario import read_scenario
 
     tree = _read_tree(path, report, NO_SCENARIO)
     if tree is None:
-        return None
+        return None, {}
     scenario, found = read_scenario(plain(tree), machine)
     for problem in found:
         place = _place(problem, tree)
         report.append(wrong_shape(place, problem.message, effect=NO_SCENARIO))
-    return None if report else scenario
+    if report:
+        return None, {}
+    states = tree.get("states") if isinstance(tree, Map) else None
+    assert states is not None
+    assert isinstance(states.value, Map)
+    last = (
+        entry.value.items[-1] if isinstance(entry.value, Seq) else entry.value
+        for entry in states.value.entries
+    )
+    return scenario, {path: step.span for path, step in zip(scenario.steps, last, strict=True)}
 
 
 def _read_tree(path: Path, report: Report, effect: str) -> Tree | None:
@@ -569,7 +625,7 @@ def _place(problem: ScenarioProblem, tree: Tree) -> Span:
             continue
         if problem.step is None:
             return entry.key.span
-        if isinstance(entry.value, Seq):
-            return entry.value.items[problem.step - 1].span
-        return entry.value.span
+        items = entry.value.items if isinstance(entry.value, Seq) else ()
+        # Another key can have the same text: 1 and "1".
+        return items[problem.step - 1].span if problem.step <= len(items) else entry.value.span
     return tree.span

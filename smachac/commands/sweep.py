@@ -9,7 +9,9 @@ import time
 from argparse import Namespace
 
 from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, count, search_folders, seed
+from smachac.commands.interrupts import end_at_stop_signals
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.run import MAX_STEPS_NEEDS, max_steps
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ examples:
   smachac run main.yml --seed 17 --set userdata.speed=0.21    repeat one run
 
 exit codes: 0 success, 1 too few runs have the outcome of --expect, or the script has errors,
-2 wrong usage, 70 a bug in smachac, 130 interrupted
+2 wrong usage, 70 a bug in smachac, 130 after Ctrl-C, 143 after SIGTERM, 129 after SIGHUP
 """
 
 RUN_LIMIT = 300
@@ -63,6 +65,7 @@ def sweep_arguments(parser: argparse.ArgumentParser) -> None:
                         help="inject the faults in FILE into the simulation")  # fmt: skip
     parser.add_argument("--mock", type=as_path, metavar="FILE",
                         help="play the scenario in FILE, do not run the program")  # fmt: skip
+    max_steps(parser)
     parser.add_argument("--jobs", type=count, metavar="N",
                         help="number of worker processes (default: one for each core)"
                         )  # fmt: skip
@@ -117,8 +120,11 @@ def sweep_command(arguments: Namespace) -> int:
     from smachac.sweep.database import Database, DatabaseError
     from smachac.sweep.engine import WorkerError
 
+    end_at_stop_signals()
     if arguments.mock is not None and arguments.faults is not None:
         return usage("--faults needs the simulation, --mock plays a scenario: choose one")
+    if arguments.mock is None and arguments.max_steps:
+        return usage(MAX_STEPS_NEEDS)
     if arguments.engine == "ray" and not _has_ray():
         return usage(NO_RAY)
     for option in ("output", "junit"):
@@ -137,14 +143,15 @@ def sweep_command(arguments: Namespace) -> int:
     except DatabaseError as error:
         return usage(str(error))
     try:
-        interrupted = _perform(arguments, task, database)
+        signals = _perform(arguments, task, database)
         code = _report(arguments, machine, task, database)
+        database.check_file()
     except (DatabaseError, WorkerError) as error:
         print(error, file=sys.stderr)
         return FINDINGS
     finally:
         database.close()
-    return 130 if interrupted else code
+    return 128 + signals[0] if signals else code
 
 
 def _file_with_two_uses(arguments: Namespace) -> str | None:
@@ -174,6 +181,7 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     from smachac.commands.swapped import swapped_option
     from smachac.driver import analyse_script, compile_script
     from smachac.frontend.files import module_folders, read_source
+    from smachac.interpreter.interpreter import MAX_STEPS
     from smachac.ir.traversal import outcome_names
     from smachac.sweep.inputs import input_digests
     from smachac.sweep.task import Task
@@ -206,7 +214,7 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     faults = () if arguments.faults is None else read_fault_file(arguments.faults, found)
     scenario = None
     if arguments.mock is not None:
-        scenario = read_scenario_file(arguments.mock, machine, found)
+        scenario, _ = read_scenario_file(arguments.mock, machine, found)
     print_report(found, arguments, sys.stderr)
     if found or faults is None:
         return FINDINGS
@@ -221,6 +229,7 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
         scenario=scenario,
         faults=faults,
         variations=variations,
+        max_steps=arguments.max_steps or MAX_STEPS,
     )
     return machine, task, input_digests(task, machine, files, folders)
 
@@ -243,12 +252,13 @@ def _variations(
     return variations
 
 
-def _perform(arguments: Namespace, task: Task, database: Database) -> bool:
-    """Perform the runs that the database does not have; whether Ctrl-C ended it."""
+def _perform(arguments: Namespace, task: Task, database: Database) -> list[int]:
+    """Perform the runs that the database does not have; the stop signal that ended this, if any."""
     import random
     from contextlib import redirect_stdout
 
     from smachac.commands.interrupts import interrupts_raise
+    from smachac.runtime.signals import received
 
     first, planned = arguments.seed, arguments.runs
     done = database.seeds()
@@ -262,12 +272,14 @@ def _perform(arguments: Namespace, task: Task, database: Database) -> bool:
             for run in runs:
                 if database.add(run):
                     progress.add()
+                if received:  # the exception was lost in the code that it interrupted
+                    break
         except KeyboardInterrupt:
-            return True
+            pass
         finally:
             runs.close()
             progress.end()
-    return False
+    return [*received]
 
 
 def _runs(

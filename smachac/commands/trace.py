@@ -171,7 +171,10 @@ def _judged(
     """Every trace, with what all of them cover and count. The runs of a database have no events,
     and so no `conformance`; those of a bag have no outcomes of states, and so nothing else. Raises
     UnreadableTraceError, and DatabaseError for a database."""
+    from functools import partial
+
     from smachac.commands.bag import is_bag
+    from smachac.runtime.tracing.writer import LONGEST_LINE
     from smachac.verify.coverage import Coverage
     from smachac.verify.trace_report import judge_trace
     from smachac.verify.trace_statistics import TraceStatistics
@@ -196,7 +199,8 @@ def _judged(
                     raise UnreadableTraceError(path, "a sweep's database has no events")
                 _add_database(path, machine, taken, statistics)
                 continue
-            with path.open(encoding="utf-8", errors="replace", newline="\n") as lines:
+            with path.open(encoding="utf-8", errors="replace", newline="\n") as stream:
+                lines = iter(partial(stream.readline, LONGEST_LINE + 1), "")
                 judged.append(judge_trace(machine, str(path), lines, record))
         except OSError as error:
             raise UnreadableTraceError(path, error.strerror or str(error)) from None
@@ -208,18 +212,21 @@ def _judged_bag(path: Path, machine: Machine, taken: Coverage) -> list[JudgedTra
     """The runs in a bag, one trace for each node that reports on the machine. Raises
     UnreadableTraceError."""
     from smachac.commands.bag import BagError, read_statuses
+    from smachac.diagnostics.wording import listed
     from smachac.verify.status_conformance import judge_statuses
 
     if not path.exists():
         raise UnreadableTraceError(path, "there is no such file")
     try:
-        found = read_statuses(path)
+        found, notes = read_statuses(path)
     except BagError as error:
         raise UnreadableTraceError(path, str(error)) from None
+    for note in notes:
+        print(f"note: {path}: {note}", file=sys.stderr)
     roots = {topic: {each.path.partition("/")[0] for each in found[topic]} for topic in found}
     own = [topic for topic in found if not roots[topic] or machine.root.name in roots[topic]]
     if not own:
-        names = ", ".join(f"`/{root}`" for root in sorted(set().union(*roots.values())))
+        names = listed(f"/{root}" for root in set().union(*roots.values()))
         raise UnreadableTraceError(path, f"it reports on {names}, not on `/{machine.root.name}`")
     names_of = {topic: str(path) if len(own) == 1 else f"{path} ({topic})" for topic in own}
     return [judge_statuses(machine, names_of[topic], found[topic], taken) for topic in own]

@@ -328,6 +328,8 @@ class _TraceFile:
 
 def _unknown_place(places: Iterable[str], picture: Picture) -> str:
     """What shows that the run is of another machine, or of another version; else empty."""
+    from smachac.diagnostics.wording import quote
+
     model = picture.model
     nodes = model["nodes"]
     known = {each.get("shown", each["path"]) for each in nodes} | {each["path"] for each in nodes}
@@ -336,8 +338,8 @@ def _unknown_place(places: Iterable[str], picture: Picture) -> str:
     if not place:
         return ""
     if machine != model["root"]:
-        return f"this is the trace of the machine `{machine}`, not of `{model['root']}`"
-    return f"the script has no state {place}: it is not the version that ran"
+        return f"this is the trace of the machine {quote(machine)}, not of `{model['root']}`"
+    return f"the script has no state {quote(place)}: it is not the version that ran"
 
 
 class _NodeRun:
@@ -470,17 +472,23 @@ class RunView:
         self.trace, self.control = trace, control
         self._server = server
 
-    def stay(self) -> None:
-        """After the run: where a person is at the terminal, serve the page until Ctrl-C."""
+    def stay(self, code: int) -> int:
+        """After the run: where a person is at the terminal, serve the page until Ctrl-C, unless
+        SIGTERM or SIGHUP ended the run. The exit code: `code`, that of the run, or that of the
+        signal."""
+        import signal
+
         from smachac.commands.interrupts import interrupts_raise
+        from smachac.runtime.signals import exit_code, received
 
         self.control.ended()
-        if not sys.stdin or not sys.stdin.isatty():
-            return
+        if not sys.stdin or not sys.stdin.isatty() or set(received) - {signal.SIGINT}:
+            return code
         print("the run has ended; the view stays until Ctrl-C", file=sys.stderr, flush=True)
         with interrupts_raise(), suppress(KeyboardInterrupt):
             while True:
                 time.sleep(3600)
+        return exit_code(code)
 
 
 @contextmanager

@@ -15,6 +15,10 @@ MOST_COMPARED = 40
 """With more candidates, only names one slip away are found: comparing them all would take too
 long."""
 
+MOST_EXPLAINED = 100
+"""The most findings of one kind in a container, or in a state, whose help is searched in the whole
+of it. So many faults have one cause, and a search for each of them would take quadratic time."""
+
 SHORTEST_SLIP = 4
 """Shorter names are one slip away from too many others: for them only the case may differ."""
 

@@ -8,10 +8,22 @@ MOST_LISTED = 12
 """Limit on the names in a message; the others are counted."""
 
 
+LONGEST_QUOTE = 200
+"""The most characters of a quoted text from a file."""
+
+
+def quote(text: str) -> str:
+    """A text from a file in a message; the middle of a long one is left out."""
+    if len(text) <= LONGEST_QUOTE:
+        return f"`{text}`"
+    end = LONGEST_QUOTE // 2
+    return f"`{text[:end]}…{text[-end:]}` ({len(text)} characters)"
+
+
 def listed(names: Iterable[str]) -> str:
     """Names in backticks, sorted, at most MOST_LISTED of them."""
     every = sorted(set(names))
-    text = ", ".join(f"`{name}`" for name in every[:MOST_LISTED])
+    text = ", ".join(map(quote, every[:MOST_LISTED]))
     more = len(every) - MOST_LISTED
     return f"{text} and {more} more" if more > 0 else text
 

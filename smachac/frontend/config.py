@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,12 @@ _WORDS_FOR_OFF = frozenset(["ignore", "none", "disable", "disabled", "false", "n
 MOST_DOTS = 200
 """The most dots of a line, and so the most parts of a key."""
 
+MOST_WRONG = 100
+"""The most faults of a project file that are reported: each costs a search for its place."""
+
+LONGEST_FILE = 100_000
+"""In characters: a larger `smachac.toml` is not read."""
+
 LONGEST_KEY = 200
 """The longest key that is looked for in the text, in characters."""
 
@@ -74,6 +80,12 @@ def read_project(
     without them the codes in the file are not checked.
     """
     crowded = next((line for line in source.text.split("\n") if line.count(".") > MOST_DOTS), None)
+    settings_of = len(source.text) if path.name == "smachac.toml" else 0
+    if settings_of > LONGEST_FILE:
+        message = f"the file has {settings_of:,} characters; the limit is {LONGEST_FILE:,}"
+        help = "keep only settings of smachac in it"
+        report.append(too_big(Span(source, 0, 0), message, help, arguments=("characters",)))
+        return Project(readable=False)
     if crowded is not None:  # tomllib takes time and memory quadratic in the parts of a key
         start = source.text.index(crowded)
         message = f"a line has {crowded.count('.'):,} dots; the limit is {MOST_DOTS}"
@@ -239,15 +251,17 @@ def _severities(
         return {}
     found: dict[str, Severity | None] = {}
     for code, word in value.items():
-        if codes is not None and not any(known.startswith(code) for known in codes):
+        if not code or (codes and not any(known.startswith(code) for known in codes)):
             message = f"no code begins with `{code}`"
-            _wrong(source, code, message, _near(code, codes), report, ("code", code))
-        elif not isinstance(word, str) or word not in LEVELS:
+            _wrong(source, code, message, _near(code, codes or ()), report, ("code", code))
+        elif not isinstance(word, str):
+            message = f"a severity is a text, not {_kind(word)}"
+            help = f"write one of {listed(LEVELS)} in quotes"
+            _wrong(source, code, message, help, report, ("severity", code), at_value=True)
+        elif word not in LEVELS:
             message = f"`{word}` is not a severity"
-            arguments = ("severity", code, str(word))
-            help = _near(str(word), LEVELS)
-            if word in _WORDS_FOR_OFF:
-                help = "did you mean `off`?"
+            arguments = ("severity", code, word)
+            help = "did you mean `off`?" if word in _WORDS_FOR_OFF else _near(word, LEVELS)
             _wrong(source, code, message, help, report, arguments, at_value=True)
         elif codes and code in codes and codes[code].firm and word != "error":
             help = "remove the line: no program can be generated with this fault"
@@ -255,6 +269,12 @@ def _severities(
         else:
             found[code] = LEVELS[word]
     return found
+
+
+def _kind(value: object) -> str:
+    """The kind of a value of TOML."""
+    kinds = {bool: "a truth value", int: "a number", float: "a number", list: "a list"}
+    return "a table" if isinstance(value, dict) else kinds.get(type(value), "a time")
 
 
 def _near(word: str, known: Iterable[str]) -> str:
@@ -272,7 +292,9 @@ def _wrong(
     *,
     at_value: bool = False,
 ) -> None:
-    """SM007 at the key or at its value."""
+    """SM007 at the key or at its value; nothing after MOST_WRONG findings."""
+    if len(report) >= MOST_WRONG:
+        return
     span = _key(source, key)
     value = _VALUE.match(source.text, span.end) if at_value else None
     if value is not None:
@@ -280,20 +302,21 @@ def _wrong(
     report.append(unreadable_file(span, message, help, arguments=arguments))
 
 
-def folder_place(source: Source, setting: str, base: Path, folder: Path) -> Word:
-    """A folder as a setting names it, and its place: that of the setting, if no text is found.
-    `base` is the folder of the project file."""
+def folder_places(source: Source, setting: str, base: Path) -> Callable[[Path], Word]:
+    """A function from a folder of a setting to its text there, and its place: that of the setting,
+    if no text is found. `base` is the folder of the project file."""
     key = _key(source, setting)
+    written: dict[Path, Word] = {}
     for found in _PART.finditer(source.text, key.end):
         text = found[0][1:-1]
-        if found[0][0] in "'\"" and base / text == folder:
-            return Word(text, Span(source, *found.span()))
-    return Word(str(folder), key)
+        if found[0][0] in "'\"":
+            written.setdefault(base / text, Word(text, Span(source, *found.span())))
+    return lambda folder: written.get(folder) or Word(str(folder), key)
 
 
 def _key(source: Source, key: str) -> Span:
     """The place of a key, if a search finds it: TOML parsers give no positions."""
-    for start in source.line_starts if len(key) <= LONGEST_KEY else ():
+    for start in source.line_starts if 0 < len(key) <= LONGEST_KEY else ():
         line = source.text[start : start + 2 * LONGEST_KEY].split("\n", 1)[0]
         before, found, after = line.partition(key)
         lead = before.lstrip(" \t")

@@ -9,9 +9,14 @@ from smachac.frontend.yaml_tree import Map, Seq, Tree
 
 
 def plain(tree: Tree) -> Any:
-    """The data of a tree: dictionaries, lists and values."""
+    """The data of a tree: dictionaries, lists and values. The first of duplicate keys counts, as in
+    `span_at`."""
     if isinstance(tree, Map):
-        return {entry.key.value: plain(entry.value) for entry in tree.entries}
+        found: dict[Any, Any] = {}
+        for entry in tree.entries:
+            if entry.key.value not in found:
+                found[entry.key.value] = plain(entry.value)
+        return found
     if isinstance(tree, Seq):
         return [plain(item) for item in tree.items]
     return tree.value

@@ -1,4 +1,4 @@
-"""The scripts of a run: files, folders, patterns; optionally only those that git finds changed."""
+"""The scripts of a run: files, folders, patterns."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
     """The scripts that files, folders and patterns match, each once, in order.
 
     A named file is always included. A folder stands for all YAML files in it that look like scripts
-    and that the project file does not exclude. Raises NothingFoundError.
+    and that the project file does not exclude. The disk refuses links that lead out of a folder or
+    of the folder of a pattern. Raises NothingFoundError.
     """
     found: dict[str, Path] = {}
     for argument in arguments:
@@ -48,6 +49,9 @@ def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
             root = Path(argument.anchor)
             paths = sorted(root.glob(str(argument.relative_to(root))))
             paths = [path for path in paths if path.is_file()]
+            folder = next(each for each in argument.parents if not has_magic(str(each)))
+            for path in paths:
+                _refuse_link(path, folder, disk)
         if not paths:
             raise NothingFoundError(f"there is no script in `{argument}`")
         for path in paths:
@@ -83,14 +87,21 @@ def _is_script(path: Path, folder: Path, disk: Disk) -> bool:
     errors.
 
     A file that cannot be read counts as a script, so that it is reported; so does a link that leads
-    out of the folder, and the disk refuses it from then on.
+    out of the folder.
     """
-    if not lies_inside(path, folder):
-        disk.refused[str(path)] = leads_out(path, folder)
+    if _refuse_link(path, folder, disk):
         return True
     report: Report = []
     source = disk.read(path, report)
     return source is None or looks_like_a_script(source.text)
+
+
+def _refuse_link(path: Path, folder: Path, disk: Disk) -> bool:
+    """Whether a file is a link that leads out of a folder; the disk refuses it from then on."""
+    if lies_inside(path, folder):
+        return False
+    disk.refused[str(path)] = leads_out(path, folder)
+    return True
 
 
 def looks_like_a_script(text: str) -> bool:
@@ -116,39 +127,3 @@ def _flow_keys(text: str) -> set[str]:
         elif part[4] and depth == 1:
             keys.add(part[1] or part[2] or part[3])
     return keys
-
-
-class GitError(Exception):
-    """Git failed to list the changed files; the message is its own."""
-
-
-def changed_since(revision: str) -> set[str]:
-    """The real paths of files that differ from the merge base of this branch and `revision`.
-
-    Uncommitted changes count, also new and removed files. Raises GitError.
-    """
-    commit = f"{revision}^{{commit}}"
-    commit = _git("rev-parse", "--verify", "--quiet", "--end-of-options", commit).strip()
-    if not commit:
-        raise GitError(f"git has no revision `{revision}`")
-    top = Path(_git("rev-parse", "--show-toplevel").rstrip("\n"))
-    base = _git("merge-base", commit, "HEAD").strip() or commit
-    names = _git("-C", str(top), "diff", "--name-only", "--no-renames", "-z", base, "--")
-    names += _git("-C", str(top), "ls-files", "--others", "--exclude-standard", "-z")
-    return {os.path.realpath(top / name) for name in names.split("\0") if name}
-
-
-def _git(*arguments: str) -> str:
-    """The output of a git command; empty if git reports that there is no result."""
-    import subprocess
-
-    try:
-        ended = subprocess.run(
-            ["git", *arguments], capture_output=True, check=False, encoding="utf-8",
-            errors="surrogateescape",
-        )  # fmt: skip
-    except OSError as error:
-        raise GitError(f"git does not run: {error.strerror or error}") from error
-    if ended.returncode not in (0, 1):
-        raise GitError(ended.stderr.strip() or "git failed")
-    return ended.stdout

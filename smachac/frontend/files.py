@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import glob
 import os
 import stat
-import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -19,13 +17,15 @@ from smachac.frontend.config import (
     FOLDERS,
     PROJECT_FILES,
     Project,
-    folder_place,
+    folder_places,
     read_project,
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import SUFFIXES, Library, Ros
 from smachac.frontend.yaml_mends import parse_mended
 from smachac.frontend.yaml_tree import Tree
+from smachac.robots import xacro_files
+from smachac.robots.files import Packages, find_mesh, installed_packages
 
 PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
@@ -117,10 +117,13 @@ def lies_inside(path: Path, folder: Path) -> bool:
         return False
 
 
-def leads_out(path: Path, folder: Path) -> Diagnostic:
-    """SM007: a link in a folder that is searched leads out of it."""
+def leads_out(path: Path, folder: Path, *, can_be_named: bool = True) -> Diagnostic:
+    """SM007: a link in a folder that is searched leads out of it. `can_be_named`: a link that is
+    named on the command line is followed."""
     message = f"this link leads out of the folder `{folder}`: it is not followed"
-    help = "copy the file into the folder, or name it or its folder on the command line"
+    help = "copy the file into the folder"
+    if can_be_named:
+        help = f"{help}, or name it or its folder on the command line"
     return unreadable_file(Span(Source(str(path), ""), 0, 0), message, help, arguments=("link",))
 
 
@@ -169,6 +172,7 @@ class Disk:
         self._sources: dict[str, tuple[Source | None, Report]] = {}
         self._stamps: dict[str, Stamp] = {}
         self._trees: dict[Source, tuple[Tree | None, Report]] = {}
+        self._expanded: dict[object, str] = {}
 
     def read(self, path: Path, report: Report) -> Source | None:
         """As `read_source`."""
@@ -199,6 +203,16 @@ class Disk:
         report.extend(problems_found)
         return tree
 
+    def expand(self, file: str, arguments: Mapping[str, str], packages: Packages) -> str:
+        """The URDF text of a xacro file on disk. Raises XacroError."""
+        key = (file, *sorted(arguments.items()), *sorted(packages.items()))
+        if key not in self._expanded:
+            expanded = xacro_files.expand(Path(file), arguments, packages)
+            for path in expanded.files:
+                self.read(path, [])  # a change of one of them is noticed
+            self._expanded[key] = expanded.text
+        return self._expanded[key]
+
     def replace(self, path: Path, text: str | None) -> None:
         """Set the text of a file from now on; with None, its text is that on disk again."""
         key = os.path.realpath(path)
@@ -217,6 +231,9 @@ class Disk:
 
     def _forget(self, keys: Iterable[str]) -> None:
         """Forget some files, and the trees of all texts that are no file or none any more."""
+        keys = [*keys]
+        if keys:
+            self._expanded.clear()
         for key in keys:
             self._sources.pop(key, None)
         held = {source for source, _ in self._sources.values()}
@@ -287,12 +304,12 @@ def _inside_repository(project: Project, source: Source, report: Report) -> Proj
     root = next((each for each in above if (each / ".git").exists()), project.folder)
     kept: dict[str, list[Path]] = {setting: [] for setting in FOLDERS}
     for setting, folders in kept.items():
+        written = folder_places(source, setting, project.folder)
         for folder in getattr(project, setting):
             if lies_inside(folder, root):
                 folders.append(folder)
                 if not folder.is_dir():
-                    written = folder_place(source, setting, project.folder, folder)
-                    report.append(_no_folder(setting, written, folder))
+                    report.append(_no_folder(setting, written(folder), folder))
                 continue
             message = f"`{setting}` names a folder outside the project: `{folder}`"
             help = "move it into the project; `--scripts` and `--templates` may name any folder"
@@ -405,6 +422,8 @@ def disk_library(
         policy=project.policy,
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
+        mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
+        expand=disk.expand,
     )
 
 
@@ -444,23 +463,6 @@ def _definition_places(path: str, folders: Sequence[Path]) -> list[Path]:
     ]
     installed = [file / inner for file in installed_packages(package, os.environ)]
     return [*own, *installed]
-
-
-def installed_packages(name: str, environment: Mapping[str, str]) -> Iterator[Path]:
-    """The folders that an installed package of ROS can have: in the workspaces of ROS 2
-    (AMENT_PREFIX_PATH), in those of ROS 1 (ROS_PACKAGE_PATH), and beside this Python."""
-    for prefix in _paths(environment, "AMENT_PREFIX_PATH"):
-        yield prefix / "share" / name
-    for folder in _paths(environment, "ROS_PACKAGE_PATH"):
-        if folder.name == name:
-            yield folder
-        yield folder / name
-        yield from sorted(folder.glob(f"*/{glob.escape(name)}"))  # a repository in a workspace
-    yield Path(sys.prefix) / "share" / name
-
-
-def _paths(environment: Mapping[str, str], name: str) -> list[Path]:
-    return [Path(each) for each in environment.get(name, "").split(os.pathsep) if each]
 
 
 def _package_folders(main: Path) -> list[Path]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 from smachac.diagnostics.diagnostic import (
@@ -12,6 +13,8 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import Tree, parse
+from smachac.robots.files import Packages
+from smachac.robots.xacro_files import EXPAND, XacroError
 
 Ros = Literal[1, 2]
 """A major version of ROS, for which programs are generated."""
@@ -21,6 +24,11 @@ DEFAULT_ROS: Ros = 2
 
 SUFFIXES = ("", ".yml", ".yaml")
 """What a script may leave out at the end of the name of a sub-script, in the order of search."""
+
+
+def no_xacro(file: str, arguments: Mapping[str, str], packages: Packages) -> str:
+    """Raise XacroError: texts in memory are not expanded."""
+    raise XacroError("a xacro file is expanded only on disk", EXPAND, Path(file))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +45,10 @@ class Library:
     folders below that of the main script that have one of these files. The lists of folders and
     names are for messages. `ros` and `policy` are the version of ROS and the severities of the
     project. `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
-    description or URDF file of a built-in robot, or a file of PyBullet's data. `settings_read` is
+    description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
+    packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
+    `expand(file, arguments, packages)` returns the URDF text of a xacro file; it raises XacroError.
+    `settings_read` is
     False if the project file or its search folders could not be read.
     """
 
@@ -57,6 +68,8 @@ class Library:
     ros: Ros = DEFAULT_ROS
     policy: Policy = field(default_factory=Policy)
     robot: Callable[[str], Source | None] = lambda file: None
+    mesh: Callable[[str, str, Packages], Path | None] = lambda name, urdf, packages: Path(name)
+    expand: Callable[[str, Mapping[str, str], Packages], str] = no_xacro
     settings_read: bool = True
 
     def folder_with(self, name: str, suffixes: Iterable[str], searched: Collection[str]) -> str:

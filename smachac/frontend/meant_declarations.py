@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.frontend.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
 from smachac.frontend.loader import Library
 from smachac.frontend.script import ANY_OUTCOME, ERROR, EXHAUSTED, TIMEOUT, Script, State
@@ -29,6 +29,11 @@ _COMMON = frozenset(["succeeded", "aborted", PREEMPTED])
 """The outcomes of SMACH: a declared name that is one slip away, which nothing uses, means them."""
 
 
+MOST_UNKNOWN = 100
+"""With more unknown names in one container, no name of its list counts as misspelt: each one that
+does costs a look at all others."""
+
+
 @dataclass(slots=True)
 class _Declarer:
     """A state, container or state type that declares names, and the uses of its names.
@@ -41,12 +46,12 @@ class _Declarer:
     kind: DeclarationKind
     name: str
     path: str
-    declared: tuple[str, ...]
+    declared: Mapping[str, None]
     listed: tuple[Word, ...]
     place: Span | None
     here: Span
     via: tuple[Span, ...]
-    others: tuple[str, ...] = ()
+    others: Mapping[str, None] = field(default_factory=dict)
     outer: frozenset[str] = frozenset()
     used: dict[str, dict[str, list[Word]]] = field(default_factory=dict)
 
@@ -77,19 +82,35 @@ class _Repairs:
     names: dict[Place, str] = field(default_factory=dict)
 
 
+class _Whole(NamedTuple):
+    """A script, its states by place, their names, and the words about each state in the fields of
+    its container, by the place of the container and the name of the state."""
+
+    script: Script
+    states: Mapping[Place, State]
+    names: frozenset[str]
+    about: Mapping[Place, Mapping[str, list[Word]]]
+
+
+def _whole(script: Script) -> _Whole:
+    states = dict(_walk(script.base))
+    about = {place: _words_about(state) for place, state in states.items() if state.states}
+    return _Whole(script, states, frozenset(each.name.text for each in states.values()), about)
+
+
 def with_meant_declarations(script: Script, library: Library, report: Report) -> Script:
     """The script with its misspelt and incomplete declarations corrected, and these faults. What
     was reported about uses of their names is removed."""
     if not _has_unknown(script.base) and not _has_unknown_atom(script):
         return script
-    states = dict(_walk(script.base))
+    whole = _whole(script)
     reported: dict[Source, Report] = {}
     for item in report:
         reported.setdefault(item.span.source, []).append(item)
     repairs = _Repairs(reported)
-    _judge_types(states, library, repairs)
-    for place, state in states.items():
-        _judge_state(script, states, place, state, repairs)
+    _judge_types(whole, library, repairs)
+    for place, state in whole.states.items():
+        _judge_state(whole, place, state, repairs)
     if not (repairs.types or repairs.outcomes or repairs.names):
         return script
     uses = {word.span: word.text for fault in repairs.found for word in fault.uses}
@@ -141,10 +162,13 @@ def _has_unknown(base: State) -> bool:
         for word in _inner_words(state):
             if word.text not in exits and word.text not in names:
                 return True
-        for child in state.states if state.owner in ("Concurrence", "Iterator") else ():
-            known = {name for name, _ in _ends(child)}
-            if not child.type.open and any(w.text not in known for w in _words_about(state, child)):
-                return True
+        if state.owner in ("Concurrence", "Iterator"):
+            about = _words_about(state)
+            for child in state.states:
+                known = {name for name, _ in _ends(child)}
+                words = about[child.name.text] if not child.type.open else ()
+                if any(word.text not in known for word in words):
+                    return True
         named = {word.text for _, rows in state.outcome_map for word, _ in rows}
         if not named <= names:
             return True
@@ -166,7 +190,8 @@ def _misspells_implied(state: State, ends: set[str]) -> bool:
     has without its list."""
     listed = {each.name for each in state.outcomes}
     unused = listed.difference(word.text for word in _own_words(state))
-    return bool(unused) and any(guesser(ends - listed).sure(name) for name in unused)
+    guess = guesser(ends - listed) if unused else None
+    return guess is not None and any(guess.sure(name) for name in unused)
 
 
 def _is_plain(state: State, known_of: dict[int, frozenset[str]]) -> bool:
@@ -233,15 +258,17 @@ def _own_words(state: State) -> Iterator[Word]:
             yield Word(written, word.span) if written.isidentifier() else word
 
 
-def _words_about(parent: State, child: State) -> Iterator[Word]:
-    """The names of outcomes of a state in the fields of its container."""
+def _words_about(parent: State) -> Mapping[str, list[Word]]:
+    """The names of outcomes of each state of a container in the fields of the container."""
+    end = parent.exhausted_outcome.text if parent.exhausted_outcome is not None else EXHAUSTED
+    of_loop = [*parent.loop_outcomes, *parent.break_outcomes]
+    of_loop += (key for key, _ in parent.final_outcome_map if key.text != end)
+    found = {child.name.text: [*of_loop] for child in parent.states}
     for _, rows in parent.outcome_map:
         for name, ending in rows:
-            if name.text == child.name.text and ending.text != ANY_OUTCOME:
-                yield ending
-    yield from (*parent.loop_outcomes, *parent.break_outcomes)
-    end = parent.exhausted_outcome.text if parent.exhausted_outcome is not None else EXHAUSTED
-    yield from (key for key, _ in parent.final_outcome_map if key.text != end)
+            if name.text in found and ending.text != ANY_OUTCOME:
+                found[name.text].append(ending)
+    return found
 
 
 def _inner_words(state: State) -> Iterator[Word]:
@@ -279,29 +306,31 @@ def _code_words(script: Script, state: State) -> Iterator[Word]:
 # --- interfaces of state types
 
 
-def _judge_types(states: Mapping[Place, State], library: Library, repairs: _Repairs) -> None:
+def _judge_types(whole: _Whole, library: Library, repairs: _Repairs) -> None:
     """The faults in the outcomes of interfaces of the user."""
     declarers: dict[str, _Declarer] = {}
-    for place, state in states.items():
+    type_of: dict[str, StateType] = {}
+    for place, state in whole.states.items():
         type_ = state.type
+        type_of.setdefault(type_.name, type_)
         fixed = not (type_.open or type_.built_in or "outcomes" in type_.given)
         if state.owner != "state" or not fixed or type_.outcomes_place is None:
             continue
         found = declarers.get(type_.name)
         if found is None:
             words = tuple(Word(each.name, each.span) for each in type_.outcomes)
-            names = tuple(each.name for each in type_.outcomes)
-            at = _path(states, place)
+            names = dict.fromkeys(each.name for each in type_.outcomes)
+            at = _path(whole.states, place)
             here = type_.outcomes_place
             found = _Declarer("interface", type_.name, at, names, words, here, here, ())
             declarers[type_.name] = found
         added = {*_added(state)} - {*found.declared}
-        parent = states[place[:-1]]
-        for word in (*_own_words(state), *_words_about(parent, state)):
+        about = whole.about[place[:-1]][state.name.text]
+        for word in (*_own_words(state), *about):
             if word.text not in added:
                 found.use("the script", word)
     for name, each in declarers.items():
-        type_ = _type_of(states, name)
+        type_ = type_of[name]
         for word in _words_of_writes(type_, repairs.reported):
             each.use("`writes`", word)
         for word in (*_class_words(type_), *_header_words(type_, library)):
@@ -312,11 +341,6 @@ def _judge_types(states: Mapping[Place, State], library: Library, repairs: _Repa
             writes = tuple((renamed.get(end, end), keys) for end, keys in type_.writes)
             outcomes = _outcomes(type_.outcomes, fault)
             repairs.types[name] = replace(type_, outcomes=outcomes, writes=writes)
-
-
-def _type_of(states: Mapping[Place, State], name: str) -> StateType:
-    """The state type of a name."""
-    return next(each.type for each in states.values() if each.type.name == name)
 
 
 def _class_words(type_: StateType) -> Iterator[Word]:
@@ -354,21 +378,15 @@ def _header_words(type_: StateType, library: Library) -> Iterator[Word]:
 # --- outcomes and states of the script
 
 
-def _judge_state(
-    script: Script,
-    states: Mapping[Place, State],
-    place: Place,
-    state: State,
-    repairs: _Repairs,
-) -> None:
+def _judge_state(whole: _Whole, place: Place, state: State, repairs: _Repairs) -> None:
     """The faults in the outcomes that a state declares, and in the names of its states."""
     if state.owner == "state" and (state.type.open or "outcomes" not in state.type.given):
         return
-    path = _path(states, place)
+    path = _path(whole.states, place)
     words = tuple(Word(each.name, each.span) for each in state.outcomes)
-    names = tuple(name for name, _ in _ends(state))
+    names = dict.fromkeys(name for name, _ in _ends(state))
     kind: DeclarationKind = "state" if state.owner == "state" else "container"
-    others = tuple(each.name.text for each in state.states)
+    others = dict.fromkeys(each.name.text for each in state.states)
     found = _Declarer(
         kind,
         state.name.text,
@@ -383,12 +401,12 @@ def _judge_state(
     for word in _own_words(state):
         found.use("its transitions", word)
     if place:
-        parent = states[place[:-1]]
+        parent = whole.states[place[:-1]]
         if parent.owner in ("base", "StateMachine", "Sequence"):
             found.outer = frozenset(each.name for each in parent.outcomes)
-        for word in _words_about(parent, state):
+        for word in whole.about[place[:-1]][state.name.text]:
             found.use(f"`{parent.name.text}`", word)
-    for word in _code_words(script, state):
+    for word in _code_words(whole.script, state):
         found.use("its code", word)
     if kind == "container":
         by = "its outcome map" if state.owner == "Concurrence" else "its states"
@@ -396,11 +414,9 @@ def _judge_state(
             if word.text not in others:
                 found.use(by, word)
         _use_implied(found, state)
-        _judge_children(found, script, states, place, repairs)
-    known = {each.name.text for each in states.values()}
-    if not known.isdisjoint(found.used):
-        for name in known.intersection(found.used):
-            del found.used[name]
+        _judge_children(found, whole, place, repairs)
+    for name in [name for name in found.used if name in whole.names]:
+        del found.used[name]
     fault = _fault(found, repairs)
     if fault is not None:
         repairs.outcomes[place] = _outcomes(state.outcomes, fault)
@@ -420,28 +436,23 @@ def _use_implied(found: _Declarer, state: State) -> None:
             if state.owner == "Iterator":
                 if not state.break_outcomes and name not in loops and name != ERROR:
                     found.use(f"`{child.name.text}`", mapped.get(name, Word(name, span)))
-            elif name in {*found.declared, *found.used} and name not in handled:
+            elif name not in handled and (name in found.used or name in found.declared):
                 found.use("its states", Word(name, span))
 
 
-def _judge_children(
-    outer: _Declarer,
-    script: Script,
-    states: Mapping[Place, State],
-    place: Place,
-    repairs: _Repairs,
-) -> None:
+def _judge_children(outer: _Declarer, whole: _Whole, place: Place, repairs: _Repairs) -> None:
     """The states of a container with a misspelt name: several places use a similar name."""
-    state = states[place]
+    state = whole.states[place]
     names = [each.name for each in state.states]
     texts = tuple(each.text for each in names)
-    if state.owner == "Iterator" or len({*texts}) < len(texts):
+    at = {name: number for number, name in enumerate(texts)}
+    if state.owner == "Iterator" or len(at) < len(texts):
         return
     found = _Declarer(
         "child",
         outer.name,
         outer.path,
-        (*texts, *outer.declared),
+        dict.fromkeys((*texts, *outer.declared)),
         tuple(names),
         None,
         outer.here,
@@ -458,19 +469,17 @@ def _judge_children(
             return
     if all(name in found.used for name in texts):
         return
-    known = {each.name.text for each in states.values()}
-    for each in script.properties:
+    for each in whole.script.properties:
         for atom in atoms(each.form):
             for name in atom.name.split("/") if atom.subject == "path" else ():
-                if name not in known or name in texts:
+                if name not in whole.names or name in at:
                     found.use("properties", Word(name, atom.span))
     renamed, _ = _meant(found, pairs=False)
     for old, new in renamed.items():
-        if new in known:
+        if new in whole.names:
             continue
-        word = next(each for each in names if each.text == old)
-        repairs.names[(*place, texts.index(old))] = new
-        repairs.found.append(_finding(found, word, (new,), ""))
+        repairs.names[(*place, at[old])] = new
+        repairs.found.append(_finding(found, names[at[old]], (new,), ""))
         outer.used.pop(new, None)
 
 
@@ -490,8 +499,9 @@ def _fault(found: _Declarer, repairs: _Repairs) -> Misdeclared | None:
             place = last[0].span
         fault = _finding(found, Word("", place), added, _list_with(found, added))
         repairs.found.append(fault)
+    words = {each.text: each for each in reversed(found.listed)}
     for old, new in renamed.items():
-        word = next(each for each in found.listed if each.text == old)
+        word = words[old]
         one = _finding(found, word, (new,), "")
         repairs.found.append(one)
         fault = one if fault is None else fault
@@ -530,22 +540,27 @@ def _meant(found: _Declarer, *, pairs: bool) -> tuple[dict[str, str], tuple[str,
     if not unknown:
         return renamed, ()
     unused = [name for name in unused if name not in renamed]
-    for name in unknown:
-        near = guesser(unused)(name) if unused and _is_strong(found, name) else None
+    guess = guesser(unused)
+    for name in unknown if len(unknown) <= MOST_UNKNOWN else ():
+        near = guess(name) if unused and _is_strong(found, name) else None
         if near is None and name in _COMMON:
-            near = guesser(unused).sure(name)
+            near = guess.sure(name)
         if near is not None:
             renamed[near] = name
             unused.remove(near)
+            guess = guesser(unused)
     if not pairs:
         return renamed, ()
-    left = [name for name in unknown if name not in renamed.values()]
-    strong = [name for name in left if _is_certain(found, name)]
+    meant = {*renamed.values()}
+    left = [name for name in unknown if name not in meant]
+    shouted = any(each.isupper() for each in found.others)
+    known = guesser((*found.declared, *found.others)) if shouted else None
+    strong = [name for name in left if _is_certain(found, name, known)]
     unused = [name for name in unused if name != PREEMPTED or found.kind == "container"]
     if len(strong) == len(left) == len(unused) == 1:
         return renamed | {unused[0]: left[0]}, ()
     empty = not found.declared or {*found.declared} <= {ERROR}
-    return renamed, tuple(name for name in left if name in strong or empty)
+    return renamed, tuple(left if empty else strong)
 
 
 def _implied(found: _Declarer, unused: Iterable[str]) -> dict[str, str]:
@@ -555,7 +570,8 @@ def _implied(found: _Declarer, unused: Iterable[str]) -> dict[str, str]:
         return {}
     listed = {word.text for word in found.listed}
     names = [name for name in found.declared if name not in listed and name in found.used]
-    near = {name: guesser(names).sure(name) for name in unused} if names else {}
+    guess = guesser(names)
+    near = {name: guess.sure(name) for name in unused} if names else {}
     return {name: meant for name, meant in near.items() if meant is not None}
 
 
@@ -564,18 +580,16 @@ def _is_strong(found: _Declarer, name: str) -> bool:
     return len(found.used[name]) > 1 or len(found.places(name)) > 1
 
 
-def _is_certain(found: _Declarer, name: str) -> bool:
+def _is_certain(found: _Declarer, name: str, known: Guesser | None) -> bool:
     """Whether a name is certainly meant to be declared: two sides use it, or several places in a
-    container that no other names are like."""
+    container with states in upper case, whose known names are not like it."""
     if len(found.used[name]) > 1:
         return True
     if found.kind != "container" or len(found.places(name)) < 2:
         return False
     if "/" in found.path and name not in found.outer:
         return False
-    shouted = any(each.isupper() for each in found.others)
-    known = guesser((*found.declared, *found.others))
-    return shouted and name.islower() and known(name) is None
+    return known is not None and name.islower() and known(name) is None
 
 
 def _finding(found: _Declarer, word: Word, meant: tuple[str, ...], text: str) -> Misdeclared:

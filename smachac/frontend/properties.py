@@ -33,7 +33,7 @@ from smachac.ir.properties import (
 )
 
 if TYPE_CHECKING:
-    from lark import Lark
+    from smachac.grammars.standalone.lalr import Lark
 
 FORMS = ("never", "before", "after", "whenever", "at_most", "always_ends")
 OPTIONS = ("name", "exceptions", "stops")
@@ -327,7 +327,7 @@ class _Reader:
         return () if None in found else cast(Atoms, tuple(found))
 
     def atom(self, tree: Scalar) -> Atom | None:
-        from lark.exceptions import LarkError
+        from smachac.grammars.standalone.lalr import LarkError
 
         text = tree.value if isinstance(tree.value, str) else tree.span.text
         if is_known_wrong(tree):
@@ -371,4 +371,4 @@ def _name(tree: Any) -> str:
 
 @cache
 def _parser() -> Lark:
-    return load("property", lexer="contextual")
+    return load("property")

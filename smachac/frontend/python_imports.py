@@ -28,6 +28,7 @@ from smachac.frontend.python_modules import (
 from smachac.frontend.python_source import PythonText
 from smachac.frontend.renamed_members import renamed_member
 from smachac.ir.class_facts import ClassFault
+from smachac.ir.python_code import parse_module
 
 MAKES_NAMES = frozenset(["exec", "globals", "locals", "vars", "setattr", "__import__"])
 """Functions that can define a name of a module at run time."""
@@ -80,7 +81,7 @@ def _lines(source: Source) -> Iterator[tuple[Import, bool]]:
             if "{{" in found[0] or "{%" in found[0]:
                 continue
             try:
-                (node,) = ast.parse(found[0]).body
+                (node,) = parse_module(found[0]).body
             except (SyntaxError, ValueError):
                 continue
             if isinstance(node, ast.Import | ast.ImportFrom):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.jinja_tags import meta_block, replaced, tags
+from smachac.ir.python_code import parse_module
 
 ASSIGNED = "Maybe you meant '==' instead of '='?"
 """The end of the message of Python for `=` in a comparison."""
@@ -55,8 +56,7 @@ class PythonText:
 
 
 def python_text(source: Source, *, template: bool) -> PythonText | None:
-    """A text of Python; None if it is not valid. Raises RecursionError and MemoryError if it is
-    nested too deeply."""
+    """A text of Python; None if it is not valid, or nested too deeply."""
     text = source.text
     if len(text) > LONGEST or _NOT_PORTABLE_LINES.search(text):
         return None
@@ -69,14 +69,14 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
         text = replaced(text, iter(filled), {"{{": "_"})  # a name in place of an expression
         text = _with_statements(text, source.text, filled)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            tree = ast.parse(text)
-            if not template:  # finds `await` outside `async`, and `return` outside a function
+        tree = parse_module(text)
+        if not template:  # finds `await` outside `async`, and `return` outside a function
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", SyntaxWarning)
                 compile(text, "", "exec", dont_inherit=True)
-            return PythonText(source=source, tree=tree, filled=filled)
-    except (SyntaxError, ValueError):
+    except (SyntaxError, RecursionError, MemoryError):
         return None
+    return PythonText(source=source, tree=tree, filled=filled)
 
 
 def _without_meta(template: str) -> str:
@@ -112,6 +112,7 @@ def syntax_error(source: Source) -> Word | None:
     if len(text) > LONGEST or _NOT_PORTABLE_LINES.search(text):
         return None
     try:
+        parse_module(text)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
             compile(text, "", "exec", dont_inherit=True)
@@ -128,7 +129,7 @@ def syntax_error(source: Source) -> Word | None:
         start = source.line_starts[line - 1]
         span = Span(source, start + column, min(start + end, len(text)))
         return Word(error.msg, span)
-    except (ValueError, RecursionError, MemoryError):
+    except (RecursionError, MemoryError):
         return None
     return None
 

@@ -14,7 +14,7 @@ from typing import Literal
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, has_errors
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.diagnostics.spelling import guesser_of
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser_of
 from smachac.frontend import schema
 from smachac.frontend.errors.references import (
     bad_sub_script,
@@ -640,7 +640,8 @@ class _Resolver:
             known = [*names, *([] if role else schema.CONTAINERS)]
             other = self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
             near = guesser_of(tuple(known)).sure(word.text)
-            read = {} if role or word.text in self.unknown else entries
+            is_known = word.text in self.unknown or len(self.unknown) >= MOST_EXPLAINED
+            read = {} if role or is_known else entries
             self.unknown.add(word.text)
             called = [] if role else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import Any, Literal, TypeAlias, TypeVar
 
 from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
@@ -15,18 +15,23 @@ from smachac.frontend.data_files import plain, span_at
 from smachac.frontend.errors.references import bad_robot, package_help
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
-from smachac.frontend.urdf import XACRO, UrdfError, joints_to, read_joints, read_urdf
+from smachac.frontend.urdf import checked_joint, robot_of_urdf
 from smachac.frontend.yaml_tree import Map, Scalar, Tree
 from smachac.ir.nodes import StateType
 from smachac.ir.robot import Arm, Joint, Robot
-from smachac.robots import description
+from smachac.robots import description, urdf
 from smachac.robots.description import NO_PARTS, Description, Part, Station, limb_names
+from smachac.robots.engine_text import engine_text
 from smachac.robots.faults import read_file as read_faults
-from smachac.robots.fields import DataError, guess, listed
-from smachac.robots.files import BUILT_IN
+from smachac.robots.fields import DataError, guess
+from smachac.robots.files import BUILT_IN, Packages
 from smachac.robots.files import SUFFIXES as DESCRIPTIONS
 from smachac.robots.scene import Body
 from smachac.robots.scene import read as read_scene
+from smachac.robots.urdf import Urdf, check_sdf
+from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
+from smachac.robots.xacro_files import XacroError, located
+from smachac.robots.xml_tree import XmlError
 
 T = TypeVar("T")
 
@@ -166,20 +171,32 @@ class _Reader:
 
     def urdf(self, word: Word) -> Robot | None:
         """The robot of a URDF file without a description: the simulation cannot move it."""
-        if word.text.lower().endswith(".xacro"):
-            message = f"`{word.text}` is a xacro file, not a URDF file"
-            self.wrong(word, message, XACRO, ("xacro", word.text))
-            return None
         text = self.file(word)
         if text is None:
             return None
         try:
-            return self.simulated(read_urdf(text))
-        except UrdfError as error:
-            message = f"the robot file `{word.text}` has a mistake: {error.message}"
-            arguments = ("urdf", word.text, error.span.text)
-            self.wrong(word, message, error.help, arguments, error.span)
+            return self.simulated(robot_of_urdf(self.read_urdf(text, {}, {}), text))
+        except XmlError as error:
+            self.bad_urdf(word, word.text, text, error)
             return None
+
+    def read_urdf(self, source: Source, arguments: Mapping[str, str], packages: Packages) -> Urdf:
+        """The robot in a URDF or xacro file. Raises XmlError."""
+        if not source.name.lower().endswith(XACRO_SUFFIX):
+            return urdf.read(source.text)
+        text = self.library.expand(source.name, arguments, packages)
+        try:
+            return urdf.read(text)
+        except XmlError as error:
+            raise located(error, text, Path(source.name), source.text) from None
+
+    def bad_urdf(self, word: Word, name: str, source: Source, error: XmlError) -> None:
+        """Report the mistake in a URDF or xacro file, or in a file that it includes."""
+        if isinstance(error, XacroError) and error.file.absolute() != Path(source.name).absolute():
+            source = Source(str(error.file), error.text)
+        span = Span(source, *error.place)
+        message = f"the robot file `{name}` has a mistake: {error.message}"
+        self.wrong(word, message, error.help, ("urdf", name, error.message), span)
 
     def simulated(self, robot: Robot) -> Robot:
         """A robot of a URDF file; one with all joints of a built-in robot is simulated as that."""
@@ -220,7 +237,32 @@ class _Reader:
     def scene(self, word: Word) -> tuple[tuple[Body, ...], Tree] | None:
         """The bodies of a scene, with the tree of its file."""
         source = self.file(word)
-        return self.data(word, source, read_scene, "scene") if source is not None else None
+        found = self.data(word, source, read_scene, "scene") if source is not None else None
+        if found is None or source is None:
+            return None
+        for body in found[0]:
+            if body.path:
+                self.body_file(body, word, source, found[1])
+        return found
+
+    def body_file(self, body: Body, word: Word, scene: Source, tree: Tree) -> None:
+        """Check the URDF or SDF file of a body; a mistake is reported."""
+        source = self.library.script(body.path, scene.name)
+        if source is None and self.library.robot(body.path) is not None:
+            return  # shipped with PyBullet
+        if source is None:
+            place = ("bodies", body.name, "path")
+            help = "give its path relative to the folder of the scene or of the script"
+            error = DataError(f"the file `{body.path}` was not found", place, help)
+            self.mistake(word, tree, error, "scene")
+            return
+        try:
+            if body.path.lower().endswith(".sdf"):
+                check_sdf(source.text)
+            else:
+                self.engine_text(urdf.read(source.text), source, {})
+        except XmlError as error:
+            self.bad_urdf(word, body.path, source, error)
 
     # Descriptions
 
@@ -254,9 +296,10 @@ class _Reader:
             )
             for limb in data.limbs
         )
+        own = {name for limb in data.limbs for name in limb.joints}
         return Robot(
             name=data.name,
-            joints=tuple(joints.values()),
+            joints=tuple(joint for joint in joints.values() if joint.turns or joint.name in own),
             limbs=tuple(arm.joints for arm in arms),
             arms=arms,
             base=data.base,
@@ -277,14 +320,16 @@ class _Reader:
 
     def missing_joint(self, data: Any, limb: Any, source: Source) -> str | None:
         """The help for an arm that has an angle for the only joint of its tool that it lacks."""
-        urdf, tool = data.get("urdf"), limb.get("tool")
+        name, tool = data.get("urdf"), limb.get("tool")
         link = tool.get("link") if isinstance(tool, dict) else tool
-        if not isinstance(urdf, str) or not isinstance(link, str):
+        if not isinstance(name, str) or not isinstance(link, str):
             return None
-        text = self.library.script(urdf, source.name) or self.library.robot(urdf)
+        text = self.library.script(name, source.name) or self.library.robot(name)
+        if text is None:
+            return None
         try:
-            chain = joints_to(text, link) if text is not None else ()
-        except UrdfError:
+            chain = [joint.name for joint in urdf.read(text.text).chain(link) if joint.is_moved]
+        except XmlError:  # also a xacro file, which is not expanded for a line of help
             return None
         missing = [name for name in chain if name not in limb["joints"]]
         if len(missing) != 1 or len(chain) != len(limb["home"]):
@@ -297,46 +342,54 @@ class _Reader:
     ) -> tuple[dict[str, Joint], frozenset[str]] | None:
         """The joints of a description by name, and its frames.
 
-        The URDF file is not read where the description has the limits of all joints.
+        Where the description has the limits of all joints, they hold, and the URDF file need not be
+        there.
         """
-        if all(limb.limits for limb in data.limbs):
-            rows = [
-                Joint(name=name, lower=low, upper=high, velocity=speed)
-                for limb in data.limbs
-                for name, (low, high), speed in zip(
-                    limb.joints,
-                    limb.limits,
-                    limb.speeds or (math.inf,) * len(limb.joints),
-                    strict=True,
-                )
-            ]
-            return {joint.name: joint for joint in rows}, frozenset(data.frames)
-        text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)
+        text = None
+        if word.text not in BUILT_IN or not data.has_limits:
+            text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)
+        moved: dict[str, Joint] = {}
+        frames = data.frames
         try:
-            if text is None:
+            if text is None and not data.has_limits:
                 help = package_help(data.urdf) or "put it beside this file"
                 raise DataError(f"the file `{data.urdf}` was not found", ("urdf",), help)
-            known, turning, links = read_joints(text)
-            description.check(data, known, links)
-            for limb in data.limbs:
-                for k, name in enumerate(limb.joints):
-                    if name not in turning:
-                        raise DataError(
-                            f"the joint `{name}` does not turn",
-                            ("arms", limb.name, "joints", k),
-                            f"write a joint that turns: {listed(turning)}",
-                        )
-        except UrdfError as error:
-            message = f"the robot file `{data.urdf}` has a mistake: {error.message}"
-            arguments = ("urdf", data.urdf, error.span.text)
-            self.wrong(word, message, error.help, arguments, error.span)
+            if text is not None:
+                robot = self.loaded(data, text, source)
+                rows = [joint for joint in robot.joints.values() if joint.is_moved]
+                moved = {joint.name: checked_joint(joint, robot, text) for joint in rows}
+                # Files of one robot of the industry define different links: only those of a user
+                # count.
+                frames = data.frames if word.text in BUILT_IN else robot.links
+        except XmlError as error:
+            assert text is not None
+            self.bad_urdf(word, data.urdf, text, error)
             return None
         except DataError as error:
             self.mistake(word, tree, error, "robot")
             return None
-        # Files of one robot of the industry define different links: only those of a user count.
-        frames = frozenset(data.frames) if word.text in BUILT_IN else links
-        return turning, frames
+        return moved | _described_joints(data, moved), frozenset(frames)
+
+    def loaded(self, data: Description, text: Source, source: Source) -> Urdf:
+        """The URDF file of a description, after all checks that the simulation makes before it
+        loads the robot. Raises XmlError and DataError."""
+        packages = data.package_folders(Path(source.name).parent)
+        robot = self.read_urdf(text, dict(data.arguments), packages)
+        description.check(data, robot)
+        used = [name for limb in data.limbs for name in limb.links]
+        self.engine_text(robot, text, packages, used)
+        return robot
+
+    def engine_text(
+        self, robot: Urdf, source: Source, packages: Packages, used: Collection[str] = ()
+    ) -> None:
+        """Print the text for the simulation, as it does before it loads a file. Raises XmlError."""
+        try:
+            engine_text(robot, lambda name: self.library.mesh(name, source.name, packages), used)
+        except XmlError as error:
+            if robot.text == source.text:
+                raise
+            raise located(error, robot.text, Path(source.name), source.text) from None
 
     def station(self, word: Word, source: Source, data: Station, tree: Tree) -> Robot | None:
         """Several robots as one: the joints and limbs of all."""
@@ -376,6 +429,21 @@ class _Reader:
             description=word.text,
             scene=frozenset(part.name for part, _ in found),
         )
+
+
+def _described_joints(data: Description, known: Mapping[str, Joint]) -> dict[str, Joint]:
+    """The joints of arms whose limits are in the description, by name; `known`: those of the URDF
+    file."""
+    return {
+        name: replace(known.get(name, Joint(name=name)), lower=low, upper=high, velocity=speed)
+        for limb in data.limbs
+        for name, (low, high), speed in zip(
+            limb.joints if limb.limits else (),
+            limb.limits,
+            limb.speeds or (math.inf,) * len(limb.limits),
+            strict=True,
+        )
+    }
 
 
 def _arms(part: Part, robot: Robot, station: Station) -> Iterator[Arm]:

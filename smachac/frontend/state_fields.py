@@ -12,10 +12,16 @@ from typing import Any
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser_of, words_of, written_name
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser_of, words_of, written_name
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema, value_facts
-from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
+from smachac.frontend.errors.script import (
+    Owner,
+    missing_variable,
+    one_of_many,
+    unknown_variable,
+    wrong_shape,
+)
 from smachac.frontend.extra_keys import check_interface
 from smachac.frontend.fields import (
     READERS,
@@ -279,7 +285,7 @@ def _known_fields(
     read: dict[str, Any] = {}
     strays: list[tuple[Word, Word]] = []
     meant: set[str | None] = set()
-    known_here = schema.OWN_FIELDS[owner]
+    known_here, unknown = schema.OWN_FIELDS[owner], 0
     for key, entry in entries.items():
         if key in known_here or (key in schema.VARIABLES and _is_field(key, owner, type_)):
             if key not in _READ_ELSEWHERE:
@@ -302,6 +308,10 @@ def _known_fields(
         else:
             known = schema.names_for(owner)
             word = Word(str(entry.key.value), entry.key.span)
+            unknown += 1
+            if unknown > MOST_EXPLAINED:
+                report.append(one_of_many(word, _owner_of(owner, type_, of_type=owner == "state")))
+                continue
             whose = _owner_of(owner, type_, of_type=owner == "state")
             own = [*type_.variables]
             also = [name for name, each in entries.items() if each is entry and name != key]

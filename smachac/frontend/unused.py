@@ -71,17 +71,18 @@ class Uses:
         if self.unknown > unknown or has_errors(report[before:]):
             return
         used = set(self.looked_up[looked_up:])
+        given: dict[object, set[str]] = {}
+        for entry in own.value.entries:
+            given.setdefault(entry.key.span.source, set()).add(str(entry.key.value))
         for entry in own.value.entries:
             name = str(entry.key.value)
             if name in used:
                 self.defaults.add(entry.key.span)
                 continue
             # Those of a called sub-script are in another text: the call can give them.
-            given = {str(each.key.value) for each in own.value.entries
-                     if each.key.span.source is entry.key.span.source}  # fmt: skip
-            known = tuple(sorted(used - given))
+            known = tuple(sorted(used - given[entry.key.span.source]))
             kept = {str(each.key.value): each.value.span for each in own.value.entries
-                    if each.key.value in known}  # fmt: skip
+                    if each.key.value in known} if known else {}  # fmt: skip
             self.found.append(Unused("param", Word(name, entry.key.span), via, known, kept))
             self.anchored[entry.key.span] = [each.span for each in _inside(entry.value)]
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Iterator
 
 from smachac.frontend.yaml_tree import Joined, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.expressions import looks_like_expression, parse_expression
 from smachac.ir.nodes import Data, Expression, LookUp, Struct, Value
+from smachac.ir.python_code import parse_code
 
 UNKNOWN = "..."
 """The code in place of a value that was reported: it has no type, so no rule judges it."""
@@ -76,8 +76,8 @@ def _data(tree: Tree, code: bool, ticks: bool = False) -> Data:
 def _is_python(text: str) -> bool:
     """Whether a text is an expression of Python; SMACHA prints a text with a call as code."""
     try:
-        ast.parse(text.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        parse_code(text.strip())
+    except SyntaxError:
         return False
     return True
 

@@ -1,7 +1,8 @@
-"""Syntax errors of YAML: from the exception of the parser to a diagnostic in the words of scripts.
+"""Syntax errors of YAML: from the exception of libyaml to a diagnostic in the words of scripts.
 
 The parser has two places, `first`, where the faulty part begins, and `at`, where it stopped. The
-fault is often at a third one, in the line above.
+fault is often at a third one, in the line above. `problem` and `context` are libyaml's own words;
+the sign that it met is in the text.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from smachac.frontend.schema import LONG, VARIABLES
 
 class _Stop(NamedTuple):
     """What the parser reports. `first` and `at` are indexes in the text, `before` is the line of
-    `at` up to there, `first_column` the column of `first`."""
+    `at` up to there, `first_column` the column of `first`, `sign` the sign of YAML at `at`: "" at
+    the end, TEXT for any other."""
 
     text: str
     problem: str
@@ -26,6 +28,32 @@ class _Stop(NamedTuple):
     first_column: int
     at: int
     before: str
+    sign: str = ""
+
+    @property
+    def is_block_end(self) -> bool:
+        """Whether a mapping or a list on lines of its own cannot go on here."""
+        return self.problem in (_NO_KEY, _NO_ITEM)
+
+    @property
+    def is_deeper_list(self) -> bool:
+        """Whether a list begins here that is indented more than what is around it."""
+        return self.sign == "-" and (self.first is None or len(self.before) > self.first_column)
+
+
+TEXT = "text"
+_NO_KEY, _NO_ITEM = "did not find expected key", "did not find expected '-' indicator"
+_NO_NODE, _NO_DOCUMENT = (
+    "did not find expected node content",
+    "did not find expected <document start>",
+)
+_NO_ESCAPE = "found unknown escape character"
+_NOT_A_START = "found character that cannot start any token"
+_TABS = (
+    "found a tab character that violates indentation",
+    "found a tab character where an indentation space is expected",
+)
+_COLON_IN_TEXT = "found unexpected ':'"
 
 
 class _Fault(NamedTuple):
@@ -42,22 +70,47 @@ class _Fault(NamedTuple):
     part: str = ""
 
 
-_BEYOND_UNICODE = re.compile(r"\\U(?!000|0010)[0-9A-Fa-f]{8}")
+def too_deep_at(error: Any) -> int | None:
+    """The index at which libyaml, since version 0.2.6, reads no more because of the nesting."""
+    if error.problem != "exceeded maximum nesting depth":
+        return None
+    found: int = error.problem_mark.index
+    return found
+
+
+_ANCHOR = re.compile(r"(?:!\S*\s+)?([&*])([^\s\[\]{},]+)")
+
+
+def anchor_fault(source: Source, start: int) -> Diagnostic | None:
+    """SM001 for an anchor or alias at an index whose name has characters that are not part of it
+    for libyaml, which reads `&left:home 0.5` as the anchor `left` of the text `:home 0.5`."""
+    found = _ANCHOR.match(source.text, start)
+    fault = None if found is None else _anchor_name(found)
+    return None if fault is None else _diagnostic(source, fault)
+
+
+def _anchor_name(found: re.Match[str]) -> _Fault | None:
+    sign, name = found.groups()
+    if re.fullmatch(r"[\w-]+", name, re.ASCII) is not None:
+        return None
+    better = re.sub(r"[^\w-]+", "_", name, flags=re.ASCII).strip("_") or "name"
+    message = f"the name of an anchor has only letters, digits, `-` and `_`, not `{name}`"
+    help = f"write `{sign}{better}`"
+    if name == f"{better}:":
+        help = f"remove the `{sign}`, or write a space before the colon: `{sign}{better} :`"
+    return _Fault(message, help, found.start(1), found.end())
 
 
 def syntax_error(source: Source, error: Any) -> Diagnostic:
     """SM001 for an exception of the parser."""
-    wide = _BEYOND_UNICODE.search(source.text) if isinstance(error, ValueError) else None
-    if wide is not None:
-        message = f"`{wide.group()}` is no character: the last one is \\U0010FFFF"
-        span = Span(source, *wide.span())
-        return yaml_syntax(span, message, "correct the number", arguments=("escape", wide.group()))
     stop = _stop(source.text, error)
-    readers = (_conflict, _space, _block_text, _open_or_stray, _colon, _indentation, _value)
-    faults = (reader(stop) for reader in readers)
+    faults = (reader(stop) for reader in (_READERS if _is_short(stop) else (_conflict,)))
     message = ", ".join(part for part in (stop.problem, stop.context) if part)
     unknown = _Fault(message or "this is not YAML", None, stop.at)
-    fault = next((fault for fault in faults if fault is not None), unknown)
+    return _diagnostic(source, next((fault for fault in faults if fault is not None), unknown))
+
+
+def _diagnostic(source: Source, fault: _Fault) -> Diagnostic:
     here = source.text[fault.start : fault.start + 1]
     end = fault.start + (here not in ("", "\n")) if fault.end is None else fault.end
     related: tuple[Related, ...] = ()
@@ -73,6 +126,18 @@ def syntax_error(source: Source, error: Any) -> Diagnostic:
     )
 
 
+LONGEST_LINE = 2_000
+"""In characters. A syntax error in a longer line is reported in the words of the parser: some
+searches for a cause take quadratic time."""
+
+
+def _is_short(stop: _Stop) -> bool:
+    """Whether the lines of both places of a syntax error have at most LONGEST_LINE characters."""
+    places = [stop.at] if stop.first is None else [stop.at, stop.first]
+    starts = [stop.text.rfind("\n", 0, place) + 1 for place in places]
+    return all(_line_end(stop.text, start) - start <= LONGEST_LINE for start in starts)
+
+
 def stopped_at(text: str, error: Any) -> list[int]:
     """Indexes of the lines in which the fault of an exception of the parser can be."""
     stop = _stop(text, error)
@@ -86,6 +151,10 @@ def _stop(text: str, error: Any) -> _Stop:
     problem, context = (_one_line(getattr(error, name, None)) for name in ("problem", "context"))
     mark = mark or first
     at = min(mark.index, len(text)) if mark is not None else 0
+    if problem in (_NOT_A_START, *_TABS):
+        first = None  # where a value began that has no fault
+    if problem == _NO_ESCAPE:
+        at += 1
     return _Stop(
         text=text,
         problem=problem,
@@ -94,7 +163,15 @@ def _stop(text: str, error: Any) -> _Stop:
         first_column=first.column if first is not None else 0,
         at=at,
         before=text[text.rfind("\n", 0, at) + 1 : at],
+        sign=_sign(text[at : at + 2]),
     )
+
+
+def _sign(text: str) -> str:
+    """The sign with which a text begins."""
+    if text[:1] in ("-", "?") and text[1:].strip():
+        return TEXT
+    return text[:1] if text[:1] in ("", *"[]{},:-?&*!") else TEXT
 
 
 def _one_line(text: object) -> str:
@@ -179,10 +256,7 @@ def _space(stop: _Stop) -> _Fault | None:
     return None
 
 
-_UNCLOSED = re.compile(r"expected ',' or '([]}])', but got '(.*)'")
-_FOUND = re.compile(
-    r"expected (?:<block end>|the node content|'<document start>'), but found '(.)'"
-)
+_UNCLOSED = re.compile(r"did not find expected ',' or '([]}])'")
 _VALUES_BESIDE = re.compile(r": [^\s,:{}\[\]]+ ([^\W\d]\w*)$")
 """A value and a key in one line of a mapping in braces, without a comma between them."""
 
@@ -204,41 +278,40 @@ def _quoted_type(found: re.Match[str], stop: _Stop) -> str:
 
 
 _OPENING = {"]": "[", "}": "{"}
-_TOKENS = {"<stream end>": "the end of the text", "<scalar>": "text"}
 
 
 def _open_or_stray(stop: _Stop) -> _Fault | None:
     """A bracket or a quote without its counterpart."""
-    unclosed, stray = _UNCLOSED.fullmatch(stop.problem), _FOUND.match(stop.problem)
+    unclosed = _UNCLOSED.fullmatch(stop.problem)
     if unclosed is not None and stop.first is not None:
-        end, token = unclosed.groups()
+        end = unclosed[1]
         kind = "list" if end == "]" else "mapping"
-        found = _TOKENS.get(token) or f"`{token.strip('<>')}`"
         help = f"close the {kind} with `{end}`, or put text that contains `:` in quotes"
-        if token == "<stream end>":
+        if not stop.sign:
             message = f"this {kind} is not closed: there is no `{end}` up to the end of the text"
             return _Fault(message, help, stop.first)
         beside = _VALUES_BESIDE.search(stop.before)
-        if beside is not None and token in (":", "<value>"):
+        if beside is not None and stop.sign == ":":
             help = f"write a `,` before `{beside[1]}`, or put text that contains `:` in quotes"
         code = _LAMBDA.search(stop.before)
-        if code is not None and token in (":", "<value>"):
+        if code is not None and stop.sign == ":":
             help = f"put the code in quotes: `'{code[0]}: ...'`"
         type_ = _TYPE.search(stop.before)
-        if type_ is not None and token == "[":
+        if type_ is not None and stop.sign == "[":
             help = _quoted_type(type_, stop)
-        if token == "<scalar>":
+        if stop.sign == TEXT:
             help = f"write a `,` between two values, or close the {kind} with `{end}`"
         closing = _line_to_close(stop)
         if closing:
             message = f"this {kind} is not closed before the next key"
             return _Fault(message, f"write `{end}` at the end of line {closing}", stop.first)
+        found = stop.sign if stop.sign == TEXT else f"`{stop.sign}`"
         message = f"expected `,` or `{end}`, found {found}"
         return _Fault(message, help, stop.at, begins=stop.first, part=kind)
-    if stray is not None and stray[1] in _OPENING:
-        opening = _OPENING[stray[1]]
+    if stop.sign in _OPENING and (stop.is_block_end or stop.problem == _NO_NODE):
+        opening = _OPENING[stop.sign]
         help = f"remove it, or write the `{opening}`"
-        return _Fault(f"`{stray[1]}` closes no `{opening}`", help, stop.at)
+        return _Fault(f"`{stop.sign}` closes no `{opening}`", help, stop.at)
     in_quotes = stop.context == "while scanning a quoted scalar"
     if in_quotes and stop.problem == "found unexpected end of stream" and stop.first is not None:
         help = "write the same quote at the end of the text"
@@ -289,6 +362,9 @@ def _colon(stop: _Stop) -> _Fault | None:
         if word is not None and stop.text[word.end() : word.end() + 1] in ("", "\n", "\r"):
             return _Fault("a `:` is missing after this key", f"write `{word[0]}:`", *word.span())
         return _Fault("a `:` is missing after this key", help, stop.first)
+    if stop.problem == _COLON_IN_TEXT:
+        help = "write a space after the colon, or put the text in quotes"
+        return _Fault(SPACE_MISSING, help, stop.at)
     if not stop.problem.startswith("mapping values are not allowed"):
         return None
     message = "a colon is not allowed here"
@@ -472,26 +548,29 @@ _EQUALLY = "indent the items of one list equally, below the key of the list"
 
 def _indentation(stop: _Stop) -> _Fault | None:
     """A line whose indentation is that of no other."""
-    if stop.problem.startswith(("expected <block end>", "sequence entries are not allowed")):
+    entries = stop.problem.startswith("block sequence entries are not allowed")
+    if stop.is_block_end or entries:
         first = _first_dash(stop) if stop.text.startswith("- ", stop.at) else None
         if first is not None:
             return first
         misindented = _misindented(stop)
         if misindented is not None:
             return misindented
-    if stop.problem == "expected <block end>, but found '-'":
+    if stop.is_block_end and stop.sign == "-" and not stop.is_deeper_list:
         return _Fault("a list item cannot follow the keys of a mapping", _EQUALLY, stop.at)
-    if stop.problem.startswith("sequence entries are not allowed"):
+    if stop.is_block_end and stop.sign == ":":
+        return _Fault("a name is missing before this `:`", _NAME_BEFORE, stop.at)
+    if entries:
         help = "write each item on a line of its own, below the key of the list"
         return _Fault("a list item is not allowed here", help, stop.at)
-    outermost = stop.problem.startswith("expected '<document start>'")
-    if not outermost and not stop.problem.startswith("expected <block end>"):
+    outermost = stop.problem == _NO_DOCUMENT
+    if not outermost and not stop.is_block_end:
         return None
     indented = stop.text.lstrip("\n").startswith(" ")
     if stop.before.strip() or (outermost and not indented):
         help = "put the whole value in quotes, or remove the text"
         return _Fault("there is text after the end of the value", help, stop.at)
-    if "<block sequence start>" in stop.problem:
+    if stop.is_deeper_list:
         return _item(stop)
     if stop.text.startswith("-", stop.at):
         word = _WORD.match(stop.text, stop.at + 1)
@@ -501,7 +580,7 @@ def _indentation(stop: _Stop) -> _Fault | None:
     state = _lost_dash(stop)
     if state is not None:
         return state
-    if stop.context == "while parsing a block collection" and "'?'" in stop.problem:
+    if stop.problem == _NO_ITEM and len(stop.before) == stop.first_column:
         help = "indent it like the key of the list, or begin it with `- ` as an item"
         return _Fault("a key cannot follow the items of a list", help, stop.at)
     message = "the indentation of this line is that of no mapping or list above it"
@@ -587,11 +666,13 @@ def _spaces(stop: _Stop) -> str:
     beside = f", below `{word[0]}`" if word is not None else ""
     if not due:
         return f"remove the tab: begin the line in the first column{beside}"
-    return f"write spaces in place of the tab: begin the line with {due} spaces{beside}"
+    return f"{_NO_TAB} {due} spaces{beside}"
 
 
-_NOT_A_START = re.compile(r"found character '(.*)' that cannot start any token")
-_ESCAPE = re.compile(r"found unknown escape character (.*)")
+_NO_TAB = "write spaces in place of the tab: begin the line with"
+
+
+_NAME_BEFORE = "write the name before the `:`, or put text that begins with `:` in quotes"
 _QUOTED = "put the value in quotes"
 
 
@@ -606,43 +687,102 @@ def _in_quotes(stop: _Stop, start: int) -> str:
 
 
 _LONGEST_VALUE = 60
-_TEXT_BESIDE = re.compile(r"expected (?:chomping|a comment or a line break)")
+_TEXT_BESIDE = "did not find expected comment or line break"
 
 
 def _value(stop: _Stop) -> _Fault | None:
     """A value that does not begin, or has a part, as YAML requires."""
-    unstarted, found = _NOT_A_START.fullmatch(stop.problem), _FOUND.match(stop.problem)
     here = stop.text[stop.at : stop.at + 1]
-    if unstarted is not None:
-        if unstarted.group(1) == "\\t":
-            return _Fault("YAML does not allow a tab in the indentation", _spaces(stop), stop.at)
-        message = f"a value cannot begin with `{unstarted.group(1)}`"
+    if stop.problem in (_NOT_A_START, *_TABS):
+        if here == "\t":
+            due = lost_of_block_text(stop.text, stop.at)
+            help = f"{_NO_TAB} {_of_spaces(due)}" if due is not None else _spaces(stop)
+            return _Fault("YAML does not allow a tab in the indentation", help, stop.at)
+        message = f"a value cannot begin with `{here}`"
         return _Fault(message, _in_quotes(stop, stop.at), stop.at)
-    if found is not None and found[1] == "," and stop.context == "while parsing a flow node":
+    in_brackets = stop.context == "while parsing a flow node"
+    if in_brackets and stop.sign == ",":
         return _Fault(
             "a value is missing before this `,`", "write the value, or remove the `,`", stop.at
         )
-    if found is not None and found[1] == ":" and stop.context == "while parsing a flow node":
-        help = "write the name before the `:`, or put text that begins with `:` in quotes"
-        return _Fault("a name is missing before this `:`", help, stop.at)
-    if "'<stream end>'" in stop.problem and stop.context == "while parsing a flow node":
+    if in_brackets and stop.sign == ":":
+        return _Fault("a name is missing before this `:`", _NAME_BEFORE, stop.at)
+    if in_brackets and not stop.sign:
         help = "close each `[` with `]`, and each `{` with `}`"
         return _Fault("the text ends inside brackets", help, stop.at)
-    if found is not None and found[1] == "-" and stop.context == "while parsing a flow node":
+    if in_brackets and stop.sign == "-":
         help = "write `[a, b]`, or write each item on a line of its own without the brackets"
         return _Fault("a list in brackets has no `-`", help, stop.at)
-    if found is not None and found[1] == ",":
+    if stop.problem == _NO_NODE and stop.sign == ",":
         return _Fault("a value cannot begin with `,`", _QUOTED, stop.at)
     if stop.context in ("while scanning an alias", "while scanning an anchor"):
         start = stop.at if stop.first is None else stop.first
         message = f"a value cannot begin with `{stop.text[start]}`"
         return _Fault(message, _in_quotes(stop, start), start)
-    if stop.problem.startswith("mapping keys are not allowed"):
+    if stop.problem.startswith("mapping keys are not allowed") or (in_brackets and here == "?"):
         return _Fault("`?` is not allowed here", "put text that begins with `?` in quotes", stop.at)
-    if _ESCAPE.fullmatch(stop.problem) is not None:
+    if stop.problem == _NO_NODE:
+        return _Fault("a value is missing here", "write the value, or put it in quotes", stop.at)
+    if stop.problem == _NO_ESCAPE:
         help = f"write `\\\\{here}`, or put the text in single quotes"
         return _Fault(f"unknown escape character `{here}`", help, stop.at)
-    if stop.context == "while scanning a block scalar" and _TEXT_BESIDE.match(stop.problem):
+    if stop.context == "while scanning a block scalar" and stop.problem == _TEXT_BESIDE:
         message = "the text cannot begin in the line of its `|` or `>`"
         return _Fault(message, "begin the text in the next line, indented", stop.at)
     return None
+
+
+_NAME_BEFORE_SIGN = re.compile(r"(?:^|[\s\[{,])([&*])([\w-]+)$", re.ASCII)
+
+
+def _anchor(stop: _Stop) -> _Fault | None:
+    """A character in the name of an anchor or an alias at which its name ends for libyaml."""
+    before = _NAME_BEFORE_SIGN.search(stop.before)
+    whole = None if before is None else _ANCHOR.match(stop.text, stop.at - len(before[2]) - 1)
+    if whole is None or whole.end() <= stop.at + (stop.sign == ":"):
+        return None
+    return _anchor_name(whole)
+
+
+_ESCAPE = re.compile(r"\\[xuU][0-9A-Fa-f]{0,8}")
+_SURROGATES = re.compile(r"\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
+"""The two escapes with which JSON writes one character beyond U+FFFF."""
+
+_NO_CHARACTER = (
+    "found invalid Unicode character escape code",
+    "did not find expected hexdecimal number",
+)
+
+
+def _other_parts(stop: _Stop) -> _Fault | None:
+    """Parts of YAML that scripts seldom have: directives, tags, escapes, ends of documents."""
+    start = stop.at if stop.first is None else stop.first
+    escape = _ESCAPE.match(stop.text, max(0, stop.at - 2))
+    pair = _SURROGATES.match(stop.text, max(0, stop.at - 2))
+    if pair is not None:
+        high, low = (int(digits, 16) for digits in pair.groups())
+        code = 0x10000 + ((high - 0xD800) << 10) + (low - 0xDC00)
+        message = f"`{pair[0]}` is one character in JSON, and no character in YAML"
+        return _Fault(message, f"write `\\U{code:08X}`, or the character itself", *pair.span())
+    if stop.problem in _NO_CHARACTER and escape is not None:
+        last = escape[0].startswith("\\U") and not escape[0].startswith(("\\U000", "\\U0010"))
+        message = f"`{escape[0]}` is no character" + ": the last one is \\U0010FFFF" * last
+        return _Fault(message, "correct the number", *escape.span())
+    if stop.problem == "found an indentation indicator equal to 0":
+        return _Fault("the number after `|` or `>` is 1 to 9", "remove the number", stop.at)
+    if stop.problem == "found unexpected document indicator":
+        message = "this quote is not closed before the line that ends the document"
+        return _Fault(message, "write the same quote at the end of the text", start)
+    if stop.text.startswith("%", start):
+        message = "a line that begins with `%` is a directive of YAML"
+        return _Fault(message, "remove the line: a script needs no directive", start)
+    if stop.text.startswith("!", start):
+        return _Fault("a value cannot begin with `!`", _in_quotes(stop, start), start)
+    return None
+
+
+_READERS = (
+    *(_conflict, _space, _block_text, _anchor, _open_or_stray),
+    *(_colon, _indentation, _value, _other_parts),
+)
+"""The searches for the cause of a syntax error; the first one that finds it decides."""

@@ -22,7 +22,6 @@ from smachac.frontend.schema import KEY_FACTS, LONG, OUTCOME_FACTS, VARIABLE_FAC
 from smachac.frontend.yaml_errors import CONFLICT, SPACE_MISSING, lost_of_block_text
 from smachac.frontend.yaml_indents import best_move, move_finding, moved_text
 from smachac.frontend.yaml_tree import (
-    MOST_REREAD,
     Doubts,
     Entry,
     Map,
@@ -33,8 +32,8 @@ from smachac.frontend.yaml_tree import (
     parse,
 )
 
-MOST_MENDS = 5
-"""The most repairs of a text."""
+MOST_MENDS, MOST_CHARACTERS = 5, 50_000
+"""The most repairs of a text, and the longest text that is repaired."""
 
 _MOST_LINES, _LONGEST, _MOST_TRIALS, _MOST_WHOLE = 30, 1_500, 400, 4
 """Limits of the lines of one repair, of their characters, of the repairs that are tried in them,
@@ -67,7 +66,7 @@ def parse_mended(source: Source, report: Report) -> Tree | None:
     found: Report = []
     doubts = Doubts([], [], [])
     tree = parse(source, found, doubts)
-    if not any(doubts) or len(source.text) > MOST_REREAD:
+    if not any(doubts) or len(source.text) > MOST_CHARACTERS:
         report.extend(found)
         return tree
     if doubts.stops and CONFLICT.search(source.text) is not None:

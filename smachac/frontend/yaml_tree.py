@@ -1,8 +1,7 @@
 """The YAML parser: from a text to a tree in which every node has a span.
 
-Events come from ruamel.yaml's C parser if it is installed (the extra `fast`), else from its pure
-Python parser; the tree is the same. Scalars are resolved here, by the YAML 1.2 core schema: `on`
-and `yes` are strings, `010` is ten. Duplicate keys stay in the tree.
+Events come from libyaml, the C parser in PyYAML. Scalars are resolved by the YAML 1.2 core schema:
+`on` and `yes` are strings, `010` is ten. Duplicate keys stay in the tree.
 
 Nobody changes a tree. Its nodes are not frozen dataclasses, which take two to four times as long to
 make: a long script has hundreds of thousands.
@@ -12,22 +11,30 @@ from __future__ import annotations
 
 import gc
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from itertools import accumulate
 from typing import Any, NamedTuple, TypeAlias
 
-from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
-from smachac.frontend.yaml_errors import JOINED, SPACE_MISSING, spaced, stopped_at, syntax_error
+from smachac.frontend.yaml_errors import (
+    JOINED,
+    SPACE_MISSING,
+    anchor_fault,
+    spaced,
+    stopped_at,
+    syntax_error,
+    too_deep_at,
+)
+from smachac.robots.core_schema import WORDS, value_of
 
 MAX_CHARACTERS = 10_000_000
-MAX_DEPTH = 3_500
+MAX_DEPTH = 900
 MAX_ALIASED = 100_000
-"""Limits of a script: its length, its nesting, and the nodes that its aliases add (more are allowed
-if the script has more characters)."""
+"""Limits of a script: its length, its nesting (libyaml 0.2.6 reads at most 1,000 levels), and the
+nodes that its aliases add (more are allowed if the script has more characters)."""
 
 MAX_NODES = 2_000_000
 MAX_SMALL_NODES, CHARACTERS_OF_A_NODE = 250_000, 5
@@ -37,14 +44,6 @@ than 110 MB and 90 times its text. 100,000 states have a million, of ten charact
 
 MAX_DUPLICATES = 10_000
 """The most duplicate keys, and keys without a space after the colon, that are reported."""
-
-DEEPEST_PURE = 400
-"""Limit on the open brackets of a text that only the pure parser can read: it takes time quadratic
-in them."""
-
-MOST_REREAD, DEEPEST_REREAD = 50_000, 100
-"""The largest text, in characters and levels, that the pure parser reads again to word an error: it
-takes 7 us for a character and 2 ms for a bracket."""
 
 
 @dataclass(slots=True, unsafe_hash=True)
@@ -113,34 +112,6 @@ def known_wrong(span: Span) -> Scalar:
 
 def is_known_wrong(tree: Tree) -> bool:
     return isinstance(tree, Scalar) and tree.value == "" and tree.plain
-
-
-_WORDS: dict[str, bool | None] = {
-    **dict.fromkeys(["", "~", "null", "Null", "NULL"]),
-    **dict.fromkeys(["true", "True", "TRUE"], True),
-    **dict.fromkeys(["false", "False", "FALSE"], False),
-}
-_INT = re.compile(r"[-+]?[0-9]{1,300}|0o[0-7]{1,300}|0x[0-9a-fA-F]{1,300}")
-_FLOAT = re.compile(
-    r"[-+]?(?:\.[0-9]+|[0-9]+\.[0-9]*|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?"
-    r"|[-+]?\.(?:inf|Inf|INF)"
-    r"|\.(?:nan|NaN|NAN)"
-)
-_BRACKETS = re.compile(r"[][{}]")
-_MAYBE_NUMBER = frozenset("+-.0123456789")
-
-
-def _resolve(text: str) -> bool | int | float | str | None:
-    """The value of a plain scalar by the core schema (YAML 1.2.2, section 10.3.2)."""
-    if text in _WORDS:
-        return _WORDS[text]
-    if text[0] not in _MAYBE_NUMBER:
-        return text
-    if _INT.fullmatch(text):
-        return int(text, 0 if text[:2] in ("0o", "0x") else 10)
-    if _FLOAT.fullmatch(text):
-        return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
-    return text
 
 
 class Doubts(NamedTuple):
@@ -219,30 +190,11 @@ def _unprintable(text: str) -> re.Match[str] | None:
     return _UNPRINTABLE.search(text)
 
 
-def _pure_events(text: str) -> Iterator[Any]:
-    from ruamel.yaml import YAML
-
-    return YAML(typ="safe", pure=True).parse(text)  # type: ignore[no-any-return]
-
-
-def _c_events(text: str) -> Iterator[Any]:
-    """The events of the C parser; none if it is not installed."""
-    try:
-        from ruamel.yaml.cyaml import CParser  # type: ignore[attr-defined]
-    except ImportError:
-        return iter(())
-    return iter(CParser(text).get_event, None)
-
-
 def events(text: str) -> Iterator[Any]:
-    """The events of a text that `parse` accepts."""
-    from ruamel.yaml.error import YAMLError
+    """The events of a text. Raises yaml.MarkedYAMLError."""
+    from yaml._yaml import CParser
 
-    try:
-        found = list(_c_events(text))
-    except YAMLError:  # some texts only the pure parser can read
-        found = []
-    return iter(found) if found else _pure_events(text)
+    return iter(CParser(text).get_event, None)
 
 
 _WITHOUT_END = (
@@ -259,23 +211,19 @@ def syntax_error_line(text: str) -> int | None:
     It is the line of the part that has no end, if the parser names it, else that at which the
     parser stops, else the last one.
     """
-    from ruamel.yaml.error import YAMLError
+    from yaml import MarkedYAMLError
 
     last = text.count("\n")
     bad = _unprintable(text)
     if bad is not None:
         return text.count("\n", 0, bad.start())
-    if _deepest_bracket(text) > DEEPEST_REREAD:
-        return last
-    for events in (_c_events, _pure_events):
-        try:
-            if [*events(text)]:
-                return None
-        except (YAMLError, ValueError) as error:
-            context = getattr(error, "context", None) or ""
-            named = context.startswith(_WITHOUT_END) and error.context_mark is not None  # type: ignore[union-attr]
-            mark = getattr(error, "context_mark" if named else "problem_mark", None)
-            return min(mark.line, last) if mark is not None else last
+    try:
+        for _ in events(text):
+            pass
+    except MarkedYAMLError as error:
+        named = (error.context or "").startswith(_WITHOUT_END)
+        mark = error.context_mark if named else error.problem_mark
+        return last if mark is None else min(int(mark.line), last)
     return None
 
 
@@ -297,53 +245,38 @@ def _moved_back(events: Iterator[Any], mended: Mended) -> Iterator[Any]:
 def _build(
     source: Source, report: Report, doubts: Doubts | None = None, mended: Mended | None = None
 ) -> Tree | None:
-    from ruamel.yaml.error import YAMLError
+    from yaml import MarkedYAMLError
 
-    text = source.text if mended is None else mended.text
-
+    builder = _Builder(source, report)
+    found = events(source.text if mended is None else mended.text)
     collecting = gc.isenabled()
     gc.disable()  # or it runs many times over the growing tree
     try:
-        for events in (_c_events, _pure_events):
-            found: Report = []
-            builder = _Builder(source, found)
-            try:
-                if events is _pure_events:
-                    builder.check_brackets()
-                found_events = events(text)
-                builder.drive(found_events if mended is None else _moved_back(found_events, mended))
-            except (YAMLError, ValueError) as error:
-                if events is _c_events and _is_reread(source.text, builder.deepest):
-                    continue  # the message is always that of the pure parser
-                builder.items = []
-                found.append(syntax_error(source, error))
-                if doubts is not None:
-                    doubts.stops.extend(stopped_at(source.text, error))
-            except _BeyondLimitError:
-                builder.items = []
-            if builder.seen or events is _pure_events:
-                report.extend(found)
-                if doubts is not None:
-                    doubts.places.extend(builder.doubtful)
-                    doubts.steps.extend(builder.misplaced)
-                return next(iter(builder.items), None)
+        builder.drive(found if mended is None else _moved_back(found, mended))
+    except MarkedYAMLError as error:
+        builder.items = []
+        deep = too_deep_at(error)
+        if deep is not None:
+            report.append(_too_deep(source, deep))
+        else:
+            report.append(syntax_error(source, error))
+            if doubts is not None:
+                doubts.stops.extend(stopped_at(source.text, error))
+    except _BeyondLimitError:
+        builder.items = []
     finally:
         if collecting:
             gc.enable()
-    return None
+    if doubts is not None:
+        doubts.places.extend(builder.doubtful)
+        doubts.steps.extend(builder.misplaced)
+    return next(iter(builder.items), None)
 
 
-def _is_reread(text: str, deepest: int) -> bool:
-    """Whether a text is small enough for the pure parser in length, levels and open brackets."""
-    if len(text) > MOST_REREAD or deepest > DEEPEST_REREAD:
-        return False
-    return _deepest_bracket(text) <= DEEPEST_REREAD
-
-
-def _deepest_bracket(text: str) -> int:
-    """The most brackets that are open at a place of a text, those in strings included."""
-    depths = accumulate(1 if bracket in "[{" else -1 for bracket in _BRACKETS.findall(text))
-    return max(depths, default=0)
+def _too_deep(source: Source, at: int) -> Diagnostic:
+    message = f"the nesting is deeper than {MAX_DEPTH:,} levels"
+    help = "split the script into sub-scripts"
+    return too_big(Span(source, at, at + 1), message, help, arguments=("depth",))
 
 
 MOST_NAMES_SHOWN = 6
@@ -417,26 +350,13 @@ class _Builder:
         self.anchors: dict[str, tuple[Tree, int]] = {}
         self.doubtful: list[int] = []
         self.misplaced: list[int] = []
-        self.seen = False
-        self.deepest = 0
         self.aliased = 0
         self.end = 0
         self.most = min(MAX_NODES, MAX_SMALL_NODES + len(source.text) // CHARACTERS_OF_A_NODE)
 
-    def check_brackets(self) -> None:
-        """Raises _BeyondLimitError for a text with too many open brackets for the pure parser."""
-        deepest = _deepest_bracket(self.source.text)
-        if deepest > DEEPEST_PURE:
-            message = f"{deepest:,} brackets are open at once; the limit is {DEEPEST_PURE} here"
-            help = "install the C parser (`smachac[fast]`), or split the value into sub-scripts"
-            self.report.append(
-                too_big(Span(self.source, 0, 0), message, help, arguments=("brackets",))
-            )
-            raise _BeyondLimitError
-
-    def drive(self, events: Iterator[Any]) -> None:
+    def drive(self, events: Iterable[Any]) -> None:
         """Builds the tree. Scalars, which are most events, are read here, without calls."""
-        from ruamel.yaml import events as kinds
+        from yaml import events as kinds
 
         steps: dict[type, Callable[[Any], None]] = {
             kinds.MappingStartEvent: self._open,
@@ -462,10 +382,10 @@ class _Builder:
                 start = end = self.end
             self.end = end
             value: bool | int | float | str | None = text
-            if event.ctag is not None:  # `tag` makes a text of it
+            if event.tag is not None:
                 self._check_tag(event)
-            elif plain and (not text.isidentifier() or text in _WORDS):  # most texts are names
-                value = _resolve(text)
+            elif plain and (not text.isidentifier() or text in WORDS):  # most texts are names
+                value = value_of(text)
                 if " " in text or text[-1:] in _LAST_SIGNS:
                     self._doubt(text, start)
             node = Scalar(value, plain, source, start, end)
@@ -474,13 +394,13 @@ class _Builder:
             if self.nodes > self.most:
                 self._too_many(start)
             if event.anchor is not None:
+                self._check_anchor(event)
                 self.anchors[event.anchor] = (node, 1)
 
     def _is_second(self, event: Any) -> bool:
         """Whether a second document begins, which is reported."""
-        from ruamel.yaml import events as kinds
+        from yaml import events as kinds
 
-        self.seen = True
         if not self.items or type(event) is not kinds.DocumentStartEvent:
             return False
         span = Span(self.source, event.start_mark.index, event.end_mark.index)
@@ -497,6 +417,13 @@ class _Builder:
                 self.doubtful.append(start)
         elif " = " in text or (self._is_flow() and _TWO_WORDS.fullmatch(text) is not None):
             self.doubtful.append(start)
+
+    def _check_anchor(self, event: Any) -> None:
+        """Reports an anchor of which libyaml reads a part as the value, `&left:home 0.5`."""
+        fault = anchor_fault(self.source, event.start_mark.index)
+        if fault is not None:
+            self.report.append(fault)
+            raise _BeyondLimitError
 
     def _is_flow(self) -> bool:
         """Whether the innermost open collection is in brackets or braces."""
@@ -520,14 +447,14 @@ class _Builder:
 
     def _open(self, event: Any) -> None:
         start = event.start_mark.index
-        if event.ctag is not None:
+        if event.tag is not None:
             self._unknown_tag(event)
         depth = len(self.stack)
         if depth >= MAX_DEPTH:
-            message = f"the nesting is deeper than {MAX_DEPTH:,} levels"
-            self._stop(start, message, "split the script into sub-scripts", "depth")
-        if depth > self.deepest:
-            self.deepest = depth
+            self.report.append(_too_deep(self.source, start))
+            raise _BeyondLimitError
+        if event.anchor is not None:
+            self._check_anchor(event)
         self.stack.append((self.items, self.nodes, event.flow_style, start, event.anchor))
         self.items = []
         self.end = event.end_mark.index
@@ -562,6 +489,7 @@ class _Builder:
 
     def _alias(self, event: Any) -> None:
         self.end = event.end_mark.index
+        self._check_anchor(event)
         span = Span(self.source, event.start_mark.index, self.end)
         known = self.anchors.get(event.anchor)
         if known is None:
@@ -685,8 +613,8 @@ class _Builder:
             self.report.append(wrong)
         name, _, rest = text.partition(":")
         return (
-            Scalar(_resolve(name), True, self.source, key.start, colon),
-            Scalar(_resolve(rest), True, self.source, colon + 1, key.end),
+            Scalar(value_of(name), True, self.source, key.start, colon),
+            Scalar(value_of(rest), True, self.source, colon + 1, key.end),
         )
 
     def _merge(self, value: Tree) -> Iterator[Entry]:

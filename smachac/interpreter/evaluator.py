@@ -232,7 +232,7 @@ class _Evaluation:
         return call
 
     def binary(self, word: str, left: Any, right: Any) -> object:
-        if word == "**" and isinstance(left, int) and isinstance(right, int):
+        if word == "**" and isinstance(left, int) and isinstance(right, int) and abs(left) > 1:
             _limit(left.bit_length() * right, MOST_BITS, "digits")
         elif word == "*" and isinstance(right, SIZED) and isinstance(left, int):
             _limit(left * _size(right), LARGEST, "items")

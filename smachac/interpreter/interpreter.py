@@ -7,9 +7,12 @@ time, in an order given by a seed or a schedule (scheduler.py). Time is virtual.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import islice
+from operator import eq
 from pathlib import PurePath
 from typing import NoReturn, TypeAlias
 
@@ -53,8 +56,11 @@ from smachac.ir.traversal import PREEMPTED, containers, leads_to_child, outcome_
 from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.writer import SECRET
 
-MAX_STEPS = 1_000_000
+MAX_STEPS = 10_000
 """Default limit on the states that one run enters."""
+
+MOST_RECENT = 1_000
+"""The last states entered, among which a run without end has its cycle."""
 
 Coroutine: TypeAlias = "Generator[float, None, str | None]"
 """A running state: yields the time at which it can continue, returns its outcome (None if a leaf
@@ -130,6 +136,7 @@ class Interpreter:
         self.clock = 0.0
         self._steps = self._leaves = self._events = 0
         self._visits: dict[str, int] = {}
+        self._recent: deque[str] = deque(maxlen=MOST_RECENT)
         self.transition_tables: dict[str, TransitionTable] = {}
         self.items: dict[str, object] = {}
         self._scopes: dict[str, dict[str, object]] = {
@@ -191,18 +198,22 @@ class Interpreter:
             line["src"] = self._sources[path]
         self._on_event(line)
 
-    def fail(self, kind: ErrorKind, path: str, message: str, span: Span) -> NoReturn:
+    def fail(
+        self, kind: ErrorKind, path: str, message: str, span: Span, cycle: tuple[str, ...] = ()
+    ) -> NoReturn:
         """Emit an error and raise RunError, which ends the branch."""
         self.emit("error", path, message=message)
-        raise RunError(RunFailure(kind=kind, path=path, message=message, span=span))
+        raise RunError(RunFailure(kind=kind, path=path, message=message, span=span, cycle=cycle))
 
     def visit(
         self, node: Node, path: str, around: dict[str, object], unrestricted: bool = False
     ) -> Coroutine:
         """Run one state from its entry to its exit."""
         if self._steps >= self._max_steps:
-            self.fail("no-end", path, f"did not end after {self._max_steps} states", node.span)
+            message = f"did not end after {self._max_steps} states"
+            self.fail("no-end", path, message, node.span, repeated_states(self._recent))
         self._steps += 1
+        self._recent.append(path)
         forced = self._pass_gate(node, path)
         self.emit("enter", path)
         if forced is not None:
@@ -295,6 +306,21 @@ class Interpreter:
                 return True
             yield until
         return False
+
+
+def repeated_states(paths: Iterable[str]) -> tuple[str, ...]:
+    """The states that a run repeats at its end, by path: one round, without the containers around
+    others of it. Without a round, as with branches in random order, each state once."""
+    recent = list(paths)
+    periods = (
+        period
+        for period in range(1, len(recent) // 2 + 1)
+        if all(map(eq, islice(recent, period, None), recent))
+    )
+    period = next(periods, 0)
+    found = recent[-period:] if period else list(dict.fromkeys(recent))
+    around = {path.rpartition("/")[0] for path in found}
+    return tuple(path for path in found if path not in around)
 
 
 def _trace_sources(root: Node) -> dict[str, str]:

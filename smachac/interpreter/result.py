@@ -39,11 +39,13 @@ NO_OUTCOME = "ended without an outcome"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunFailure:
-    """The place and the reason of a failed run."""
+    """The place and the reason of a failed run. `cycle`: the states that a run without end repeats,
+    by path."""
 
     kind: ErrorKind
     path: str
     message: str
+    cycle: tuple[str, ...] = ()
     span: Span = field(compare=False, repr=False)
 
     def __str__(self) -> str:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
-from smachac.diagnostics.spelling import is_plain
+from smachac.diagnostics.spelling import MOST_EXPLAINED, is_plain
 from smachac.interpreter.behaviours import preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
@@ -229,12 +229,16 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
         for key in data
         if key != "states"
     )
-    leaves = _leaves(machine)
+    leaves, unknown = _leaves(machine), 0
     for key, given in data["states"].items():
         name = str(key)
         path = _found(name, leaves)
         if path is None:
-            problems.append(ScenarioProblem(_not_found(name, machine, leaves), name))
+            unknown += 1
+            message = f"there is no state `{name}`"
+            if unknown <= MOST_EXPLAINED:
+                message = _not_found(name, machine, leaves)
+            problems.append(ScenarioProblem(message, name))
             continue
         if path in steps:
             shown = leaves[path].paths[0]
@@ -330,7 +334,28 @@ class _StepReader:
         self.problems.append(ScenarioProblem(text, self.name, number))
 
 
-def _leaves(machine: Machine) -> dict[str, _LeafEntry]:
+@dataclass(frozen=True, slots=True)
+class _Leaves:
+    """The leaves of a machine by full path, and the full paths of those whose path ends with a
+    name, for each form of paths."""
+
+    by_path: Mapping[str, _LeafEntry]
+    by_end: tuple[Mapping[str, list[str]], ...]
+
+    def __getitem__(self, path: str) -> _LeafEntry:
+        return self.by_path[path]
+
+
+def _leaves(machine: Machine) -> _Leaves:
+    by_path = _leaves_by_path(machine)
+    by_end: tuple[dict[str, list[str]], ...] = ({}, {}, {})
+    for path, leaf in by_path.items():
+        for form, shown in zip(by_end, leaf.paths, strict=True):
+            form.setdefault(shown.rpartition("/")[2], []).append(path)
+    return _Leaves(by_path, by_end)
+
+
+def _leaves_by_path(machine: Machine) -> dict[str, _LeafEntry]:
     nodes: dict[str, Node] = dict(walk(machine.root))
     return {
         each.full: _LeafEntry(
@@ -343,11 +368,12 @@ def _leaves(machine: Machine) -> dict[str, _LeafEntry]:
     }
 
 
-def _matches(name: str, leaves: Mapping[str, _LeafEntry]) -> list[str]:
+def _matches(name: str, leaves: _Leaves) -> list[str]:
     """The full paths of the leaves that a name means: those whose path in the script it is or ends;
     if there are none, those of which it is the end of the path without roles, or the full path."""
-    for form in range(3):
-        paths = {path: each.paths[form] for path, each in leaves.items()}
+    for form, by_end in enumerate(leaves.by_end):
+        alike = by_end.get(name.rpartition("/")[2], ())
+        paths = {path: leaves[path].paths[form] for path in alike}
         found = [path for path, shown in paths.items() if shown == name]
         found = found or [path for path, shown in paths.items() if shown.endswith(f"/{name}")]
         if found:
@@ -355,15 +381,15 @@ def _matches(name: str, leaves: Mapping[str, _LeafEntry]) -> list[str]:
     return []
 
 
-def _found(name: str, leaves: Mapping[str, _LeafEntry]) -> str | None:
+def _found(name: str, leaves: _Leaves) -> str | None:
     """The full path of the leaf with a name; None if there is none, or several."""
-    if name in leaves:
+    if name in leaves.by_path:
         return name
     matches = _matches(name, leaves)
     return matches[0] if len(matches) == 1 else None
 
 
-def _not_found(name: str, machine: Machine, leaves: Mapping[str, _LeafEntry]) -> str:
+def _not_found(name: str, machine: Machine, leaves: _Leaves) -> str:
     """The message for a name that is no leaf, or several."""
     matches = [leaves[path].paths[0] for path in _matches(name, leaves)]
     if matches:
@@ -371,7 +397,7 @@ def _not_found(name: str, machine: Machine, leaves: Mapping[str, _LeafEntry]) ->
     paths = (path for each in walk_script(machine.root) for path in (each.shown, each.full))
     if any(f"/{path}".endswith(f"/{name}") for path in paths):
         return f"`{name}` is a container: it ends as its states make it end"
-    shown = [each.paths[0] for each in leaves.values()]
+    shown = [each.paths[0] for each in leaves.by_path.values()]
     names = [*shown, *(path.rpartition("/")[2] for path in shown)]
     help_ = did_you_mean(name, names)
     return f"there is no state `{name}`" + (f"; {help_}" if help_ else "")

@@ -6,11 +6,11 @@ The text of an expression is the value of a YAML scalar: without quotes, escapes
 from __future__ import annotations
 
 import ast
-import warnings
 from functools import lru_cache
 
 from smachac.diagnostics.source import Span
 from smachac.ir.nodes import Expression
+from smachac.ir.python_code import parse_code
 
 
 # Cached, because several rules read each text: a call costs 0.1 us instead of 9 us, 7 % of a check
@@ -19,10 +19,8 @@ from smachac.ir.nodes import Expression
 def python_tree(text: str) -> ast.expr | None:
     """The syntax tree of code as Python reads it; None if it is not valid. Nobody may change it."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            return ast.parse(text, mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return parse_code(text)
+    except SyntaxError:
         return None
 
 

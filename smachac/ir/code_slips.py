@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.spelling import guesser_of
 from smachac.ir.code_places import python_tree
+from smachac.ir.python_code import TooDeepError, parse_code
 
 
 class Slip(NamedTuple):
@@ -65,12 +66,16 @@ class _Token(NamedTuple):
 def slips(text: str, *, compares: bool = False) -> list[Slip]:
     """The slips in code that Python rejects, in the order of the text; at least one. `compares`:
     the code is a condition, so that `=` can only be a comparison."""
+    error = _error(text)
+    if isinstance(error, TooDeepError):
+        return [Slip(0, len(text), str(error))]
     tokens = [
         _Token(found.lastgroup or "", found[0], *found.span()) for found in _TOKEN.finditer(text)
     ]
     found = sorted([*_misspelt_lambdas(tokens), *_signs(tokens, compares)])
     found = found or [*_statements(tokens)] or [*_brackets(tokens)] or [*_gaps(tokens)]
-    return found or [Slip(0, len(text), _reason(text))]
+    reason = error.msg.lower() if error is not None else ""
+    return found or [Slip(0, len(text), reason or "invalid syntax")]
 
 
 def corrected(text: str, found: list[Slip]) -> str | None:
@@ -232,15 +237,13 @@ def _begins(token: _Token) -> bool:
     return token.kind in ("name", "number", "text") and token.text not in _BETWEEN
 
 
-def _reason(text: str) -> str:
+def _error(text: str) -> SyntaxError | None:
     """The reason of Python."""
     try:
-        ast.parse(text, mode="eval")
+        parse_code(text)
     except SyntaxError as error:
-        return (error.msg or "invalid syntax").lower()
-    except (ValueError, RecursionError, MemoryError):
-        pass
-    return "it is nested too deeply, or contains a character that is not allowed"
+        return error
+    return None
 
 
 def texts_of(node: ast.expr) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ from smachac.diagnostics.source import assert_never
 from smachac.grammars import load
 
 if TYPE_CHECKING:
-    from lark import Lark
+    from smachac.grammars.standalone.lalr import Lark
 
 
 LONGEST = 10_000
@@ -219,7 +219,7 @@ def parse_expression(text: str) -> Expr | None:
     text = text.strip()
     if len(text) > LONGEST or not _brackets_fit(text):
         return None
-    from lark.exceptions import LarkError
+    from smachac.grammars.standalone.lalr import LarkError
 
     try:
         expr: Any = _parser().parse(text)
@@ -255,7 +255,6 @@ def _depth_fits(expr: Expr) -> bool:
     return False
 
 
-# Cached, because its construction takes 103 ms.
 @cache
 def _parser() -> Lark:
     return load("expression", builder=_TreeBuilder())

@@ -64,12 +64,26 @@ def fails(node: Node, outcome: str) -> bool:
     for each in node.outcomes:
         if each.name == outcome and each.failure is not None:
             return each.failure
+    return _is_implied_failure(node, outcome)
+
+
+def _is_implied_failure(node: Node, outcome: str) -> bool:
     if outcome and outcome == node.catches:
         return True
     match node:
         case nodes.Iterator(sugar="retry", exhausted_outcome=end) if outcome == end:
             return not tries_may_end(node)
     return is_failure(outcome)
+
+
+def failures_of(node: Node) -> frozenset[str]:
+    """The outcomes of a state that are failures."""
+    declared = {each.name: each.failure for each in reversed(node.outcomes)
+                if each.failure is not None}  # fmt: skip
+    return frozenset([
+        name for name in {each.name for each in node.outcomes}
+        if (declared[name] if name in declared else _is_implied_failure(node, name))
+    ])  # fmt: skip
 
 
 def tries_may_end(retry: nodes.Iterator) -> bool:
@@ -83,7 +97,7 @@ def tries_may_end(retry: nodes.Iterator) -> bool:
 def successes(node: Node) -> frozenset[str]:
     """The outcomes of a state that certainly mean success."""
     names = [outcome.name for outcome in node.outcomes]
-    failures = [name for name in names if fails(node, name)]
+    failures = failures_of(node)
     words = SUCCESSES | GOOD if failures else SUCCESSES
     return frozenset([name for name in names if name.lower() in words]).difference(failures)
 

@@ -30,8 +30,7 @@ from smachac.ir.nodes import (
 from smachac.ir.types import ANY, Type, parse_type
 
 if TYPE_CHECKING:
-    from lark import Lark
-    from lark.exceptions import UnexpectedInput
+    from smachac.grammars.standalone.lalr import Lark, UnexpectedInput
 
 KINDS: Mapping[str, type[Node]] = {kind.keyword: kind for kind in get_args(Node)}
 """The classes of nodes by keyword."""
@@ -62,7 +61,7 @@ def parse_machine(text: str, name: str = "<ir>") -> Machine:
 
     The span of a node is that of its name. Raises IrSyntaxError, and no other exception.
     """
-    from lark.exceptions import UnexpectedInput
+    from smachac.grammars.standalone.lalr import UnexpectedInput
 
     source = Source(name, text)
     try:
@@ -73,10 +72,9 @@ def parse_machine(text: str, name: str = "<ir>") -> Machine:
         raise IrSyntaxError("a value is nested too deeply", Span(source, 0, 0)) from None
 
 
-# Cached, because its construction takes 74 ms.
 @cache
 def _parser() -> Lark:
-    return load("ir", lexer="contextual")
+    return load("ir")
 
 
 MOST_SHOWN = 6

@@ -12,17 +12,24 @@ from smachac.robots.fields import IDENTITY, Pose
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
-    """A revolute joint and its limits (rad); the limits of a continuous joint are infinite.
+    """A joint and its limits (rad, or m if it does not turn); those of a continuous joint are
+    infinite.
 
-    `velocity` is its largest speed (rad/s); infinite if it is not known. `span` is its place in the
-    robot's file, if there is one.
+    `velocity` is its largest speed (rad/s or m/s); infinite if it is not known. `span` is its place
+    in the robot's file, if there is one.
     """
 
     name: str
     lower: float = -math.inf
     upper: float = math.inf
     velocity: float = math.inf
+    turns: bool = True
     span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+    @property
+    def unit(self) -> str:
+        """The unit of its position."""
+        return "rad" if self.turns else "m"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

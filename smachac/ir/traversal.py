@@ -33,6 +33,16 @@ def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:
             stack.extend((f"{here}/{child.name}", child) for child in reversed(current.children))
 
 
+def enclosing(node: Node) -> dict[str, tuple[str, Container]]:
+    """The container around each node below a node, with its path, by the path of the node. Paths
+    are not taken apart: a name of a state that is reported may have a `/`."""
+    return {
+        f"{path}/{child.name}": (path, container)
+        for path, container in containers(node)
+        for child in container.children
+    }
+
+
 def containers(node: Node) -> Iterator[tuple[str, Container]]:
     """The containers of `walk(node)`, without the cost of visiting leaves."""
     stack = [] if isinstance(node, Leaf) else [(node.name, node)]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from smachac.grammars import load
 
 if TYPE_CHECKING:
-    from lark import Lark
+    from smachac.grammars.standalone.lalr import Lark
 
 LONGEST = 1000
 """Limit on the length of a type, in characters."""
@@ -86,7 +86,7 @@ def parse_type(text: str) -> Type | None:
     depth = text.count("[") + text.count("?") + text.count(" of ") + text.count("{")
     if len(text) > LONGEST or depth > DEEPEST:
         return None
-    from lark.exceptions import LarkError
+    from smachac.grammars.standalone.lalr import LarkError
 
     try:
         found: Any = _parser().parse(text)
@@ -116,10 +116,9 @@ def unknown_words(type_: Type) -> tuple[str, ...]:
     return (type_.name, *found)
 
 
-# Cached, because its construction takes 12 ms.
 @cache
 def _parser() -> Lark:
-    return load("type", builder=_TypeBuilder(), lexer="contextual")
+    return load("type", builder=_TypeBuilder())
 
 
 class _TypeBuilder:

@@ -11,8 +11,6 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any, TypeAlias
 
-from ruamel.yaml.error import YAMLError
-
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import events
 
@@ -101,6 +99,8 @@ def parse_cst(source: Source) -> Document:
     that the checks read as repaired (frontend/yaml_mends.py)."""
     if source.text.startswith("%"):
         raise UnsupportedYamlError("it begins with a YAML directive")
+    from yaml import YAMLError
+
     try:
         return _CstBuilder(source).read()
     except YAMLError as error:

@@ -17,6 +17,7 @@ from smachac.ir import nodes
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Container, Leaf, Machine, Node
 from smachac.ir.properties import atoms
+from smachac.ir.python_code import parse_code
 from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import expressions_in, leads_to_child, remapping, walk
 from smachac.refactor.cst import Atom, Collection, Item
@@ -466,7 +467,7 @@ def _attributes(code: nodes.Expression, key: str) -> list[Span] | None:
     if at < 0 or not code.text.isascii() or "\n" in code.text:
         return None if key in code.text else []
     try:
-        tree = ast.parse(code.text, mode="eval").body
+        tree = parse_code(code.text)
     except SyntaxError:
         return None
     if not isinstance(tree, ast.Lambda) or len(tree.args.args) != 1:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -58,19 +58,26 @@ def candidate(cost: float, operator: str, *edits: Edit) -> Candidate:
 
 class Text(NamedTuple):
     """A source with what operators read of it: its tree, its names with how often each is, and the
-    names that can be meant: those of the source, of the machine and of its state types."""
+    names that can be meant: those of the source, of the machine and of its state types. `by_slip`
+    are the names by what they have in common with a name that is one slip away (`slips`)."""
 
     source: Source
     tree: Tree | None
     counts: Counter[str]
     names: tuple[str, ...]
+    by_slip: Mapping[str, list[str]]
 
 
 def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Text:
     """A source, read for operators. `types` are the names of all state types."""
     counts = Counter(_NAME.findall(source.text))
     known = [*counts, *TYPE_WORDS, *types, *(_names_in(machine) if machine is not None else ())]
-    return Text(source, parse(source, []), counts, (*dict.fromkeys(known),))
+    names = [name for name in dict.fromkeys(known) if len(name) <= LONGEST_NAME]
+    by_slip: dict[str, list[str]] = {}
+    for name in names:
+        for slip in dict.fromkeys(slips(name)):
+            by_slip.setdefault(slip, []).append(name)
+    return Text(source, parse(source, []), counts, (*names,), by_slip)
 
 
 def _names_in(machine: Machine) -> Iterator[str]:
@@ -91,22 +98,32 @@ MOST_PLACES = 4
 """The most places of a finding at which the structure of the text is changed."""
 
 
-def candidates(
-    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
-) -> list[Candidate]:
-    """The candidates for a finding, the best first; at most MOST_CANDIDATES. `read` returns what
-    operators read of a source; `others` are the names that the other findings are about."""
+class Around(NamedTuple):
+    """What operators know beside a finding: `read` returns what they read of a source, `others` are
+    the names that the other findings are about, `types` the texts of interfaces by state type."""
+
+    read: Callable[[Source], Text]
+    others: Sequence[str]
+    types: Mapping[str, str]
+
+
+def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
+    """The candidates for a finding, the best first; at most MOST_CANDIDATES."""
     places = [item.span, *(related.span for related in item.finding.related)]
     places = [span for span in places if span.source is not NOWHERE.source]
     if not places or places[0] is not item.span:
         return []
-    found = [*_near_names(item, read(item.span.source)), *_mentioned_names(item, others)]
+    found = [
+        *_near_names(item, around.read(item.span.source)),
+        *_mentioned_names(item, around.others),
+    ]
     for span in dict.fromkeys(places[:MOST_PLACES]):
-        tree = read(span.source).tree
+        tree = around.read(span.source).tree
         path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
         found += _turned_pairs(path)
         found += _exchanged_values(path)
         found += _repeated_parts(path, span.source)
+        found += _other_types(path, around.types)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
     return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
 
@@ -178,25 +195,34 @@ def _places(word: str, span: Span) -> Iterator[Span]:
         yield Span(span.source, span.start + found.start(), span.start + found.end())
 
 
+MOST_COMPARED = 500
+"""With more names, only those one slip away are found: to compare all would take too long."""
+
+
 def _near(word: str, text: Text) -> list[tuple[float, str]]:
-    """The names that a word is like, with costs: 1 for one slip, else 1 plus the difference."""
+    """The names that a word is like, with costs: 1 for one slip, 1.5 for a name of which the word
+    is a part, else 2 minus the ratio of equal letters."""
     if len(word) > LONGEST_NAME:
         return []
-    own, folded = set(slips(word)), word.casefold()
-    ranked = []
-    for name in text.names:
-        if name == word or len(name) > LONGEST_NAME or are_unlike(word, name):
-            continue
-        if not own.isdisjoint(slips(name)):
-            ranked.append((1.0 - 0.01 * min(text.counts[name], 9), name))
+    ranked: dict[str, float] = {}
+    for slip in slips(word):
+        ranked.update(dict.fromkeys(text.by_slip.get(slip, ()), 1.0))
+    folded = word.casefold()
+    for name in text.names if len(text.names) <= MOST_COMPARED else ():
+        if name in ranked:
             continue
         if folded in name.casefold().split("_"):
-            ranked.append((1.5 - 0.01 * min(text.counts[name], 9), name))
+            ranked[name] = 1.5
             continue
-        match = difflib.SequenceMatcher(None, word.casefold(), name.casefold())
+        match = difflib.SequenceMatcher(None, folded, name.casefold())
         if match.real_quick_ratio() > 0.6 and match.quick_ratio() > 0.6 and match.ratio() > 0.6:
-            ranked.append((2.0 - match.ratio(), name))
-    return sorted(ranked)[:MOST_NEAR]
+            ranked[name] = 2.0 - match.ratio()
+    found = [
+        (cost - 0.01 * min(text.counts[name], 9), name)
+        for name, cost in ranked.items()
+        if name != word and not are_unlike(word, name)
+    ]
+    return sorted(found)[:MOST_NEAR]
 
 
 def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
@@ -220,6 +246,26 @@ def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
             if isinstance(other.value, Scalar) and value.text and value.text != own.text:
                 edits = (Edit(span=own, text=value.text), Edit(span=value, text=own.text))
                 yield candidate(1.8, "exchange two values", *edits)
+        return
+
+
+def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator[Candidate]:
+    """The state types that have all fields of the innermost state, in place of its own one."""
+    for part in reversed(path):
+        entry = part.get("template") if isinstance(part, Map) else None
+        if entry is None or not isinstance(part, Map):
+            continue
+        own = [str(each.key.value) for each in part.entries if each.key.value not in schema.LONG]
+        fields = [name for name in own if name not in schema.VARIABLES]
+        fitting = [
+            name
+            for name, text in types.items()
+            if fields and name != entry.value.span.text
+            if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
+        ]
+        if len(fitting) <= MOST_NEAR:
+            for name in fitting:
+                yield candidate(1.7, RENAME, Edit(span=entry.value.span, text=name))
         return
 
 

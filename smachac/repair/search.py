@@ -25,13 +25,17 @@ from smachac.frontend.loader import Library
 from smachac.frontend.yaml_mends import parse_mended
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
-from smachac.repair.operators import Candidate, Text, candidates, text_of
+from smachac.repair.operators import Around, Candidate, candidates, text_of
 
 MOST_CLUSTERS = 10
 """The most findings of a script for which a repair is searched."""
 
-LONGEST_TEXT = 200_000
-"""In characters. In a longer text nothing is searched: each trial is a check."""
+MOST_CHECKED = 20_000
+"""The most states that all trials of a script check together: each trial is a check of the whole
+script, so that large ones get few trials."""
+
+MOST_FINDINGS = 100
+"""In a report of more findings nothing is searched."""
 
 Again: TypeAlias = "Callable[[Mapping[Source, str]], Analysis]"
 """A function that analyses a script again after changes of its texts."""
@@ -110,16 +114,21 @@ def clusters(
     repairs that correct the same finding, the one after which fewer are left is taken."""
     if analysis.source is None or analysis.library is None:
         return []
-    types = analysis.library.template_names()
+    types = _interfaces(analysis.library)
     read = cache(lambda source: text_of(source, analysis.machine, types))
     serious = [item for item in shown if item.severity is not Severity.INFO]
+    if len(serious) > MOST_FINDINGS:
+        return []
+    states = 1 if analysis.machine is None else sum(1 for _ in walk(analysis.machine.root))
+    trials = MOST_CHECKED // states
     proven: list[Proof] = []
     for item in serious[:MOST_CLUSTERS]:
-        if len(item.span.source.text) > LONGEST_TEXT:
-            continue
+        if trials <= 0:
+            break
         named = (other.finding.arguments for other in serious if other is not item)
-        proposed = _proposals(item, read, [*chain.from_iterable(named)])
-        proof = _proof(item, analysis, analysed, proposed)
+        proposed = _proposals(item, Around(read, [*chain.from_iterable(named)], types))
+        proof = _proof(item, analysis, analysed, proposed[:trials])
+        trials -= len(proposed)
         if proof is not None:
             proven.append(proof)
     found: dict[int, Cluster] = {}
@@ -132,6 +141,19 @@ def clusters(
             found[id(proof.item)] = Cluster(finding=proof.item, repair=repair, explained=others)
             covered.update(map(id, (proof.item, *others)))
     return [found[id(item)] for item in serious if id(item) in found]
+
+
+MOST_TYPES = 200
+"""Of more state types, none is proposed in place of another: each has to be read."""
+
+
+def _interfaces(library: Library) -> dict[str, str]:
+    """The names of all state types with the texts of their interfaces."""
+    names = library.template_names()
+    if len(names) > MOST_TYPES:
+        return dict.fromkeys(names, "")
+    found = ((name, library.template(f"{name}.yml")) for name in names)
+    return {name: source.text if source is not None else "" for name, source in found}
 
 
 class Proof(NamedTuple):
@@ -160,14 +182,12 @@ def _proof(
     return best
 
 
-def _proposals(
-    item: Diagnostic, read: Callable[[Source], Text], others: Sequence[str]
-) -> Sequence[Candidate]:
+def _proposals(item: Diagnostic, around: Around) -> Sequence[Candidate]:
     """The repairs of the finding, then those of the operators."""
     own = enumerate(item.finding.all_repairs)
     return [
         *(Candidate(0.1 * number, repair) for number, repair in own),
-        *candidates(item, read, others),
+        *candidates(item, around),
     ]
 
 

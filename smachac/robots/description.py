@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from smachac.robots import fields
@@ -22,7 +23,9 @@ from smachac.robots.fields import (
     Table,
     guess,
     in_metres,
+    listed,
 )
+from smachac.robots.urdf import Urdf, UrdfJoint
 
 DOWN: Pose = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 """The pose of a tool in the frame of a body that it grasps from above."""
@@ -77,6 +80,11 @@ class Limb:
     limits: tuple[tuple[float, float], ...] = ()
     speeds: tuple[float, ...] = ()
 
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The links that the description names."""
+        return (self.tip, *(self.gripper.pads if self.gripper is not None else ()))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stand:
@@ -93,8 +101,9 @@ class Stand:
 class Description:
     """A robot that stands with its base at `base` (world frame); `urdf` is its file, as written.
 
-    `frames` are the names of its links, where the checker has no URDF file. `folder` is where its
-    file was read, empty for text without a file.
+    `frames` are the names of its links, where the checker has no URDF file. `packages` are names of
+    ROS packages and their folders, as written. `arguments` are those of a xacro file. `folder` is
+    where its file was read, empty for text without a file.
     """
 
     name: str
@@ -103,7 +112,18 @@ class Description:
     base: Pose = IDENTITY
     stand: Stand | None = None
     frames: tuple[str, ...] = ()
+    packages: tuple[tuple[str, str], ...] = ()
+    arguments: tuple[tuple[str, str], ...] = ()
     folder: str = ""
+
+    @property
+    def has_limits(self) -> bool:
+        """Whether it has the limits of all its arms."""
+        return all(limb.limits for limb in self.limbs)
+
+    def package_folders(self, folder: Path) -> dict[str, Path]:
+        """The folders of the packages by name; `folder` is that of the description."""
+        return {name: folder / path for name, path in self.packages}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,15 +147,6 @@ class Station:
 
 NO_PARTS = "name the robots of that file here, each as a part of its own"
 """The help for a station as a part of a station."""
-
-
-@dataclass(frozen=True, slots=True)
-class UrdfJoint:
-    """A joint of a URDF file: its limits (rad or m), and whether it turns."""
-
-    lower: float
-    upper: float
-    turns: bool
 
 
 def _centre(data: Any, place: Place) -> tuple[float, float]:
@@ -358,8 +369,8 @@ def _limb(given: Fields) -> Limb:
             message = f"`{key}` has {size} items, but the arm has {count} joints"
             raise DataError(message, (*given.place, key), _for_each_joint(limb.joints, size))
     for k, (low, high) in enumerate(limb.limits):
-        joint = UrdfJoint(low, high, turns=True)
-        _inside(limb.joints[k], limb.home[k], joint, (*given.place, "home", k))
+        joint = UrdfJoint(name=limb.joints[k], kind="revolute", lower=low, upper=high)
+        _inside(limb.home[k], joint, (*given.place, "home", k))
     for finger in limb.gripper.fingers if limb.gripper is not None else ():
         if finger.joint in limb.joints:
             spot = (*given.place, "gripper", "joints", finger.joint)
@@ -409,14 +420,32 @@ def _station(given: Fields) -> Station:
     return Station(name=given["name"], base=given["base"], parts=given["parts"])
 
 
+@fields.shape({"type": ["string", "number", "boolean"]})
+def _argument(data: Any, place: Place) -> str:
+    if isinstance(data, bool):
+        return "true" if data else "false"
+    if not isinstance(data, str | int | float):
+        message = f"a text, a number or a truth value is expected, not {fields.shown(data)}"
+        raise DataError(message, place, "write the value as in `xacro FILE NAME:=VALUE`")
+    return str(data)
+
+
 _ROBOT: Table = {
     "name": _NAME,
-    "urdf": Field(fields.text, "The URDF file: beside this file, or in PyBullet's data."),
+    "urdf": Field(fields.text, "The URDF or xacro file: beside this file, or in PyBullet's data."),
     "base": _BASE,
     "stand": Field(_stand, "The box under the robot, from the floor to its base.", None),
     "arms": Field(fields.values(fields.named(_limb)), "The arms, by name."),
     "frames": Field(
         fields.texts, "The names of the links, for a robot whose URDF file is not read.", ()
+    ),
+    "packages": Field(
+        fields.named(fields.text),
+        "Folders of ROS packages, by name: those that the URDF file names.",
+        (),
+    ),
+    "arguments": Field(
+        fields.named(_argument), "Values of `<xacro:arg>`, by name, for a xacro file.", ()
     ),
 }
 
@@ -430,6 +459,8 @@ def _robot(given: Fields) -> Description:
         stand=given["stand"],
         limbs=given["arms"],
         frames=given["frames"],
+        packages=given["packages"],
+        arguments=given["arguments"],
     )
 
 
@@ -448,28 +479,84 @@ def read(data: Any) -> Description | Station:
     return _whole(data, ())
 
 
-def check(robot: Description, joints: Mapping[str, UrdfJoint], links: Collection[str]) -> None:
+def check(robot: Description, urdf: Urdf) -> None:
     """Compare a description with its URDF file. Raises DataError for a joint or link that the file
-    does not have, and for a position outside the limits of its joint."""
+    does not have, for joints that are not those from the base to the tool, for a joint without
+    effort, and for a position outside the limits of its joint."""
     for limb in robot.limbs:
         place: Place = ("arms", limb.name)
         for k, name in enumerate(limb.joints):
-            _known(name, joints, "joint", (*place, "joints", k))
+            _moved(name, urdf, (*place, "joints", k))
         for k, (name, angle) in enumerate(zip(limb.joints, limb.home, strict=True)):
-            _inside(name, angle, joints[name], (*place, "home", k))
+            _inside(angle, urdf.joints[name], (*place, "home", k))
         for name, _ in limb.efforts:
-            _known(name, joints, "joint", (*place, "efforts", name))
-        _known(limb.tip, links, "link", (*place, "tool"))
-        if limb.gripper is None:
+            _known(name, urdf.joints, "joint", (*place, "efforts", name))
+        _known(limb.tip, urdf.links, "link", (*place, "tool"))
+        _check_chain(limb, urdf, place)
+        _check_efforts(limb, urdf, place)
+        if limb.gripper is not None:
+            _check_gripper(limb.gripper, urdf, (*place, "gripper"))
+
+
+def _check_gripper(gripper: Gripper, urdf: Urdf, place: Place) -> None:
+    for finger in gripper.fingers:
+        at: Place = (*place, "joints", finger.joint)
+        _moved(finger.joint, urdf, at)
+        for key, position in (("open", finger.opened), ("closed", finger.closed)):
+            _inside(position, urdf.joints[finger.joint], (*at, key))
+    for k, name in enumerate(gripper.pads):
+        _known(name, urdf.links, "link", (*place, "pads", k))
+
+
+def _check_chain(limb: Limb, urdf: Urdf, place: Place) -> None:
+    """Raise DataError unless the joints of an arm are the last ones that move its tool, in their
+    order. Joints before them, such as those of a torso, stay at 0."""
+    chain = urdf.chain(limb.tip)
+    moving = [joint.name for joint in chain if joint.kind != "fixed" and joint.mimic is None]
+    wanted = f"write `joints: [{', '.join(moving)}]`" if moving else "name another link as `tool`"
+    for k, name in enumerate(limb.joints):
+        if name not in moving:
+            message = f"the joint `{name}` does not move the tool link `{limb.tip}`"
+            help = f"{wanted}: the joints from the root `{urdf.root}` to it" if moving else wanted
+            raise DataError(message, (*place, "joints", k), help)
+    start = min(moving.index(name) for name in limb.joints)
+    order = [name for name in moving if name in limb.joints]
+    if [*limb.joints] != order:
+        message = "the joints are not in the order from the base to the tool"
+        help = f"write `joints: [{', '.join(order)}]`, and `home` in the same order"
+        raise DataError(message, (*place, "joints"), help)
+    for name in moving[start:]:
+        if name in limb.joints:
             continue
-        place = (*place, "gripper")
-        for finger in limb.gripper.fingers:
-            at: Place = (*place, "joints", finger.joint)
-            _known(finger.joint, joints, "joint", at)
-            for key, position in (("open", finger.opened), ("closed", finger.closed)):
-                _inside(finger.joint, position, joints[finger.joint], (*at, key))
-        for k, name in enumerate(limb.gripper.pads):
-            _known(name, links, "link", (*place, "pads", k))
+        joint = urdf.joints[name]
+        message = f"the joint `{name}` also moves the tool link `{limb.tip}`"
+        help = f"write `joints: [{', '.join(moving[start:])}]`, with its position in `home`"
+        if not joint.is_moved:
+            message += f", but an arm has no joint of the type {joint.kind}"
+            help = "name the joints and the link of an arm without this joint"
+        raise DataError(message, (*place, "joints"), help)
+
+
+def _check_efforts(limb: Limb, urdf: Urdf, place: Place) -> None:
+    for k, name in enumerate(limb.joints):
+        joint = urdf.joints[name]
+        if joint.effort == 0.0 and name not in dict(limb.efforts):
+            message = (
+                f"the joint `{name}` has the effort 0 in the URDF file: its motor cannot move it"
+            )
+            quantity = "torque (N m)" if joint.turns else "force (N)"
+            help = f"add `efforts: {{{name}: 100}}` to the arm, with the largest {quantity}"
+            raise DataError(message, (*place, "joints", k), help)
+
+
+def _moved(name: str, urdf: Urdf, place: Place) -> None:
+    """Raise DataError unless a joint is there and has a motor of its own."""
+    _known(name, urdf.joints, "joint", place)
+    joint = urdf.joints[name]
+    if not joint.is_moved:
+        moved = [other.name for other in urdf.joints.values() if other.is_moved]
+        message = f"the joint `{name}` has the type {joint.kind}: no motor moves it"
+        raise DataError(message, place, f"write a joint that moves: {listed(moved)}")
 
 
 def _known(name: str, known: Collection[str], kind: str, place: Place) -> None:
@@ -478,15 +565,13 @@ def _known(name: str, known: Collection[str], kind: str, place: Place) -> None:
         raise DataError(message, place, guess(name, sorted(known)))
 
 
-def _inside(name: str, position: float, joint: UrdfJoint, place: Place) -> None:
+def _inside(position: float, joint: UrdfJoint, place: Place) -> None:
     slack = 1e-4
     if joint.lower - slack <= position <= joint.upper + slack:
         return
-    unit = "rad" if joint.turns else "m"
-    message = (
-        f"`{name}` is {position:g} {unit}, outside its limits {joint.lower:g} to {joint.upper:g}"
-    )
-    help = f"write a position from {joint.lower:g} to {joint.upper:g}"
+    limits = f"{joint.lower:g} to {joint.upper:g}"
+    message = f"`{joint.name}` is {position:g} {joint.unit}, outside its limits {limits}"
+    help = f"write a position from {limits}"
     if joint.turns and abs(position) > 2 * math.pi:
         help = f"write `{math.radians(position):.4g}`: angles are in radians, not in degrees"
     if not joint.turns and joint.lower <= position / 1000 <= joint.upper:

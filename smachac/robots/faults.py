@@ -62,8 +62,8 @@ KINDS: Mapping[str, Kind] = {
     "crash": Kind(""),
 }
 """The kinds by name. The value of `move_body` is the shift as a pose along the world's axes; that
-of `grip_force` a force (N), of `weak_joint` a torque (N m), of `sensor_noise` a standard deviation
-(m)."""
+of `grip_force` a force (N), of `weak_joint` a torque (N m) or force (N), of `sensor_noise` a
+standard deviation (m)."""
 
 
 @data.shape({"enum": [*KINDS]})

@@ -3,19 +3,23 @@ JSON."""
 
 from __future__ import annotations
 
-import base64
 import pickle
 from collections.abc import Iterator
 from itertools import islice
 from typing import Any
 
+from smachac.runtime import smach
+from smachac.runtime.plain_pickle import plain_value
 from smachac.runtime.smach import UserData
 from smachac.runtime.smach.container import Container
 from smachac.runtime.smach.user_data import store
 from smachac.runtime.tracing.values import shown_value
 
 PROTOCOL = 2
-"""The pickle protocol of userdata; SMACH's viewer reads it, in Python 2 too."""
+"""The pickle protocol of userdata on ROS 1: SMACH's viewer reads it, in Python 2 too."""
+
+NEW_PROTOCOL = 4
+"""The pickle protocol of userdata on ROS 2; bytes and sets in it are plain values."""
 
 MOST_KEYS = 100
 """The most keys of one container in a status."""
@@ -44,13 +48,13 @@ def active_paths(path: str, container: Container) -> list[str]:
     return found
 
 
-def status_fields(path: str, container: Container, info: str) -> dict[str, Any]:
+def status_fields(path: str, container: Container, info: str, protocol: int) -> dict[str, Any]:
     """The fields of a status of smach_msgs."""
     return {
         "path": path,
         "initial_states": [str(label) for label in container.get_initial_states()],
         "active_states": [str(label) for label in container.get_active_states()],
-        "local_data": pickled(container.userdata),
+        "local_data": pickled(container.userdata, protocol),
         "info": info,
     }
 
@@ -65,19 +69,38 @@ def more_status(container: Container) -> dict[str, Any]:
     }
 
 
-def pickled(userdata: UserData) -> str:
-    """The userdata in the format of SMACH's viewer; the `repr` of values that cannot be pickled."""
+def pickled(userdata: UserData, protocol: int) -> bytes:
+    """The pickle of the userdata as a dict; the `repr` of values that cannot be pickled."""
     held = dict(store(userdata))
     try:
-        data = pickle.dumps(held, PROTOCOL)
+        return pickle.dumps(held, protocol)
     except Exception:
-        data = pickle.dumps({key: _picklable(value) for key, value in held.items()}, PROTOCOL)
-    return base64.b64encode(data).decode("ascii")
+        return pickle.dumps(
+            {key: _picklable(value, protocol) for key, value in held.items()}, protocol
+        )
 
 
-def _picklable(value: object) -> object:
+def received_userdata(path: str, data: bytes, unpickle: bool) -> UserData:
+    """The userdata of a command to a container, from its pickle.
+
+    Only plain values are accepted, unless `unpickle` is true. Userdata that cannot be read is
+    dropped, and the log contains the reason.
+    """
+    userdata = UserData()
     try:
-        pickle.dumps(value, PROTOCOL)
+        held = (pickle.loads(data) if unpickle else plain_value(data)) if data else {}
+        if not isinstance(held, dict):
+            raise TypeError("it is no dictionary")
+    except Exception as error:  # a pickle raises what it likes
+        smach.logwarn(f"the userdata of a command to container '{path}' is dropped: {error}")
+        return userdata
+    store(userdata).update({str(key): value for key, value in held.items()})
+    return userdata
+
+
+def _picklable(value: object, protocol: int) -> object:
+    try:
+        pickle.dumps(value, protocol)
     except Exception:
         return repr(value)
     return value

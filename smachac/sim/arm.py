@@ -16,7 +16,7 @@ from smachac.sim.transforms import IDENTITY, Pose, as_pose
 
 
 class Arm(JointControl):
-    """One limb of the robot. Joint positions in rad, finger positions in m, poses of the tip.
+    """One limb of the robot. Positions of joints and fingers in rad, or m if they slide.
 
     A skill returns when it has ended in simulated time. Physical failures (out of reach, not
     settled in time, an empty grasp) are a Result with the outcome `aborted` and a reason, and an
@@ -58,16 +58,19 @@ class Arm(JointControl):
         return self.contact_forces(self.world.bodies)
 
     def solve_ik(self, pose: Any, offset: Any = None, frame: str = "base") -> list[float] | None:
-        """Joints (rad) that bring the tip to `pose`, moved by `offset` along the frame's axes.
+        """Joints (rad or m) that bring the tip to `pose`, moved by `offset` along the frame's axes.
 
         None, and an Event, if the pose is out of reach. The search starts from the limb's home and
-        not from the present joints, so the posture does not drift from cycle to cycle.
+        not from the present joints, so the posture does not drift from cycle to cycle. Joints of
+        other limbs that carry this one are where they are.
         """
         target = self._target(pose, offset, frame)
-        joints = self.kinematics.solve(self.limb, target) if self.solves else None
+        joints = None
+        if self.solves:
+            joints = self.kinematics.solve(self.limb, target, others=self.carriers)
         self.solves = True
         if joints is None:
-            place = ", ".join(f"{each:.3f}" for each in target[0])
+            place = ", ".join(f"{number:.3f}" for number in target[0])
             self.world.note("ik", f"{self.name}: ({place}) is out of reach")
             return None
         return list(joints)
@@ -84,7 +87,11 @@ class Arm(JointControl):
         speed: float = 1.0,
         preempted: Preempted = None,
     ) -> Result:
-        """Move to `positions` (rad) in joint space; `speed` multiplies 1 rad/s."""
+        """Move to `positions` (rad or m) in joint space.
+
+        `speed` is that of the fastest joint (rad/s; of joints that slide times 0.2 m, m/s).
+        A continuous joint turns the short way.
+        """
         return self._run("move", skills.move(self, positions, speed, preempted), preempted)
 
     def move_along(

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from smachac.sim.physics import Engine
-from smachac.sim.robots import MountedLimb
+from smachac.sim.robots import SLIDE, MountedLimb
+from smachac.sim.transforms import nearest_turn
 
 GRIP_TIME = 0.4
 """Time (s) in which a finger moves from open to closed: 0.1 m/s for a stroke of 0.04 m."""
-TOP_SPEED = 1.0
-"""Joint speed (rad/s) of a move with speed 1; the limit in the URDF applies where it is lower."""
 _FOLLOW_FORCE = 50.0
 """Force (N) or torque (N m) with which joints of a gripper follow its first one."""
 _LOCK_FORCE = 1000.0
@@ -20,16 +19,16 @@ _LOCK_FORCE = 1000.0
 class JointControl:
     """The joints and the gripper of one limb, without waiting: every method returns at once.
 
-    Joint positions are in rad, finger positions in m. A target applies from the next physics step
-    until the next target.
+    Positions of joints and fingers are in rad, or m if they slide. A target applies from the next
+    physics step until the next target.
 
     Attributes:
         limb: the limb as the robot describes it.
         indices: PyBullet's joint numbers, from the base to the hand.
         fingers: PyBullet's joint numbers of the fingers.
-        limits: (lowest, highest) position of each joint (rad).
-        efforts: the largest torque of each joint (N m).
-        speeds: the speed of each joint (rad/s) in a move with speed 1.
+        facts: the joints as the URDF file describes them.
+        scales: 1 for each joint that turns, SLIDE for each that slides.
+        efforts: the largest torque (N m) or force (N) of each joint.
         finger_joints: the fingers of the gripper as described; none without a gripper.
         grip_force: force of each finger (N, or N m if it turns).
         slips: whether the fingers press with no force, until the gripper opens.
@@ -42,10 +41,10 @@ class JointControl:
         self.tip = mounted.tip
         self.indices = mounted.joints
         self.fingers = mounted.fingers
-        self.limits = mounted.limits
+        self.facts = mounted.facts
+        self.scales = tuple(1.0 if joint.turns else SLIDE for joint in mounted.facts)
         self.efforts = mounted.efforts
-        self.speeds = tuple(min(TOP_SPEED, each or TOP_SPEED) for each in mounted.speeds)
-        gripper = mounted.limb.gripper
+        gripper = mounted.gripper
         self.finger_joints = gripper.fingers if gripper is not None else ()
         # 1 to 40 N hold a block of 0.1 kg, 100 N press it out.
         self.grip_force = gripper.force if gripper is not None else 0.0
@@ -54,21 +53,38 @@ class JointControl:
         self.stuck: dict[int, float] = {}
         self._body = mounted.body
         self._pads = mounted.pads
+        self._followers = mounted.followers
+        self._carriers = mounted.carriers
         self._finger_targets = tuple(each.opened for each in self.finger_joints)
 
     # Measurements
 
     @property
     def joints(self) -> tuple[float, ...]:
-        """Joint positions (rad)."""
+        """Joint positions (rad or m); a continuous joint may have made several turns."""
         states = self.engine.getJointStates(self._body, self.indices)
         return tuple(each[0] for each in states)
 
     @property
     def velocities(self) -> tuple[float, ...]:
-        """Joint velocities (rad/s)."""
+        """Joint velocities (rad/s or m/s)."""
         states = self.engine.getJointStates(self._body, self.indices)
         return tuple(each[1] for each in states)
+
+    @property
+    def carriers(self) -> dict[str, float]:
+        """The positions (rad or m) of the joints of other limbs that carry this one, by name."""
+        if not self._carriers:
+            return {}
+        states = self.engine.getJointStates(self._body, [*self._carriers.values()])
+        return {name: state[0] for name, state in zip(self._carriers, states, strict=True)}
+
+    def unwound(self, positions: Sequence[float], begun: Sequence[float]) -> tuple[float, ...]:
+        """`positions`, those of continuous joints in the turn that is nearest to `begun`."""
+        return tuple(
+            position if joint.is_limited else nearest_turn(position, start)
+            for joint, position, start in zip(self.facts, positions, begun, strict=True)
+        )
 
     @property
     def opening(self) -> tuple[float, ...]:
@@ -106,22 +122,36 @@ class JointControl:
         """Place the joints at `joints` with the gripper open, at rest; for the start of a world."""
         for index, position in zip(self.indices, joints, strict=True):
             self.engine.resetJointState(self._body, index, position)
+        for follower in self._followers:
+            position = follower.multiplier * joints[follower.leader] + follower.offset
+            self.engine.resetJointState(self._body, follower.joint, position)
         for index, finger in zip(self.fingers, self.finger_joints, strict=True):
             self.engine.resetJointState(self._body, index, finger.opened)
         self.hold()
         self.squeeze(self._finger_targets)
 
     def command(self, positions: Sequence[float], velocities: Sequence[float]) -> None:
-        """Track these joint positions (rad) and velocities (rad/s)."""
+        """Track these joint positions (rad or m) and velocities (rad/s or m/s).
+
+        The joints that follow others track the positions that these have.
+        """
+        followers = self._followers
+        count = len(self.indices) + len(followers)
         self.engine.setJointMotorControlArray(
             self._body,
-            self.indices,
+            [*self.indices, *(each.joint for each in followers)],
             self.engine.POSITION_CONTROL,
-            targetPositions=positions,
-            targetVelocities=velocities,
-            positionGains=[0.3] * len(self.indices),
-            velocityGains=[1.0] * len(self.indices),
-            forces=self.efforts,
+            targetPositions=[
+                *positions,
+                *(each.multiplier * positions[each.leader] + each.offset for each in followers),
+            ],
+            targetVelocities=[
+                *velocities,
+                *(each.multiplier * velocities[each.leader] for each in followers),
+            ],
+            positionGains=[0.3] * count,
+            velocityGains=[1.0] * count,
+            forces=[*self.efforts, *(each.effort for each in followers)],
         )
         self._hold_stuck_joints()
 
@@ -130,7 +160,10 @@ class JointControl:
         self.command(self.joints, [0.0] * len(self.indices))
 
     def squeeze(self, positions: Sequence[float] | None = None) -> None:
-        """Drive the fingers to `positions` (m) with the grip force; None keeps the last target."""
+        """Drive the fingers to `positions` (m, or rad if they turn) with the grip force.
+
+        None keeps the last target.
+        """
         if positions is not None:
             self._finger_targets = tuple(positions)
         rows = zip(self.fingers, self.finger_joints, self._finger_targets, strict=True)
@@ -160,9 +193,11 @@ class JointControl:
         self._hold_stuck_joints()
 
     def stick(self, indices: Sequence[int]) -> None:
-        """Lock these joints where they are, for the rest of the run."""
-        states = self.engine.getJointStates(self._body, indices)
-        self.stuck.update(zip(indices, (each[0] for each in states), strict=True))
+        """Lock these joints, and those that follow them, for the rest of the run."""
+        locked = [*indices]
+        locked += [each.joint for each in self._followers if self.indices[each.leader] in indices]
+        states = self.engine.getJointStates(self._body, locked)
+        self.stuck.update(zip(locked, (each[0] for each in states), strict=True))
         self._hold_stuck_joints()
 
     def _hold_stuck_joints(self) -> None:

@@ -4,7 +4,9 @@ from pathlib import Path
 
 from smachac.robots.models import MODELS as MODELS
 from smachac.robots.models import RGB, Box, Model
-from smachac.sim.physics import Engine, data_file, quiet
+from smachac.sim.loading import load
+from smachac.sim.physics import Engine, data_file
+from smachac.sim.robot_file import EngineFile, LoadError, engine_file, read_robot_file
 from smachac.sim.transforms import IDENTITY, Pose, compose, inverse
 
 
@@ -72,25 +74,24 @@ def touch(engine: Engine, body: int, friction: float) -> None:
         )
 
 
-def read(engine: Engine, path: str | Path, pose: Pose) -> int | str:
-    """Load a URDF or SDF file at `pose` (world frame): the body's number, or the error as text."""
+def file_of(path: str | Path) -> EngineFile:
+    """The file of a body, URDF or SDF, on disk or in PyBullet's data. Raises LoadError."""
     found = data_file(path)
     if found is None:
-        return f"model file `{path}` not found"
-    try:
-        with quiet():
-            if found.suffix == ".sdf":
-                bodies = engine.loadSDF(str(found))
-            else:
-                bodies = (engine.loadURDF(str(found), pose[0], pose[1]),)
-    except Exception as error:  # PyBullet raises its own class, pybullet.error
-        return f"model file `{path}` cannot be loaded: {error}"
-    if not bodies or bodies[0] < 0:
-        return f"model file `{path}` holds no model"
+        raise LoadError(f"model file `{path}` not found")
+    file = EngineFile(path=found)
+    if found.suffix.lower() == ".sdf" or file.is_shipped:
+        return file
+    return engine_file(read_robot_file(found))
+
+
+def read(engine: Engine, file: EngineFile, pose: Pose) -> int:
+    """Load the first body of a file at `pose` (world frame): its number. Raises LoadError."""
+    bodies = load(engine, file)
     for extra in bodies[1:]:
         engine.removeBody(extra)
     place(engine, bodies[0], pose)
-    return int(bodies[0])
+    return bodies[0]
 
 
 def place(engine: Engine, body: int, pose: Pose) -> None:

@@ -11,7 +11,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 _QUIET = threading.RLock()
 """Held while the file descriptors 1 and 2 are redirected."""
@@ -33,18 +33,19 @@ class UnknownNameError(KeyError):
 
 
 @contextlib.contextmanager
-def quiet() -> Iterator[None]:
-    """Discard everything that is written to the file descriptors 1 and 2 inside the block.
+def quiet(output: BinaryIO | None = None) -> Iterator[None]:
+    """Keep what is written to the file descriptors 1 and 2 inside the block out of them.
 
-    PyBullet prints from C code, not through sys.stdout; a trace on standard output must stay
-    readable.
+    It goes to `output`, or nowhere. PyBullet prints from C code, not through sys.stdout; a trace
+    on standard output must stay readable.
     """
     with _QUIET, contextlib.ExitStack() as undo:
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(AttributeError, ValueError, OSError):
                 stream.flush()
-        sink = os.open(os.devnull, os.O_WRONLY)
-        undo.callback(os.close, sink)
+        sink = output.fileno() if output is not None else os.open(os.devnull, os.O_WRONLY)
+        if output is None:
+            undo.callback(os.close, sink)
         for descriptor in (1, 2):
             with contextlib.suppress(OSError):
                 kept = os.dup(descriptor)
@@ -82,12 +83,17 @@ def data_file(path: str | Path) -> Path | None:
     here = Path(path).expanduser()
     if here.is_file():
         return here
+    there = data_folder() / path
+    return there if there.is_file() else None
+
+
+def data_folder() -> Path:
+    """The folder of PyBullet's data. Raises SimUnavailable when it is not installed."""
     try:
         import pybullet_data
     except ImportError as error:
         raise _missing(error) from error
-    there = Path(pybullet_data.getDataPath()) / path
-    return there if there.is_file() else None
+    return Path(pybullet_data.getDataPath())
 
 
 class Engine:
@@ -117,5 +123,6 @@ class Engine:
     def close(self) -> None:
         """Free the client; a second call has no effect."""
         if self.client >= 0:
-            self.disconnect()
+            with quiet():
+                self.disconnect()
             self.client = -1

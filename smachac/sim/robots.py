@@ -6,7 +6,8 @@ Lengths in m, angles in rad.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -19,13 +20,17 @@ from smachac.robots.description import (
     Limb,
     Stand,
     Station,
+    check,
     limb_names,
     read,
 )
 from smachac.robots.fields import DataError
 from smachac.robots.files import BUILT_IN, FOLDER, SUFFIXES, built_in, find_file, read_file
+from smachac.robots.urdf import Urdf, UrdfJoint
 from smachac.sim import models
-from smachac.sim.physics import Engine, UnknownNameError, data_file, quiet
+from smachac.sim.loading import load as load_file
+from smachac.sim.physics import Engine, UnknownNameError, data_file
+from smachac.sim.robot_file import EngineFile, RobotFile, engine_file, read_robot_file
 from smachac.sim.transforms import IDENTITY, Pose, as_pose, compose
 
 __all__ = ["BUILT_IN", "Finger", "Gripper", "Limb", "Robot", "RobotPart", "Stand", "from_urdf"]
@@ -38,10 +43,33 @@ class RobotPart:
     """A robot fixed in the world: its URDF file, the pose of its base (world frame), its limbs."""
 
     name: str
-    path: Path
+    file: RobotFile
     base: Pose
     limbs: tuple[Limb, ...]
     stand: Stand | None = None
+
+    def rest(self) -> dict[str, float]:
+        """The position of each joint at the start (rad or m).
+
+        That is its home in a limb; 0, or the limit nearest to it, for a joint of no limb; and for
+        a joint that follows another one, the position in which it follows.
+        """
+        joints = self.file.urdf.joints
+        rest = {name: min(max(0.0, joint.lower), joint.upper) for name, joint in joints.items()}
+        for limb in self.limbs:
+            rest |= zip(limb.joints, limb.home, strict=True)
+        leaders = {name: self.file.urdf.leader(name) for name in joints}
+        return {
+            name: leader.multiplier * rest[leader.joint] + leader.offset
+            for name, leader in leaders.items()
+        }
+
+    def engine_file(self) -> EngineFile:
+        """The file for PyBullet. Raises LoadError."""
+        used = {limb.tip for limb in self.limbs}
+        for limb in self.limbs:
+            used.update(limb.gripper.pads if limb.gripper is not None else ())
+        return engine_file(self.file, used)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,22 +96,23 @@ def from_urdf(
 ) -> Robot:
     """The robot in a URDF file on disk or in PyBullet's data; one limb or many.
 
-    Raises FileNotFoundError when there is no such file. Joint and link names are checked when a
-    world loads the robot.
+    Raises FileNotFoundError when there is no such file, LoadError for one that is no robot, and
+    DataError for a limb that does not fit it.
     """
     found = data_file(path)
     if found is None:
         raise FileNotFoundError(f"no robot description `{path}`")
     place, title = as_pose(base), name or found.stem
-    part = RobotPart(name=title, path=found, base=place, limbs=limbs, stand=stand)
-    return Robot(name=title, base=place, parts=(part,))
+    data = Description(name=title, urdf=str(path), limbs=limbs, base=place, stand=stand)
+    return Robot(name=title, base=place, parts=(_checked(data, title, found),))
 
 
 def load(name: str, base: Any = None, folders: Iterable[Path] = ()) -> Robot:
     """The built-in robot of that name, or the one that a YAML file describes.
 
     The file is searched in the working folder and in `folders`. `base` replaces the pose of the
-    base. Raises UnknownNameError, FileNotFoundError, and DataError for a wrong description.
+    base. Raises UnknownNameError, FileNotFoundError, LoadError for a wrong URDF file, and DataError
+    for a wrong description.
     """
     found = _described(name, tuple(folders))
     if isinstance(found, Station):
@@ -149,7 +178,15 @@ def _part(found: Description, name: str) -> RobotPart:
     path = data_file(Path(found.folder) / found.urdf) or data_file(found.urdf)
     if path is None:
         raise FileNotFoundError(f"no URDF file `{found.urdf}` for the robot `{found.name}`")
-    return RobotPart(name=name, path=path, base=found.base, limbs=found.limbs, stand=found.stand)
+    return _checked(found, name, path)
+
+
+def _checked(found: Description, name: str, path: Path) -> RobotPart:
+    """The robot of a description whose names and positions fit its URDF file."""
+    packages = found.package_folders(Path(found.folder))
+    file = read_robot_file(path, dict(found.arguments), packages)
+    check(found, file.urdf)
+    return RobotPart(name=name, file=file, base=found.base, limbs=found.limbs, stand=found.stand)
 
 
 # Loading
@@ -163,84 +200,155 @@ _ANCHORED = {"frictionAnchor": 1, "contactStiffness": 30000.0, "contactDamping":
 """Contacts of a finger that do not creep."""
 
 
+SLIDE = 0.2
+"""The way (m) of a joint that slides which counts as 1 rad of one that turns: in speeds,
+tolerances, and steps of inverse kinematics."""
+_NO_LIMIT = 1000.0
+"""Force (N) or torque (N m) of a joint whose effort is not limited."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Follower:
+    """A joint that follows one of a limb: PyBullet's number, the index of the other joint in the
+    limb, and its largest force (N, or N m); its position is `multiplier` times that of the other
+    joint, plus `offset`."""
+
+    joint: int
+    leader: int
+    multiplier: float
+    offset: float
+    effort: float
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MountedLimb:
     """A limb with PyBullet's numbers of its body, joints, fingers, pads and tip link.
 
-    `base` is the pose of its robot's base (world frame). `limits` are (lowest, highest) positions
-    in rad, `speeds` in rad/s, `efforts` in N m.
+    `base` is the pose of its robot's base (world frame). `facts` are those of its joints, `efforts`
+    their largest torques and forces (N m, N). `fingers` are the joints of the gripper with those
+    that follow them, described by `gripper`. `carriers` are the joints of other limbs between the
+    base and the tip, by name.
     """
 
     limb: Limb
+    gripper: Gripper | None
     body: int
     base: Pose
     joints: tuple[int, ...]
     fingers: tuple[int, ...]
     pads: tuple[int, ...]
     tip: int
-    limits: tuple[tuple[float, float], ...]
-    speeds: tuple[float, ...]
+    facts: tuple[UrdfJoint, ...]
     efforts: tuple[float, ...]
+    followers: tuple[Follower, ...]
+    carriers: Mapping[str, int]
 
 
-def mount(engine: Engine, part: RobotPart) -> tuple[int, tuple[MountedLimb, ...]]:
-    """Load a robot on its stand, every joint held at 0: its body and its limbs.
+def mount(engine: Engine, part: RobotPart, file: EngineFile) -> tuple[int, tuple[MountedLimb, ...]]:
+    """Load a robot on its stand, every joint held at its rest: its body and its limbs.
 
-    Raises UnknownNameError when a limb names a joint or link that the file does not have.
+    `file` is that of `part.engine_file()`. Raises LoadError.
     """
     if part.stand is not None:
         models.stand(engine, part.stand.size, part.stand.centre, part.base)
-    with quiet():
-        body = engine.loadURDF(str(part.path), part.base[0], part.base[1], useFixedBase=True)
-    known = [engine.getJointInfo(body, k) for k in range(engine.getNumJoints(body))]
-    for each in known:
-        if each[2] != engine.JOINT_FIXED:
+    (body,) = load_file(
+        engine, file, basePosition=part.base[0], baseOrientation=part.base[1], useFixedBase=True
+    )
+    facts, rest = part.file.urdf.joints, part.rest()
+    joints: dict[str, int] = {}
+    links: dict[str, int] = {part.file.urdf.root: -1}
+    for index in range(engine.getNumJoints(body)):
+        known = engine.getJointInfo(body, index)
+        name = known[1].decode()
+        joints[name], links[known[12].decode()] = index, index
+        if facts[name].is_moved:
             # PyBullet's default velocity motors act against position control: they are switched
-            # off. Joints that belong to no limb stay at 0.
-            engine.setJointMotorControl2(body, each[0], engine.VELOCITY_CONTROL, force=0.0)
+            # off. Joints that belong to no limb stay at their rest.
+            engine.setJointMotorControl2(body, index, engine.VELOCITY_CONTROL, force=0.0)
+            engine.resetJointState(body, index, rest[name])
             engine.setJointMotorControl2(
-                body, each[0], engine.POSITION_CONTROL, targetPosition=0.0, force=each[10]
+                body,
+                index,
+                engine.POSITION_CONTROL,
+                targetPosition=rest[name],
+                force=_force(facts[name]) or _NO_LIMIT,
             )
-    joints = {each[1].decode(): each for each in known}
-    links = {each[12].decode(): each[0] for each in known}
-    limbs = tuple(_mounted(limb, body, part.base, joints, links) for limb in part.limbs)
-    for each in limbs:
-        _configure_fingers(engine, body, each)
+    limbs = tuple(_mounted(limb, body, part, joints, links) for limb in part.limbs)
+    for limb in limbs:
+        _configure_fingers(engine, body, limb)
     return body, limbs
 
 
 def _mounted(
-    limb: Limb, body: int, base: Pose, joints: dict[str, Any], links: dict[str, int]
+    limb: Limb, body: int, part: RobotPart, joints: dict[str, int], links: dict[str, int]
 ) -> MountedLimb:
-    """The limb with the numbers of its names; `joints` are PyBullet's records by joint name."""
-    fingers = limb.gripper.fingers if limb.gripper is not None else ()
-    pads = limb.gripper.pads if limb.gripper is not None else ()
-    for name in (*limb.joints, *(finger.joint for finger in fingers)):
-        if name not in joints:
-            raise UnknownNameError("joint", name, tuple(joints))
-    for name in (limb.tip, *pads):
-        if name not in links:
-            raise UnknownNameError("link", name, tuple(links))
-    efforts = dict(limb.efforts)
-    found = [joints[name] for name in limb.joints]
-    driven = tuple(joints[finger.joint][0] for finger in fingers)
+    """The limb with the numbers of its names."""
+    urdf, efforts = part.file.urdf, dict(limb.efforts)
+    gripper = _with_followers(limb.gripper, urdf)
+    fingers = gripper.fingers if gripper is not None else ()
+    pads = gripper.pads if gripper is not None else ()
+    driven = tuple(joints[finger.joint] for finger in fingers)
+    leaders = [urdf.leader(joint.name).joint for joint in urdf.chain(limb.tip) if joint.is_moved]
     return MountedLimb(
         limb=limb,
+        gripper=gripper,
         body=body,
-        base=base,
-        joints=tuple(each[0] for each in found),
+        base=part.base,
+        joints=tuple(joints[name] for name in limb.joints),
         fingers=driven,
         pads=tuple(links[name] for name in pads) or driven,
         tip=links[limb.tip],
-        limits=tuple((each[8], each[9]) for each in found),
-        speeds=tuple(each[11] for each in found),
-        efforts=tuple(float(efforts.get(name) or joints[name][10]) for name in limb.joints),
+        facts=tuple(urdf.joints[name] for name in limb.joints),
+        efforts=tuple(efforts.get(name, _force(urdf.joints[name])) for name in limb.joints),
+        followers=tuple(_followers(limb, urdf, joints, {finger.joint for finger in fingers})),
+        carriers={name: joints[name] for name in leaders if name not in limb.joints},
     )
+
+
+def _followers(
+    limb: Limb, urdf: Urdf, joints: Mapping[str, int], fingers: Collection[str]
+) -> Iterable[Follower]:
+    """The joints that follow those of a limb, without its fingers."""
+    for name, joint in urdf.joints.items():
+        leader = urdf.leader(name)
+        if joint.mimic is None or name in fingers or leader.joint not in limb.joints:
+            continue
+        if joint.is_moved:
+            yield Follower(
+                joint=joints[name],
+                leader=limb.joints.index(leader.joint),
+                multiplier=leader.multiplier,
+                offset=leader.offset,
+                effort=_force(joint) or _NO_LIMIT,
+            )
+
+
+def _force(joint: UrdfJoint) -> float:
+    """The largest force (N) or torque (N m) of the motor of a joint."""
+    return joint.effort if math.isfinite(joint.effort) else _NO_LIMIT
+
+
+def _with_followers(gripper: Gripper | None, urdf: Urdf) -> Gripper | None:
+    """The gripper with the joints that follow its own (`<mimic>`) as further fingers."""
+    if gripper is None:
+        return None
+    fingers = {finger.joint: finger for finger in gripper.fingers}
+    for name, joint in urdf.joints.items():
+        leader = urdf.leader(name)
+        first = fingers.get(leader.joint)
+        if name in fingers or first is None or not joint.is_moved or leader.multiplier == 0.0:
+            continue
+        fingers[name] = Finger(
+            joint=name,
+            opened=leader.multiplier * first.opened + leader.offset,
+            closed=leader.multiplier * first.closed + leader.offset,
+        )
+    return replace(gripper, fingers=tuple(fingers.values()))
 
 
 def _configure_fingers(engine: Engine, body: int, mounted: MountedLimb) -> None:
     """Set the friction of the pads, and couple the joints of the gripper to its first one."""
-    gripper = mounted.limb.gripper
+    gripper = mounted.gripper
     if gripper is None:
         return
     for pad in mounted.pads:
@@ -268,4 +376,10 @@ def _configure_fingers(engine: Engine, body: int, mounted: MountedLimb) -> None:
             (0, 0, 0),
         )
         ratio = -(first.opened - first.closed) / (finger.opened - finger.closed)
-        engine.changeConstraint(gear, gearRatio=ratio, erp=0.1, maxForce=_GEAR_FORCE)
+        engine.changeConstraint(
+            gear,
+            gearRatio=ratio,
+            relativePositionTarget=first.closed + ratio * finger.closed,
+            erp=0.1,
+            maxForce=_GEAR_FORCE,
+        )

@@ -6,17 +6,18 @@ import hashlib
 import math
 import random
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 from smachac.robots.models import RGB, Model
-from smachac.sim import models, transforms
+from smachac.sim import loading, models, transforms
 from smachac.sim.clock import TIME_STEP, Clock, Key, Skill
 from smachac.sim.inverse_kinematics import Kinematics
 from smachac.sim.outcome import Result
 from smachac.sim.physics import Engine, UnknownNameError
+from smachac.sim.robot_file import EngineFile, LoadError
 from smachac.sim.robots import MountedLimb, Robot, mount
 from smachac.sim.transforms import IDENTITY, Pose, as_pose
 
@@ -44,8 +45,9 @@ class Event:
 class Scene:
     """A robot on the floor of a physics client, and the bodies around it.
 
-    Metres, rad, s, kg; gravity along -z. Raises SimUnavailable without PyBullet, and
-    UnknownNameError for a joint or link that the robot's file does not have.
+    Metres, rad, s, kg; gravity along -z. `files` are those of bodies that will be added: they are
+    tried together with those of the robot. Raises SimUnavailable without PyBullet, and LoadError
+    for a file of the robot that cannot be loaded.
 
     Attributes:
         random: the source of random numbers, seeded with `seed`.
@@ -64,6 +66,7 @@ class Scene:
         robot: Robot,
         seed: int,
         *,
+        files: Iterable[EngineFile] = (),
         gui: bool = False,
         on_event: Callable[[Event], None] | None = None,
         patience: float = 5.0,
@@ -84,7 +87,13 @@ class Scene:
         self._model_counts: dict[str, int] = {}
         self.limbs: tuple[MountedLimb, ...] = ()
         self.kinematics: dict[int, Kinematics] = {}
-        self.engine = Engine(gui=gui)
+        parts = [(part, part.engine_file()) for part in robot.parts]
+        try:
+            with loading.tried([*(file for _, file in parts), *files]):
+                self.engine = Engine(gui=gui)
+        except LoadError:
+            self.engine.close()
+            raise
         try:
             self.engine.setGravity(0.0, 0.0, _GRAVITY)
             self.engine.setPhysicsEngineParameter(
@@ -93,8 +102,8 @@ class Scene:
                 deterministicOverlappingPairs=1,
             )
             models.floor(self.engine)
-            for part in robot.parts:
-                body, limbs = mount(self.engine, part)
+            for part, file in parts:
+                body, limbs = mount(self.engine, part, file)
                 self.kinematics[body] = Kinematics(part)
                 self.limbs += limbs
         except BaseException:
@@ -102,9 +111,7 @@ class Scene:
             raise
 
     def close(self) -> None:
-        """Free the physics clients; a second call has no effect."""
-        for kinematics in self.kinematics.values():
-            kinematics.close()
+        """Free the physics client; a second call has no effect."""
         self.engine.close()
 
     # Time and events
@@ -178,9 +185,13 @@ class Scene:
             place = transforms.compose(self.frame(frame), as_pose(pose))
         except UnknownNameError as error:
             return Result("aborted", str(error))
-        body: int | str
         if path:
-            body = models.read(self.engine, path, place)
+            try:
+                file = models.file_of(path)
+                loading.try_out([file])
+                body = models.read(self.engine, file, place)
+            except (LoadError, OSError) as error:
+                return Result("aborted", str(error))
         elif isinstance(model, Model):
             body = models.build(self.engine, model, place)
         elif model in models.MODELS:
@@ -188,9 +199,7 @@ class Scene:
             self._model_counts[model] = count + 1
             body = models.build(self.engine, models.MODELS[model], place, count)
         else:
-            body = str(UnknownNameError("model", model, tuple(models.MODELS)))
-        if isinstance(body, str):
-            return Result("aborted", body)
+            return Result("aborted", str(UnknownNameError("model", model, tuple(models.MODELS))))
         if colour is not None:
             models.paint(self.engine, body, colour)
         self.bodies[name] = body

@@ -6,6 +6,7 @@ The figures were measured on 100 random pick-and-place tasks: with them every ta
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 
 from smachac.sim import transforms
@@ -16,13 +17,14 @@ from smachac.sim.outcome import Preempted, Result
 from smachac.sim.transforms import Pose
 
 _LONGEST_SKILL = 600.0
-"""Simulated time (s) after which a skill that never returns ends the run with an error."""
+"""Longest duration of a move (s). A skill that never returns ends the run with an error then."""
 _SHORTEST_MOVE = 0.5
 """Shortest duration of a move (s)."""
 _SETTLING_TIME = 2.0
 """Longest time (s) to settle after a move, and for the gripper to come to rest."""
 _STILL_SPEED = 0.01
-"""Speed (rad/s) below which a joint is at rest."""
+"""Speed (rad/s) below which a joint is at rest. This figure and the next ones are in rad; for a
+joint that slides they are multiplied by SLIDE (m)."""
 _LAG_LIMIT = 0.05
 """Lag (rad) behind the commanded position above which a joint does not follow."""
 _LAG_TIME = 0.1
@@ -66,33 +68,48 @@ def never_returns(preempted: Preempted) -> Skill[Result]:
 def move(
     arm: JointControl, positions: Sequence[float], speed: float, preempted: Preempted
 ) -> Skill[Result]:
-    """Move to `positions` (rad) in joint space."""
-    names = arm.limb.joints
-    if len(positions) != len(names):
-        return Result("aborted", f"{len(names)} joint positions wanted, {len(positions)} given")
-    for name, position, (low, high) in zip(names, positions, arm.limits, strict=True):
+    """Move to `positions` (rad, or m of joints that slide) in joint space.
+
+    A continuous joint turns the short way.
+    """
+    if len(positions) != len(arm.facts):
+        reason = f"{len(arm.facts)} joint positions wanted, {len(positions)} given"
+        return Result("aborted", reason)
+    for joint, position in zip(arm.facts, positions, strict=True):
         # Solutions are clipped to the limit, so allow for rounding.
-        if not low - 1e-6 <= position <= high + 1e-6:
-            return Result("aborted", f"{name}: {position:.3f} is not in {low:.3f}..{high:.3f} rad")
-    return (yield from _follow(arm, [tuple(map(float, positions))], speed, preempted))
+        if not joint.lower - 1e-6 <= position <= joint.upper + 1e-6:
+            limits = f"{joint.lower:.3f}..{joint.upper:.3f} {joint.unit}"
+            return Result("aborted", f"{joint.name}: {position:.3f} is not in {limits}")
+        if not math.isfinite(position):
+            return Result("aborted", f"{joint.name}: {position} is not a position")
+    goal = arm.unwound([*map(float, positions)], arm.joints)
+    return (yield from _follow(arm, [goal], speed, preempted))
 
 
 def move_along(
     arm: JointControl, kinematics: Kinematics, target: Pose, speed: float, preempted: Preempted
 ) -> Skill[Result]:
     """Move the tip straight to `target` (base frame); a move in joint space deviates by 6 mm."""
-    joints, waypoints = arm.joints, []
-    start = kinematics.tip(arm.limb, joints)
+    joints, others, waypoints = arm.joints, arm.carriers, []
+    start = kinematics.tip(arm.limb, joints, others)
     for pose in transforms.straight(start, target, _WAYPOINTS):
-        solved = kinematics.solve(arm.limb, pose, joints)
+        solved = kinematics.solve(arm.limb, pose, joints, others)
         if solved is None:
-            place = ", ".join(f"{each:.3f}" for each in pose[0])
+            place = ", ".join(f"{number:.3f}" for number in pose[0])
             return Result("aborted", f"({place}) on the way is out of reach")
-        if max(abs(a - b) for a, b in zip(solved, joints, strict=True)) > _FLIP:
+        solved = arm.unwound(solved, joints)
+        if max(_ways(arm, solved, joints)) > _FLIP:
             return Result("aborted", "no straight way: the arm would have to turn over")
         joints = solved
         waypoints.append(joints)
     return (yield from _follow(arm, waypoints, speed, preempted))
+
+
+def _ways(arm: JointControl, ends: Sequence[float], starts: Sequence[float]) -> list[float]:
+    """The way of each joint between two positions (rad; of one that slides in SLIDE metres)."""
+    return [
+        abs(end - start) / scale for end, start, scale in zip(ends, starts, arm.scales, strict=True)
+    ]
 
 
 def _follow(
@@ -106,7 +123,11 @@ def _follow(
     if speed <= 0.0:
         raise ValueError(f"the speed has to be above 0, not {speed}")
     corners = [arm.joints, *waypoints]
-    steps = max(1, round(_duration(arm, corners, speed) / TIME_STEP))
+    duration = _duration(arm, corners, speed)
+    if duration > _LONGEST_SKILL:
+        reason = f"the move takes longer than {_LONGEST_SKILL:g} s at the speed of the joints"
+        return Result("aborted", reason)
+    steps = max(1, round(duration / TIME_STEP))
     lagging = 0
     for k in range(1, steps + 1):
         if preempted is not None and preempted():
@@ -114,32 +135,47 @@ def _follow(
         wanted = _at(corners, k / steps, steps * TIME_STEP)
         arm.command(*wanted)
         yield
-        lag = [abs(a - b) for a, b in zip(arm.joints, wanted[0], strict=True)]
+        lag = _ways(arm, arm.joints, wanted[0])
         lagging = lagging + 1 if max(lag) > _LAG_LIMIT else 0
         if lagging * TIME_STEP > _LAG_TIME:
             arm.hold()
-            return Result("aborted", f"{_worst_joint(arm, lag)} does not follow")
+            return Result("aborted", _not_following(arm, lag.index(max(lag))))
     return (yield from _settle(arm, corners[-1], preempted))
+
+
+def _not_following(arm: JointControl, index: int) -> str:
+    """The reason that a joint does not follow."""
+    joint, effort = arm.facts[index], arm.efforts[index]
+    reason = f"{joint.name} does not follow"
+    if effort > 0.0:
+        return reason
+    unit = "N m" if joint.turns else "N"
+    return f"{reason}: its effort is 0 {unit}; `efforts` in the description sets another"
 
 
 def _duration(arm: JointControl, corners: list[tuple[float, ...]], speed: float) -> float:
     """The shortest duration (s) in which no joint exceeds its speed limit.
 
-    The peak speed of a minimum-jerk profile is 1.875 times its mean speed.
+    The limit is `speed` (rad/s; for a joint that slides times SLIDE, m/s), or that of the URDF file
+    where it is lower. The peak speed of a minimum-jerk profile is 1.875 times its mean speed.
     """
     pieces = len(corners) - 1
+    limits = [
+        min(speed * scale, joint.velocity)
+        for joint, scale in zip(arm.facts, arm.scales, strict=True)
+    ]
     slowest = max(
         abs(b - a) * pieces / limit
         for start, end in itertools.pairwise(corners)
-        for a, b, limit in zip(start, end, arm.speeds, strict=True)
+        for a, b, limit in zip(start, end, limits, strict=True)
     )
-    return max(_SHORTEST_MOVE, 1.875 * slowest / speed)
+    return max(_SHORTEST_MOVE, 1.875 * slowest)
 
 
 def _at(
     corners: list[tuple[float, ...]], t: float, duration: float
 ) -> tuple[list[float], list[float]]:
-    """Positions (rad) and velocities (rad/s) at the fraction `t` (0..1) of the duration.
+    """Positions (rad or m) and velocities (per s) at the fraction `t` (0..1) of the duration.
 
     The distance covered follows the minimum-jerk polynomial 10 t^3 - 15 t^4 + 6 t^5.
     """
@@ -156,22 +192,20 @@ def _at(
 
 
 def _settle(arm: JointControl, goal: tuple[float, ...], preempted: Preempted) -> Skill[Result]:
-    off: list[float] = []
+    still = [0.0] * len(goal)
+    off = still
     for _ in range(round(_SETTLING_TIME / TIME_STEP)):
         if preempted is not None and preempted():
             return _stopped(arm)
-        off = [abs(a - b) for a, b in zip(arm.joints, goal, strict=True)]
-        if max(off) < arm.limb.settled and max(map(abs, arm.velocities)) < _STILL_SPEED:
+        off = _ways(arm, arm.joints, goal)
+        if max(off) < arm.limb.settled and max(_ways(arm, arm.velocities, still)) < _STILL_SPEED:
             return Result("succeeded", value=list(arm.joints))
-        arm.command(goal, [0.0] * len(goal))
+        arm.command(goal, still)
         yield
     arm.hold()
-    worst = _worst_joint(arm, off)
-    return Result("aborted", f"not settled in time: {worst} is {max(off):.3f} rad off")
-
-
-def _worst_joint(arm: JointControl, errors: list[float]) -> str:
-    return arm.limb.joints[errors.index(max(errors))]
+    worst = off.index(max(off))
+    joint, way = arm.facts[worst], off[worst] * arm.scales[worst]
+    return Result("aborted", f"not settled in time: {joint.name} is {way:.3f} {joint.unit} off")
 
 
 def _stopped(arm: JointControl) -> Result:

@@ -126,6 +126,13 @@ def yaw_of(q: Quaternion) -> float:
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
+def from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """The rotation by `roll`, then `pitch`, then `yaw` (rad) about the fixed axes x, y and z."""
+    x = (math.sin(roll / 2), 0.0, 0.0, math.cos(roll / 2))
+    y = (0.0, math.sin(pitch / 2), 0.0, math.cos(pitch / 2))
+    return multiply(about_z(yaw), multiply(y, x))
+
+
 def about_z(yaw: float) -> Quaternion:
     """The rotation by `yaw` (rad) about the vertical axis."""
     return (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
@@ -142,3 +149,8 @@ def grasp_pose(block_pose: Any, grasp: Pose = DOWN) -> list[list[float]]:
     yaw = yaw_of(rotation)
     folded = yaw - math.pi / 2 * round(yaw / (math.pi / 2))
     return as_lists(compose((position, about_z(folded)), grasp))
+
+
+def nearest_turn(angle: float, other: float) -> float:
+    """The angle (rad) plus whole turns that is nearest to `other`: at most half a turn from it."""
+    return other + math.remainder(angle - other, 2.0 * math.pi)

@@ -19,7 +19,7 @@ from typing import Any
 from smachac.robots.files import find_file, read_file
 from smachac.robots.scene import Body, posed
 from smachac.robots.scene import read as read_scene
-from smachac.sim import robots, skills, smach_bridge, tasks
+from smachac.sim import models, robots, skills, smach_bridge, tasks
 from smachac.sim.arm import Arm, arm_named
 from smachac.sim.clock import Skill
 from smachac.sim.faults import Fault, FaultSchedule
@@ -61,8 +61,9 @@ class World(Scene):
     seconds of wall time is left behind.
 
     A context manager; a world that is not closed stays in memory. Raises SimUnavailable without
-    PyBullet or, for a film, Pillow or imageio-ffmpeg; UnknownNameError for a joint or link that the
-    robot's file does not have; ValueError for a wrong fault or film name.
+    PyBullet or, for a film, Pillow or imageio-ffmpeg; LoadError for a file of the robot or the
+    scene that cannot be loaded; DataError for a description that does not fit its URDF file;
+    ValueError for a wrong fault or film name.
 
     Attributes:
         arms: the arms of the robot, in the order of its limbs.
@@ -85,9 +86,11 @@ class World(Scene):
         self._attached: list[Any] = []
         self._closing = threading.Lock()
         self._film: Film | None = None
+        bodies = list(_bodies(scene))
         super().__init__(
             _robot(robot),
             seed,
+            files=[models.file_of(_body_file(body)) for body in bodies if body.path],
             gui=_settings.gui if gui is None else gui,
             on_event=on_event or _settings.on_event,
             patience=patience,
@@ -97,7 +100,7 @@ class World(Scene):
             for arm in self.arms:
                 arm.reset(arm.limb.home)
             film = record or _settings.record
-            for body in _bodies(scene):
+            for body in bodies:
                 self._add_body(body)
             self._film = Film(self, film) if film else None
         except BaseException:
@@ -132,7 +135,7 @@ class World(Scene):
     def _add_body(self, body: Body) -> None:
         """Put a body of the scene into the world. Raises ValueError if that is not possible."""
         pose = tasks.scattered(self, body.pose, body.spread, dict(body.apart))
-        path = find_file(body.path, _settings.folders) if body.path else None
+        path = _body_file(body) if body.path else None
         model = body.box or body.model
         result = self.add(model, pose, body.name, path, body.frame, body.colour)
         if result.outcome != "succeeded":
@@ -222,6 +225,10 @@ def _bodies(scene: str | Path | Iterable[Body] | None) -> Iterable[Body]:
         return scene
     bodies = read_scene(read_file(find_file(scene, _settings.folders)))
     return [posed(body, _settings.poses.get(body.name, {})) for body in bodies]
+
+
+def _body_file(body: Body) -> Path:
+    return find_file(body.path, _settings.folders)
 
 
 # Settings and open worlds of the process

@@ -24,10 +24,12 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
 
 {% block defs %}
 {{ defs }}
+
+
 {% if is_node %}
-
-
 {% include "ROSNode.tpl.py" %}
+{% else %}
+{% include "StopSignals.tpl.py" %}
 {% endif %}
 {% endblock defs %}
 
@@ -75,6 +77,9 @@ def {{ function_name | default("main") | lower }}():
 {% block execute %}
 {% if is_node %}
     preempt_at_shutdown({{ sm_name }})
+{% else %}
+    if __name__ == "__main__":
+        stop_at_signals({{ sm_name }}.request_preempt)
 {% endif %}
     {{ execute | indent(4) }}
     outcome = {{ sm_name }}.execute()
@@ -93,4 +98,7 @@ def {{ function_name | default("main") | lower }}():
 
 if __name__ == "__main__":
     {{ function_name | default("main") | lower }}()
+{% block exit_code %}
+    raise SystemExit(128 + stop_signals[0] if stop_signals else 0)
+{% endblock exit_code %}
 {% endblock main %}

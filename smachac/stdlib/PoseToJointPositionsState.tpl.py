@@ -19,7 +19,8 @@ class PoseToJointPositionsState(smach.State):
             pose = arm.grasp_pose(pose)
         joints = arm.solve_ik(pose, optional(userdata, "offset"))
         if joints is None:
-            smach.logwarn(f"PoseToJointPositionsState: {pose[0]} is out of reach")
+            place = [round(part, 3) for part in sim.as_pose(pose)[0]]
+            smach.logwarn(f"PoseToJointPositionsState: {place} is out of reach")
             return "aborted"
         userdata["joints"] = joints
         return "succeeded"

@@ -34,12 +34,20 @@ def build({{ build_parameters }}):
 
 {{ functions }}
 {%- endif %}
+{%- block stop_signals %}
+
+
+{% include "StopSignals.tpl.py" %}
+{%- endblock %}
 
 
 def {{ function_name | default("main") }}({{ main_parameters }}):
 {%- block main %}
     """Run the state machine once and return its outcome."""
-    return build().execute()
+    {{ sm_name }} = build()
+    if __name__ == "__main__":
+        stop_at_signals({{ sm_name }}.request_preempt)
+    return {{ sm_name }}.execute()
 {%- endblock %}
 
 
@@ -47,5 +55,5 @@ def {{ function_name | default("main") }}({{ main_parameters }}):
 if __name__ == "__main__":
     outcome = {{ function_name | default("main") }}()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit({% block exit_code %}128 + stop_signals[0] if stop_signals else outcome is None{% endblock %})
 {%- endblock %}

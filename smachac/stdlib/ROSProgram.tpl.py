@@ -11,6 +11,8 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
 {%- if smach_ros or introspection %}
     from smachac.runtime import smach_ros
 {%- endif %}
+{%- endblock %}
+{%- block stop_signals %}
 
 
 {% include "ROSNode.tpl.py" %}

@@ -54,6 +54,7 @@ class Database:
             self._connection = sqlite3.connect(":memory:" if path is None else path, timeout=BUSY)
             try:
                 self._open(inputs)
+                self._file = self._identity()
             except BaseException:
                 self._connection.close()
                 raise
@@ -100,6 +101,23 @@ class Database:
     def close(self) -> None:
         self._connection.close()
 
+    def _identity(self) -> tuple[int, int] | None:
+        """The device and the inode of the file; None without a file."""
+        try:
+            found = None if self._path is None else self._path.stat()
+        except OSError:
+            return None
+        return found and (found.st_dev, found.st_ino)
+
+    def check_file(self) -> None:
+        """Raises DatabaseError if the file is not there any more: SQLite would go on writing to the
+        deleted file."""
+        if self._identity() != self._file:
+            raise DatabaseError(
+                f"the database {self._path} was deleted or replaced during the sweep: its runs are"
+                " lost"
+            )
+
     def inputs(self) -> dict[str, str]:
         """The digests of what the sweep depends on, by name."""
         with self._errors():
@@ -117,7 +135,8 @@ class Database:
             return rows.fetchone() is not None
 
     def add(self, run: Run) -> bool:
-        """Add a run; False if the run with its seed is there already."""
+        """Add a run; False if the run with its seed is there already. Raises DatabaseError."""
+        self.check_file()
         marks = ", ".join("?" * len(COLUMNS))
         statement = f"INSERT OR IGNORE INTO runs ({', '.join(COLUMNS)}) VALUES ({marks})"
         with self._errors(), self._connection:

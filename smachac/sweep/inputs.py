@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from smachac.interpreter.interpreter import MAX_STEPS
 from smachac.ir.nodes import Machine
 from smachac.robots.files import SUFFIXES, find_file, read_file
 from smachac.robots.scene import read as read_scene
@@ -43,6 +44,8 @@ def input_digests(
         "vary": _digest(repr(sorted(task.variations, key=lambda each: each.name))),
         "smachac": __version__,
     }
+    if task.max_steps != MAX_STEPS:
+        inputs["max-steps"] = _digest(repr(task.max_steps))
     described = machine.robot.description if machine.robot is not None else ""
     for name, file in (("scene", scene_file(machine)), ("robot", described)):
         if file.endswith(SUFFIXES):

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from multiprocessing import connection
 from multiprocessing.connection import Connection
 
+from smachac.runtime.signals import SIGNALS
 from smachac.sweep.task import Run, Runner, Task
 
 
@@ -64,8 +65,8 @@ def _ending(code: int) -> str:
 
 def _serve(task: Task, requests: Connection) -> None:
     """Perform the runs that are requested, until the other end closes."""
-    if hasattr(signal, "pthread_sigmask"):  # Ctrl-C is for the process that has the results
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    if hasattr(signal, "pthread_sigmask"):  # they are for the process that has the results
+        signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     else:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     nowhere = os.open(os.devnull, os.O_RDWR)

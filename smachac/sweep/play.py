@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from smachac.interpreter.interpreter import MAX_STEPS
 from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing.gate import Gate
@@ -12,8 +13,17 @@ from smachac.runtime.tracing.gate import Gate
 Event = dict[str, Any]
 
 
+SHOWN_STATES = 6
+"""The most states of a cycle that a message names."""
+
+
 class FailedError(Exception):
-    """A run ended without an outcome; the message gives the reason."""
+    """A run ended without an outcome; the message gives the reason. `cycle`: the states that it
+    repeated at its end, by full path."""
+
+    def __init__(self, message: str, cycle: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.cycle = cycle
 
 
 def play(
@@ -23,10 +33,13 @@ def play(
     schedule: Sequence[str] | None,
     observe: Callable[[Event], None],
     gate: Gate | None = None,
+    *,
+    max_steps: int = MAX_STEPS,
 ) -> str:
     """Play a scenario on the interpreter; the outcome. Raises FailedError.
 
-    `gate` lets a debugger stop the run between two states.
+    `gate` lets a debugger stop the run between two states. `max_steps` is the most states that it
+    enters.
     """
     from smachac.interpreter.behaviours import builtin_behaviour
     from smachac.interpreter.interpreter import run
@@ -41,15 +54,26 @@ def play(
     turns = None if schedule is None else [full.get(turn, turn) for turn in schedule]
     try:
         result = run(
-            machine, behaviour, _shown(observe, paths), seed=seed, schedule=turns, gate=gate
+            machine,
+            behaviour,
+            _shown(observe, paths),
+            seed=seed,
+            schedule=turns,
+            max_steps=max_steps,
+            gate=gate,
         )
     except ScheduleError as error:
         raise FailedError(f"--schedule: {error}") from None
     if result.error is not None:
         failure = result.error
         words = f"{shown_path(failure.path, paths)}: {failure.message}"
+        if failure.cycle:
+            round_ = [shown_path(path, paths) for path in failure.cycle]
+            more = ["..."] if len(round_) > SHOWN_STATES else []
+            words += f": it repeats {', '.join([*round_[:SHOWN_STATES], *more])}"
         span = failure.span
-        raise FailedError(f"{words}\n  --> {span}" if span.source.text else words)
+        place = f"\n  --> {span}" if span.source.text else ""
+        raise FailedError(f"{words}{place}", failure.cycle)
     assert result.outcome is not None
     return result.outcome
 

@@ -16,6 +16,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse_script, compile_script
 from smachac.frontend.files import module_folders
 from smachac.frontend.yaml_tree import parse
+from smachac.interpreter.interpreter import MAX_STEPS
 from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Checked, Leaf
 from smachac.ir.script_paths import script_paths
@@ -35,8 +36,9 @@ MOST_STEPS = 100
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Task:
-    """What all runs of a sweep have in common. `scenario` is played; without one the generated
-    program runs, with `faults`. `scripts` and `templates` are more folders."""
+    """What all runs of a sweep have in common. `scenario` is played, up to `max_steps` states;
+    without one the generated program runs, with `faults`. `scripts` and `templates` are more
+    folders."""
 
     source: Source
     scripts: tuple[Path, ...] = ()
@@ -44,6 +46,7 @@ class Task:
     scenario: Scenario | None = None
     faults: tuple[Fault, ...] = ()
     variations: tuple[Variation, ...] = ()
+    max_steps: int = MAX_STEPS
 
     def values(self, seed: int) -> dict[str, Single]:
         """The varied values of the run with a seed."""
@@ -143,8 +146,9 @@ class Runner:
         placed: Mapping[str, Mapping[str, float]],
         recorder: _Recorder,
     ) -> str | None:
-        if self._task.scenario is not None:
-            return play(program.machine, self._task.scenario, seed, None, recorder)
+        scenario, most = self._task.scenario, self._task.max_steps
+        if scenario is not None:
+            return play(program.machine, scenario, seed, None, recorder, max_steps=most)
         ((name, text),) = program.texts.items()
         try:
             return execute(

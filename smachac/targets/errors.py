@@ -673,6 +673,46 @@ def fixed_param(span: Span, field: str, param: str, value: Span) -> Finding:
     )
 
 
+@problem(
+    "SM611",
+    "file-hides-module",
+    Severity.ERROR,
+    effect="the program imports its own file in place of that one, so none is generated",
+)
+def hiding_file(span: Span, file: str, hidden: str, name: str) -> Finding:
+    """A generated file has the name of a module that programs import.
+
+    Python searches the folder of a program first. A program `threading.py` ends when it starts, and
+    so does each other program in its folder.
+
+    Exactly: the names of all modules of the standard library but `wave`, `turtle`, `pipes` and
+    `chunk`, of SMACH and ROS, and of the modules that the program imports, also of your classes.
+    Upper and lower case do not differ: some file systems treat them as equal. Files of other
+    targets may have these names; in C++, SM601 reports a header of a class that has the name of the
+    generated one.
+
+    Wrong:
+        name: threading
+        template: Base
+        outcomes: [done]
+        states:
+          - WAIT: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+
+    Right:
+        name: threading_task
+        template: Base
+        outcomes: [done]
+        states:
+          - WAIT: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+    """
+    return Finding(
+        span=span,
+        message=f"the file `{file}` of this machine hides the module `{hidden}`",
+        arguments=(file, name),
+        help=f"write another `name`, such as `{name}_task`",
+    )
+
+
 PROBLEMS: tuple[Problem[...], ...] = (
     unsupported_by_target,
     no_code_for_target,
@@ -683,5 +723,6 @@ PROBLEMS: tuple[Problem[...], ...] = (
     code_not_found,
     bad_class,
     fixed_param,
+    hiding_file,
 )
 """The problems of this module, in the order of their codes."""

@@ -18,7 +18,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import Parameter
 from smachac.ir.nodes import Container, Leaf, Machine, Remap, StateType
 from smachac.ir.script_paths import plain_paths
-from smachac.ir.traversal import remapping, walk
+from smachac.ir.traversal import enclosing, remapping, walk
 from smachac.targets.errors import Difference, interfaces_differ
 from smachac.targets.interface_check import Load
 
@@ -127,18 +127,17 @@ def _uses(machine: Machine) -> tuple[dict[str, list[_Use]], dict[str, str]]:
     """The states of each type, and the type of each path in the script."""
     uses: dict[str, list[_Use]] = {}
     paths: dict[str, str] = {}
-    containers: dict[str, Container] = {}
+    around = enclosing(machine.root)
     plain = plain_paths(machine.root)
     for path, node in walk(machine.root):
         if not isinstance(node, Leaf):
-            containers[path] = node
             continue
-        above = path.rpartition("/")[0]
+        above, container = around[path]
         remaps = [*node.remaps]
-        while containers[above].sugar:
-            remaps += containers[above].remaps
-            above = above.rpartition("/")[0]
-        uses.setdefault(node.type, []).append(_Use(node, containers[above], remaps))
+        while container.sugar:
+            remaps += container.remaps
+            above, container = around[above]
+        uses.setdefault(node.type, []).append(_Use(node, container, remaps))
         paths[plain.get(path, path)] = node.type
     return uses, paths
 

@@ -15,6 +15,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.wording import quote
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node
 from smachac.ir.script_paths import script_paths
@@ -25,6 +26,9 @@ from smachac.verify.trace_report import JudgedTrace
 
 REPEATED = frozenset(["HEARTBEAT", "Initial state", "REMOTE_INIT"])
 """The `info` of statuses that no change of a container has caused."""
+
+LONGEST_INFO = 100_000
+"""The most characters of an `info` that is read."""
 
 NO_STATE = "None"
 """The label that a StateMachine has as its active state while it does not run."""
@@ -51,7 +55,7 @@ def status_of(fields: Mapping[str, Any], stamp: float) -> Status | None:
     if info in REPEATED:
         return None
     try:  # the arguments of the callback: `(['A'],)`, at the end `(['A'], 'done')`
-        arguments = ast.literal_eval(info)
+        arguments = ast.literal_eval(info) if len(info) <= LONGEST_INFO else None
     except (ValueError, SyntaxError, RecursionError, MemoryError):
         arguments = None  # SMACH's own server writes them in another form
     outcome = None
@@ -127,13 +131,14 @@ class _Acceptor:
         """Accept the next status. Raises _NotAllowedError."""
         path, node = status.path, self._nodes.get(status.path)
         if node is None or isinstance(node, Leaf):
-            message = f"the script has no container `{path}`"
+            message = f"the script has no container {quote(path)}"
             raise _NotAllowedError(message, self._root.span)
         names = [child.name for child in node.children]
         active = tuple(each for each in status.active if each in names or each != NO_STATE)
         for label in active:
             if label not in names:
-                raise _NotAllowedError(f"the script has no state `{path}/{label}`", node.span)
+                message = f"the script has no state {quote(f'{path}/{label}')}"
+                raise _NotAllowedError(message, node.span)
         if not status.complete:
             return
         if status.outcome is not None:
@@ -144,7 +149,7 @@ class _Acceptor:
             self._go_on(path, node, active)
 
     def _name(self, path: str) -> str:
-        return f"`{self._shown.get(path, path)}`"
+        return quote(self._shown.get(path, path))
 
     def _start(self, path: str, node: Container, active: tuple[str, ...]) -> None:
         parent, _, name = path.rpartition("/")
@@ -192,7 +197,9 @@ class _Acceptor:
         stopped = {PREEMPTED} if ends_preempted(node) else set()
         target = f"{path}:{outcome}"
         if outcome not in {*outcome_names(node), *stopped}:
-            message = f"{self._name(path)} ends with `{outcome}`, which is none of its outcomes"
+            message = (
+                f"{self._name(path)} ends with {quote(outcome)}, which is none of its outcomes"
+            )
             raise _NotAllowedError(message, node.span)
         if before == () and path in self.outcomes:
             raise _NotAllowedError(f"{self._name(path)} has ended already", node.span)
@@ -219,9 +226,9 @@ class _Acceptor:
             raise _NotAllowedError(message, child.span)
         if not found:
             reached = self._shown.get(target, target)
-            what = f"`{ended}`" if ended is not None else "no outcome"
+            what = quote(ended) if ended is not None else "no outcome"
             verb = "does not lead" if ended is not None else "leads"
-            message = f"{what} of {self._name(left)} {verb} to `{reached}`"
+            message = f"{what} of {self._name(left)} {verb} to {quote(reached)}"
             raise _NotAllowedError(message, child.span)
         if len(found) == 1:
             self._cover(left, "transition", target)

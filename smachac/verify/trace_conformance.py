@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.wording import quote
 from smachac.interpreter.result import Event
 from smachac.ir import nodes
 from smachac.ir.concurrence_rules import outcome_of
@@ -100,7 +101,7 @@ class Acceptor:
             while near not in self._nodes and "/" in near:
                 near = near.rpartition("/")[0]
             span = self._nodes.get(near, self._root).span
-            return Violation(at, f"the script has no state `{path}`", span)
+            return Violation(at, f"the script has no state {quote(path)}", span)
         try:
             if node is self._root and kind in ("enter", "exit", "transition"):
                 raise _NotAllowedError(
@@ -112,7 +113,7 @@ class Acceptor:
         return None
 
     def _name(self, path: str) -> str:
-        return f"`{self._shown.get(path, path)}`"
+        return quote(self._shown.get(path, path))
 
     def _run(self, path: str) -> _Run:
         run = self._runs.get(path)
@@ -219,7 +220,7 @@ class Acceptor:
         if isinstance(around, Concurrence | Leaf):
             raise _NotAllowedError(f"{self._name(path)} is a branch: it has no transitions")
         if run.previous != (name, outcome) or run.running:
-            raise _NotAllowedError(f"{self._name(path)} has not ended with `{outcome}`")
+            raise _NotAllowedError(f"{self._name(path)} has not ended with {quote(outcome)}")
         targets = self._targets(parent, around, node, outcome)
         found = {
             f"{parent}/{target}" if inside else f"{parent}:{target}": (target, inside)
@@ -229,7 +230,7 @@ class Acceptor:
             to = shown_path(event["to"], self._shown)
             right = " or ".join(f"`{shown_path(each, self._shown)}`" for each in sorted(found))
             raise _NotAllowedError(
-                f"`{outcome}` of {self._name(path)} leads to `{to}`, in the script to"
+                f"{quote(outcome)} of {self._name(path)} leads to {quote(to)}, in the script to"
                 f" {right or 'nothing'}"
             )
         run.target = found[event["to"]]
@@ -274,7 +275,7 @@ class Acceptor:
         around = self._nodes.get(path.rpartition("/")[0])
         if event["key"] in outputs or unrestricted or isinstance(around, Iterator):
             return
-        raise _NotAllowedError(f"`{event['key']}` is not an output key of {self._name(path)}")
+        raise _NotAllowedError(f"{quote(event['key'])} is not an output key of {self._name(path)}")
 
     def _preempt(self, path: str, node: Node, event: Event) -> None:
         parent = path.rpartition("/")[0]
@@ -316,11 +317,11 @@ class Acceptor:
 
 def _outcome_words(name: str, outcome: str, allowed: frozenset[str]) -> str:
     if not allowed:
-        return f"{name} ends with `{outcome}`, but an exception has ended it"
+        return f"{name} ends with {quote(outcome)}, but an exception has ended it"
     if len(allowed) == 1:
-        return f"{name} ends with `{outcome}`, in the script with `{min(allowed)}`"
+        return f"{name} ends with {quote(outcome)}, in the script with `{min(allowed)}`"
     names = ", ".join(f"`{each}`" for each in sorted(allowed))
-    return f"{name} ends with `{outcome}`, which is none of its outcomes: {names}"
+    return f"{name} ends with {quote(outcome)}, which is none of its outcomes: {names}"
 
 
 _ACCEPT = {

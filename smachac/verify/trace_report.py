@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
+from smachac.diagnostics.wording import quote
 from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
+from smachac.runtime.tracing.writer import LONGEST_LINE, LONGEST_NAME
 from smachac.verify.coverage import Coverage, CoverageItem
 from smachac.verify.result import MOST_MISSING, item_text, place
 from smachac.verify.trace_conformance import Acceptor
@@ -53,6 +55,8 @@ class _BadLineError(Exception):
 
 def read_event(line: str) -> Event:
     """The event in a line of a trace. Raises _BadLineError."""
+    if len(line) > LONGEST_LINE:
+        raise _BadLineError(f"this line has more than {LONGEST_LINE:,} characters")
     try:
         event = json.loads(line)
     except (ValueError, RecursionError):
@@ -61,10 +65,12 @@ def read_event(line: str) -> Event:
         raise _BadLineError("this line is not an event of a trace")
     kind = event["event"]
     if kind not in FIELDS:
-        raise _BadLineError(f"`{kind}` is not a kind of event: {', '.join(FIELDS)}")
+        raise _BadLineError(f"{quote(kind)} is not a kind of event: {', '.join(FIELDS)}")
     for name in ("path", *FIELDS[kind]):
         if not isinstance(event.get(name), str):
             raise _BadLineError(f"the event `{kind}` has no text `{name}`")
+        if len(event[name]) > LONGEST_NAME:
+            raise _BadLineError(f"its `{name}` has more than {LONGEST_NAME:,} characters")
     return event
 
 
@@ -73,7 +79,8 @@ def judge_trace(
 ) -> JudgedTrace:
     """Judge one trace; `record` receives its allowed events, with full paths.
 
-    A last line without a line break is the rest of a write that was interrupted; it may be torn.
+    A last line without a line break is the rest of a write that was interrupted; it may be torn. Of
+    a line that is too long, `lines` may have only the first `LONGEST_LINE + 1` characters.
     """
     acceptor = Acceptor(machine)
     events = 0
@@ -84,7 +91,7 @@ def judge_trace(
         try:
             event = acceptor.full(read_event(line))
         except _BadLineError as error:
-            if line.endswith("\n"):
+            if line.endswith("\n") or len(line) > LONGEST_LINE:
                 fault = number, str(error), None
             break
         violation = acceptor.accept(events, event)

@@ -62,7 +62,10 @@ class Control:
         """A machine is ready to start."""
         with self._changed:
             self._request_stop = request_stop
+            stopping = self._stopping
             self._report()
+        if stopping:
+            request_stop()
 
     def before(self, path: str, outcomes: Sequence[str]) -> str | None:
         """Wait if the run is paused or the state has a breakpoint."""
@@ -190,10 +193,14 @@ class Control:
         waiting.answer, waiting.free = outcome, True
 
     def _stop(self) -> None:
-        """Send the request to stop, from this thread: a machine may pass it on at once."""
+        """Send the request to stop, from this thread: a machine may pass it on at once. A machine
+        that is not ready yet gets it when it is."""
         with self._changed:
+            if self._ended:
+                raise ControlError("the run has ended")
             request = self._request_stop
-            if request is None or self._ended:
-                raise ControlError("no machine runs")
-        request()
+            if request is None:
+                self._stopping = True
+        if request is not None:
+            request()
         self.release()  # after the request, which the state that waits must find

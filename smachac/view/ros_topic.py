@@ -14,6 +14,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Protocol
 
+from smachac.runtime.tracing.writer import LONGEST_LINE
+
 Fields = Mapping[str, Any]
 
 STATUS_TOPIC = "/smach/container_status"
@@ -120,6 +122,8 @@ class Ros2Topic:
             return
 
     def _on_text(self, message: Any) -> None:
+        if len(message.data) > LONGEST_LINE:
+            return
         try:
             fields = json.loads(message.data)
         except ValueError:

@@ -30,6 +30,10 @@ LONGEST_BODY = 1_000_000
 MOST_READERS = 50
 """The most bytes of an action, and the most streams at a time."""
 
+LONGEST_FIELD, MOST_ITEMS = 10_000, 1_000
+"""The most characters of a text in an action, a path or a name, and the most items of a list. Only
+`diff`, the patch that was seen, is longer."""
+
 PATIENCE = 15.0
 """Seconds that one write to a reader, or the reading of one request, may take."""
 
@@ -214,8 +218,11 @@ class _Handler(BaseHTTPRequestHandler):
                 body = json.loads(self.rfile.read(int(length)))
             except (ValueError, RecursionError):
                 body = None
-            if isinstance(body, dict):
+            if isinstance(body, dict) and _is_short(body):
                 return body
+            if isinstance(body, dict):
+                self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "a field of the body is too long")
+                return None
             self._refuse(HTTPStatus.BAD_REQUEST, "the body is not a JSON object")
         return None
 
@@ -271,3 +278,18 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: object) -> None:
         """Nothing is logged: the terminal belongs to the run."""
+
+
+def _is_short(body: Mapping[str, Any]) -> bool:
+    """Whether the fields of an action, and what is in them, are within the limits."""
+    todo: list[object] = [{name: None if name == "diff" else body[name] for name in body}]
+    while todo:
+        part = todo.pop()
+        if isinstance(part, str) and len(part) > LONGEST_FIELD:
+            return False
+        if isinstance(part, list | dict):
+            if len(part) > MOST_ITEMS:
+                return False
+            todo += part
+            todo += part.values() if isinstance(part, dict) else ()
+    return True

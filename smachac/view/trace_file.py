@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+from smachac.runtime.tracing.writer import LONGEST_LINE
 from smachac.targets.html.trace import read_event
 from smachac.view.feed import Feed
 from smachac.view.live import BATCH
@@ -26,7 +27,8 @@ class TraceText:
 
     def add(self, data: bytes) -> None:
         """Publish the events of the lines that are complete."""
-        *lines, self._rest = (self._rest + data).split(b"\n")
+        *lines, rest = (self._rest + data).split(b"\n")
+        self._rest = rest[: LONGEST_LINE + 1]  # of a longer line, which is no event
         events: list[Any] = []
         for line in lines:
             if not line.strip():

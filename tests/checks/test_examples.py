@@ -14,6 +14,7 @@ from smachac.driver import CODES, analyse, build
 from smachac.frontend.files import disk_library, read_source
 from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import load_target
+from smachac.targets.hiding_files import hiding_files
 
 EVERY = [pytest.param(CODES[name], id=name) for name in sorted(CODES)]
 
@@ -45,7 +46,8 @@ def judged(files: Mapping[str, str], folder: Path, target_name: str = "python") 
     assert target is not None
     found = analysis.report
     if analysis.checked is not None:
-        build(analysis.checked, target, library, found)
+        files = build(analysis.checked, target, library, found)
+        found.extend(hiding_files(files, analysis.checked))
     return found
 
 

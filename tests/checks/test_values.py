@@ -440,7 +440,7 @@ arms:
   bare: {joints: [shoulder], tool: hand, home: [0.0]}
   grip:
     joints: [elbow]
-    tool: hand
+    tool: lower
     home: [0.0]
     gripper: {joints: {finger: {open: 0.04}}, width: {open: 0.08, closed: 0.0}}
 """

@@ -257,6 +257,9 @@ def test_git_has_its_own_mind(
     assert "not a git repository" in capsys.readouterr().err
     git("init", "-q")
     assert main(["check", "main.yml", "--changed-since=--output=x"]) == 2
+    assert "the git repository has no commits" in capsys.readouterr().err
+    git("commit", "-q", "--allow-empty", "-m", "x")
+    assert main(["check", "main.yml", "--changed-since=--output=x"]) == 2
     assert "git has no revision `--output=x`" in capsys.readouterr().err
     monkeypatch.setenv("PATH", str(folder))
     assert main(["check", "main.yml", "--changed-since", "HEAD"]) == 2

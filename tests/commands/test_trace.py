@@ -182,3 +182,35 @@ def test_the_graph_shows_the_statistics(recorded: Path, capsys: pytest.CaptureFi
         line for line in found.splitlines() if line.strip().startswith('"sm/A" -> "sm=lost"')
     ]
     assert "bad 50.0 %" in edge
+
+
+WRITE = '{"seq": 4, "event": "write", "path": "sm/A", "key": "k", "value": %s}'
+ENTER = '{"seq": 4, "event": "enter", "path": "sm%s"}'
+LONG_LINES = {
+    "value": (WRITE % ("[" + "[]," * 2_000_000 + "[]]"), "this line has more than 4,000,000"),
+    "text": (WRITE % f'"{"x" * 5_000_000}"', "this line has more than 4,000,000"),
+    "no JSON": ("x" * 5_000_000, "this line has more than 4,000,000"),
+    "path": (ENTER % ("/a" * 1_000_000), "its `path` has more than 10,000 characters"),
+    "quoted": (ENTER % ("/a" * 4_000), "/a/a` (8002 characters)"),
+    "kind": ('{"event": "' + "a" * 100_000 + '", "path": "sm"}', "a` (100000 characters) is not"),
+}
+
+
+@pytest.mark.parametrize(("line", "message"), LONG_LINES.values(), ids=LONG_LINES)
+def test_a_long_line_is_refused_in_a_few_words(
+    recorded: Path, capsys: pytest.CaptureFixture[str], line: str, message: str
+) -> None:
+    first = recorded.read_text().splitlines(keepends=True)[0]
+    recorded.write_text(f"{first}{line}\n")
+    assert main(["trace", "check", "main.yml", "run.jsonl"]) == 1
+    shown = capsys.readouterr().out
+    assert f"run.jsonl:2: {'' if '`' in message else message}" in shown
+    assert message in shown
+    assert len(shown) < 1500
+    assert main(["trace", "stats", "main.yml", "run.jsonl"]) == 1
+    assert len(capsys.readouterr().err) < 1000
+
+
+def test_a_long_line_is_refused_at_the_end_of_a_trace_too(recorded: Path) -> None:
+    recorded.write_text(f"{recorded.read_text()}{LONG_LINES['text'][0]}")
+    assert main(["trace", "check", "main.yml", "run.jsonl"]) == 1

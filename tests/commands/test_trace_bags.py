@@ -149,11 +149,123 @@ def test_a_broken_bag(
     assert "the trace bag cannot be read: it is broken: " in line
 
 
-@pytest.mark.parametrize("text", ["", "[", "{}", "rosbag2_bagfile_information: {version: 5}"])
-def test_broken_metadata(text: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def allowed(capsys: pytest.CaptureFixture[str], bag: str = "bag") -> str:
+    """The notes of a check of a bag with one allowed run."""
+    assert main(["trace", "check", "main.yml", bag]) == 0
+    shown = capsys.readouterr()
+    assert shown.out.endswith(ALLOWED)
+    return shown.err
+
+
+KILLED = """\
+rosbag2_bagfile_information:
+  version: 9
+  storage_identifier: ""
+  relative_file_paths: []
+  topics_with_message_count: []
+"""
+"""What rosbag2 has written when it begins to record."""
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+@pytest.mark.parametrize(
+    "text", ["", "[", "{}", "rosbag2_bagfile_information: {version: 5}", KILLED, None]
+)
+def test_metadata_that_cannot_be_used(
+    text: str | None, storage: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_bag(folder / "bag", storage, {(TOPIC, TEXT_TYPE): texts()})
+    metadata = folder / "bag" / "metadata.yaml"
+    metadata.unlink() if text is None else metadata.write_text(text, "utf-8")
+    (note,) = allowed(capsys).splitlines()
+    begin = "is missing" if text is None else "cannot be used ("
+    assert note.startswith(f"note: bag: metadata.yaml {begin}")
+    assert note.endswith("the files are read one by one; this writes it: ros2 bag reindex bag")
+
+
+def test_the_files_of_a_split_bag_are_read_in_their_order(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for number, part in ((2, RUN[:2]), (10, RUN[2:])):
+        write_bag(folder / "part", "mcap", {(TOPIC, TEXT_TYPE): texts(part)})
+        (folder / "bag").mkdir(exist_ok=True)
+        (folder / "part" / "part.mcap").rename(folder / "bag" / f"bag_{number}.mcap")
+        (folder / "part" / "metadata.yaml").unlink()
+        (folder / "part").rmdir()
+    assert "metadata.yaml is missing" in allowed(capsys)
+
+
+def test_a_folder_without_files(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "bag").mkdir()
+    line = refused(["trace", "check", "main.yml", "bag"], capsys)
+    assert line.endswith("it is a folder without metadata.yaml, so no bag of rosbag2")
+    (folder / "bag" / "metadata.yaml").write_text(KILLED, "utf-8")
+    assert "it is broken: " in refused(["trace", "check", "main.yml", "bag"], capsys)
+
+
+@pytest.mark.parametrize("path", ["bag", "bag/bag.mcap"])
+def test_a_file_without_its_end_is_read_up_to_it(
+    path: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("mcap")
     write_bag(folder / "bag", "mcap", {(TOPIC, TEXT_TYPE): texts()})
-    (folder / "bag" / "metadata.yaml").write_text(text, "utf-8")
-    assert "is broken: " in refused(["trace", "check", "main.yml", "bag"], capsys)
+    file = folder / "bag" / "bag.mcap"
+    file.write_bytes(file.read_bytes()[:-30])
+    last = allowed(capsys, path).splitlines()[-1]
+    assert f"{path}: bag.mcap is damaged (" in last
+    assert "the 5 statuses before the damage are read" in last
+    assert last.endswith("mcap recover bag.mcap -o new.mcap")
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_a_bag_of_any_length_is_read_or_refused(
+    storage: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_bag(folder / "bag", storage, {(TOPIC, TEXT_TYPE): texts()})
+    (file,) = (each for each in (folder / "bag").iterdir() if each.suffix != ".yaml")
+    content = file.read_bytes()
+    for length in range(0, len(content), 1 + len(content) // 60):
+        file.write_bytes(content[:length])
+        assert main(["trace", "check", "main.yml", "bag"]) in (0, 2), length
+        shown = capsys.readouterr()
+        assert ("damaged (" in shown.err) != ("broken: " in shown.err), length
+
+
+def test_without_mcap(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "mcap.records", None)
+    write_bag(folder / "bag", "mcap", {(TOPIC, TEXT_TYPE): texts()})
+    file = folder / "bag" / "bag.mcap"
+    file.write_bytes(file.read_bytes()[:-30])
+    line = refused(["trace", "check", "main.yml", "bag"], capsys)
+    assert line.endswith("this may save what is left: mcap recover bag.mcap -o new.mcap")
+
+
+@pytest.mark.parametrize("path", ["bag", "bag/bag.db3"])
+def test_a_database_that_was_not_closed(
+    path: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_bag(folder / "bag", "sqlite3", {(TOPIC, TEXT_TYPE): texts()})
+    (folder / "bag" / "bag.db3-wal").write_bytes(b"x")
+    note = allowed(capsys, path)
+    assert note.startswith(f"note: {path}: the last messages may be in bag.db3-wal, which is not")
+    assert note.endswith("sqlite3 bag.db3 'PRAGMA wal_checkpoint(TRUNCATE)'\n")
+    (folder / "bag" / "bag.db3-wal").write_bytes(b"")
+    assert allowed(capsys, path) == ""
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_a_topic_without_messages(
+    storage: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_bag(folder / "bag", storage, {(TOPIC, TEXT_TYPE): [], ("/chatter", TEXT_TYPE): texts()})
+    line = refused(["trace", "check", "main.yml", "bag"], capsys)
+    assert line.endswith(f"there are no messages on `{TOPIC}`")
+    other = TOPIC.replace("robot_1", "robot_2")
+    content = {(other, TEXT_TYPE): [], (TOPIC, TEXT_TYPE): texts()}
+    write_bag(folder / "both", storage, content)
+    assert allowed(capsys, "both") == ""
 
 
 @pytest.mark.parametrize("data", ["", "[]", "{}", '{"path": "/sm"}', '{"info": 1, "stamp": "x"}'])
@@ -180,3 +292,26 @@ def test_no_statistics_of_a_bag(
     write_bag(folder / "bag", "mcap", {(TOPIC, TEXT_TYPE): texts()})
     line = refused([*words, "main.yml", "bag"], capsys)
     assert line.endswith("a bag has no outcomes of states to count")
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"userdata": {"k": "x" * 5_000_000}}, "a status in it has more than 4,000,000 characters"),
+        ({"info": "(['A'], " + "[]," * 2_000_000 + ")"}, "has more than 4,000,000 characters"),
+        ({"path": "/sm/" + "a" * 100_000}, "(100003 characters)"),
+        ({"active_states": ["a" * 100_000], "info": "(['A'],)"}, "(100003 characters)"),
+        ({"path": "/" + "a" * 100_000}, "(100001 characters)"),
+    ],
+    ids=["value", "info", "path", "state", "root"],
+)
+def test_a_long_status_is_refused_in_a_few_words(
+    folder: Path, capsys: pytest.CaptureFixture[str], fields: dict[str, object], message: str
+) -> None:
+    status = {"stamp": 1.0, "path": "/sm", "active_states": ["A"], "info": "(['A'],)", **fields}
+    found = {(TOPIC, TEXT_TYPE): [text_message(json.dumps(status))]}
+    write_bag(folder / "bag", "mcap", found)
+    assert main(["trace", "check", "main.yml", "bag"]) in (1, 2)
+    shown = "".join(capsys.readouterr())
+    assert message in shown
+    assert len(shown) < 1000

@@ -34,6 +34,18 @@ states:
   - SIT: {template: SleepState, time: 1000.0, transitions: {succeeded: done, preempted: stopped}}
 """
 
+TIDY = """
+name: wait
+outcomes: [done, stopped]
+states:
+  - SIT: {template: SleepState, time: 1000.0, transitions: {succeeded: stopped, preempted: TIDY}}
+  - TIDY: {template: SleepState, time: 1000.0, transitions: {succeeded: stopped, preempted: DONE}}
+  - DONE: {template: SleepState, time: 0.0, transitions: {succeeded: done, preempted: stopped}}
+"""
+"""After one stop request it goes on for a long time, in TIDY."""
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
 GREETING = """
 name: greeting
 outcomes: [done]
@@ -165,32 +177,76 @@ def test_options_that_make_no_sense(
 
 @pytest.fixture(scope="module")
 def waiting(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A program that waits until somebody asks it to stop."""
+    """A program that waits for a stop request."""
     folder = tmp_path_factory.mktemp("wait")
     (folder / "main.yml").write_text(WAIT)
+    return compiled(folder)
+
+
+@pytest.fixture(scope="module")
+def tidying(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A program that goes on after a stop request."""
+    folder = tmp_path_factory.mktemp("tidy")
+    (folder / "main.yml").write_text(TIDY)
+    return compiled(folder)
+
+
+def compiled(folder: Path) -> Path:
+    """The program of the script in a folder."""
     built(folder, folder / "main.yml", "main=true")
     flags = ["-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
-    program = folder / "wait"
+    program = folder / "program"
     ran("g++", *flags, "-pthread", f"-I{folder}", folder / "main.cpp", "-o", program)
     return program
 
 
 @pytest.mark.slow
-def test_ctrl_c_asks_the_machine_to_stop(waiting: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_stop_signal_preempts_the_machine(waiting: Path, tmp_path: Path, number: int) -> None:
     trace = tmp_path / "trace.jsonl"
     started = subprocess.Popen(
         [waiting, "--trace", trace], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     until_entered(trace, started)
-    started.send_signal(signal.SIGINT)
+    started.send_signal(number)
     out, err = started.communicate(timeout=60)
-    assert (started.returncode, out, err) == (0, "outcome: stopped\n", "")
+    assert (started.returncode, out, err) == (128 + number, "outcome: stopped\n", "")
     assert '"event": "preempt"' in trace.read_text()
+    assert trace.read_text().splitlines()[-1].startswith('{"seq": ')
 
 
-def until_entered(trace: Path, started: subprocess.Popen[str]) -> None:
-    """Wait until a state runs: the trace tells of it at once."""
-    while not (trace.exists() and '"enter"' in trace.read_text()):
+@pytest.mark.slow
+@pytest.mark.parametrize(("first", "second"), [*zip(SIGNALS, SIGNALS[::-1], strict=True)])
+def test_the_second_signal_ends_a_program_at_once(
+    tidying: Path, tmp_path: Path, first: int, second: int
+) -> None:
+    trace = tmp_path / "trace.jsonl"
+    started = subprocess.Popen([tidying, "--trace", trace], stdout=subprocess.PIPE, text=True)
+    until_entered(trace, started)
+    started.send_signal(first)
+    until_entered(trace, started, '"wait/TIDY"')
+    started.send_signal(second)
+    assert (started.communicate()[0], started.returncode) == ("", 128 + second)
+    assert trace.read_text().endswith("\n")
+
+
+@pytest.mark.slow
+def test_sighup_that_nohup_ignores_stays_ignored(waiting: Path, tmp_path: Path) -> None:
+    trace = tmp_path / "trace.jsonl"
+    started = subprocess.Popen(
+        ["sh", "-c", f"trap '' HUP; exec {waiting} --trace {trace}"],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    until_entered(trace, started)
+    started.send_signal(signal.SIGHUP)
+    started.send_signal(signal.SIGTERM)
+    assert (started.communicate()[0], started.returncode) == ("outcome: stopped\n", 143)
+
+
+def until_entered(trace: Path, started: subprocess.Popen[str], event: str = '"enter"') -> None:
+    """Wait until a state runs, or until another event: it is in the trace at once."""
+    while not (trace.exists() and event in trace.read_text()):
         assert started.poll() is None
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import pytest
@@ -23,8 +22,10 @@ states:
   - WAIT: {{template: SleepState, time: 1.0, transitions: {{succeeded: done, preempted: done}}}}
 """
 URDF = """
-<robot name="arm"><link name="base"/><link name="elbow"/><link name="hand"/><link name="pad"/>
-<joint name="turn &quot;a&quot;" type="continuous"><parent link="base"/><child link="elbow"/>
+<robot name="arm"><link name="base"/><link name="lift"/><link name="elbow"/><link name="hand"/>
+<link name="pad"/><joint name="up" type="prismatic"><parent link="base"/><child link="lift"/>
+<axis xyz="0 0 1"/><limit upper="0.6" effort="9" velocity="0.25"/></joint>
+<joint name="turn &quot;a&quot;" type="continuous"><parent link="lift"/><child link="elbow"/>
 <axis xyz="0 0 1"/></joint>
 <joint name="b" type="revolute"><parent link="elbow"/><child link="hand"/><axis xyz="0 1 0"/>
 <limit lower="-1.25" upper="0.1" effort="1" velocity="0.3"/></joint>
@@ -37,12 +38,12 @@ urdf: own.urdf
 base: [[0.1, -0.2, 0.3], [0.0, 0.0, 1.0, 0.0]]
 arms:
   {first}:
-    joints: ['turn "a"', b]
+    joints: [up, 'turn "a"', b]
     tool: {{link: hand, offset: [[0.0, 0.01, 0.155], [0.0, 0.6, 0.0, 0.8]]}}
-    home: [3.0, -1]
+    home: [0.2, 3.0, -1]
     grasp: [[0.0, 0.0, 0.02], [0.0, 1.0, 0.0, 0.0]]
     gripper: {{joints: {{f: {{open: 0.04, closed: 0.01}}}}, width: {{open: 0.085, closed: 0.002}}}}
-  {second}: {{joints: [b], tool: elbow, home: [0.05]}}
+  {second}: {{joints: [up], tool: lift, home: [0.05]}}
 """
 STATION = """
 name: cell
@@ -76,6 +77,7 @@ int main() {{
       for (const double number : {{joint.lower, joint.upper, joint.speed, joint.home}}) {{
         print(number);
       }}
+      print(joint.turns ? "rad" : "m");
     }}
     if (arm.gripper.has_value()) {{
       print(arm.gripper->open);
@@ -125,11 +127,8 @@ def listed(robot: robots.Robot) -> list[str | float]:
         found += [limb.name, limb.tip]
         for pose in (limb.offset, limb.grasp, mounted.base):
             found += [*pose[0], *pose[1]]
-        rows = zip(limb.joints, mounted.limits, mounted.speeds, limb.home, strict=True)
-        for name, (lower, upper), speed, home in rows:
-            # A joint without limits has the limits 0 and -1 in PyBullet, or no speed.
-            lower, upper = (lower, upper) if lower <= upper else (-math.inf, math.inf)
-            found += [name, lower, upper, speed or math.inf, home]
+        for joint, home in zip(mounted.facts, limb.home, strict=True):
+            found += [joint.name, joint.lower, joint.upper, joint.velocity, home, joint.unit]
         if (gripper := limb.gripper) is not None:
             found += [gripper.width[1], gripper.width[0]]
             for finger in gripper.fingers:
@@ -168,18 +167,25 @@ USED = """
 #include "robots/grosse_2.hpp"
 #include "robots/grosse_2.hpp"
 namespace robot = robots::grosse_2;
-static_assert(robot::left_arm.joints.size() == 2 && robot::left_arm.gripper->open == 0.085);
-static_assert(!robot::base_.gripper.has_value() && robot::base_.joints[0].upper == 0.1);
+static_assert(robot::left_arm.joints.size() == 3 && robot::left_arm.gripper->open == 0.085);
+static_assert(!robot::base_.gripper.has_value() && robot::base_.joints[0].upper == 0.6);
+static_assert(!robot::base_.joints[0].turns && robot::left_arm.joints[1].turns);
 static_assert(robot::base.position.z == 0.3);
-static_assert(smachac::within_limits(robot::left_arm, std::array<double, 2>{{-700.0, 0.1}}));
-static_assert(!smachac::within_limits(robot::left_arm, std::array<double, 2>{{0.0, 0.11}}));
+static_assert(smachac::within_limits(robot::left_arm, std::array<double, 3>{{0.6, -700.0, 0.1}}));
+static_assert(!smachac::within_limits(robot::left_arm, std::array<double, 3>{{0.0, 0.0, 0.11}}));
 static_assert(!smachac::within_limits(robot::left_arm, std::array<double, 1>{{0.0}}));
+static bool is_way(std::size_t joint, double from, double to, double way) {
+  return std::fabs(smachac::joint_way(robot::left_arm.joints[joint], from, to) - way) < 1e-9;
+}
 int main() {
-  const std::vector<double> wrong{0.0, std::numeric_limits<double>::quiet_NaN()};
+  const std::vector<double> wrong{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};
   const bool good = smachac::find_arm(robot::arms, std::string("left arm")) == &robot::arms[0] &&
                     smachac::find_arm(robot::arms, std::string("arm")) == nullptr &&
                     smachac::find_arm(robot::arms, std::nullopt) == nullptr &&
-                    !smachac::within_limits(robot::left_arm, wrong);
+                    !smachac::within_limits(robot::left_arm, wrong) &&
+                    is_way(0, 0.1, 7.1, 7.0) && is_way(2, 3.1, -3.1, -6.2) &&
+                    is_way(1, 3.1, -3.1, 0.08318530717958605) &&
+                    is_way(1, 0.0, -13.0, -0.43362938564082735);
   return good ? 0 : 1;
 }
 """

@@ -38,9 +38,7 @@ def project() -> dict[str, Any]:
 
 
 def name(requirement: str) -> str:
-    """The distribution of a requirement; `ruamel.yaml[libyaml]` is required for its parser."""
-    if requirement.startswith("ruamel.yaml[libyaml]"):
-        return "ruamel.yaml.clibz"
+    """The distribution of a requirement."""
     return re.split(r"[\[<>=;! ]", requirement)[0]
 
 

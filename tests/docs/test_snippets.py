@@ -10,7 +10,6 @@ from typing import get_args
 
 import jsonschema
 import pytest
-from ruamel.yaml import YAML
 
 import smachac
 from smachac.commands.cli import COMMANDS, command_line, main
@@ -19,6 +18,7 @@ from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
 from smachac.frontend.robots import DataKind, check_data_file
 from smachac.report.json_schema import scenario_schema
+from smachac.robots.files import plain
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
@@ -30,7 +30,7 @@ FRAGMENTS = {
     "cpp": 1,
     "language": 9,
     "properties": 1,
-    "robots": 10,
+    "robots": 11,
     "ros": 2,
     "semantics": 13,
     "state_types": 2,
@@ -144,8 +144,11 @@ def faults_of_interface(text: str, folder: Path) -> list[str]:
 
 
 def faults_of_data(text: str, kind: DataKind, folder: Path) -> list[str]:
-    """The findings in a file of a robot, a scene or faults."""
+    """The findings in a file of a robot, a scene or faults, beside the robots of the page."""
     report: Report = []
+    for other, robot in blocks(ROOT / "docs" / "robots.md"):
+        if other == "xml":
+            (folder / robot.split()[1]).write_text(robot, "utf-8")
     source = Source(str(folder / "fragment.yml"), text)
     check_data_file(source, kind, disk_library(folder, []), report)
     return [f"{each.code} {each.message}" for each in report]
@@ -153,7 +156,7 @@ def faults_of_data(text: str, kind: DataKind, folder: Path) -> list[str]:
 
 def faults_of_scenario(text: str) -> list[str]:
     """What the schema of scenarios says against a scenario."""
-    data = YAML(typ="safe", pure=True).load(text)
+    data = plain(text)
     validator = jsonschema.Draft7Validator(scenario_schema())
     return [error.message for error in validator.iter_errors(data)]
 

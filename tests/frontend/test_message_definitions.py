@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.files import disk_library, installed_packages
+from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library, memory_library
 from smachac.frontend.message_definitions import (
     TypeName,
@@ -26,6 +26,7 @@ from smachac.ir.message_types import (
     Message,
     userdata_type,
 )
+from smachac.robots.files import installed_packages
 
 NOTHING = Library(script=lambda name, caller: None, template=lambda name: None)
 

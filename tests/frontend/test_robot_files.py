@@ -124,7 +124,7 @@ def test_a_mistake_is_a_diagnostic_with_its_place(
         ),
         (
             ARM.replace("[a, b]", "[a]").replace("urdf: arm.urdf", ""),
-            "add `urdf: ...` (the URDF file: beside this file, or in PyBullet's data)",
+            "add `urdf: ...` (the URDF or xacro file: beside this file, or in PyBullet's data)",
         ),
     ],
 )

@@ -137,7 +137,7 @@ def test_firm_errors_outlast_a_project(tmp_path: Path) -> None:
     [
         ('[severity]\nXY = "off"', (2, 1), "use one of"),
         ('[severity]\nSM201 = "of"', (2, 9), "did you mean `off`?"),
-        ('[severity]\nSM201 = 3', (2, 9), "use one of"),
+        ("[severity]\nSM201 = 3", (2, 9), "write one of"),
         ('severity = "off"', (1, 1), "[severity]"),
         ('[severity]\n"SM101" = "warning"', (2, 1), "remove the line"),
         ("[severities]\nSM201 = 1", (1, 2), "did you mean `severity`?"),

@@ -204,3 +204,10 @@ def test_limits_leave_room() -> None:
 
 def test_the_functions_are_those_of_the_language() -> None:
     assert sorted(FUNCTIONS) == sorted(FUNCTION_NAMES)
+
+
+@pytest.mark.parametrize("base", ["0", "1", "-1"])
+@pytest.mark.parametrize("exponent", ["10001", "10 ** 9", "10 ** 9 + 1"])
+def test_powers_that_stay_small_have_no_limit(base: str, exponent: str) -> None:
+    text = f"({base}) ** ({exponent})"
+    assert value_of(text) == eval(text)

@@ -94,6 +94,6 @@ def test_words_that_name_no_type_are_found(text: str, words: tuple[str, ...]) ->
 
 def test_plain_words_need_no_parser() -> None:
     code = "import sys; from smachac.ir.types import parse_type; print(parse_type('pkg/Pose'))"
-    code += "; print('lark' in sys.modules)"
+    code += "; print('smachac.grammars.standalone.lalr' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["pkg/Pose", "False"]

@@ -21,10 +21,8 @@ SECONDS = 10
 CHILD = """
 import resource, sys
 resource.setrlimit(resource.RLIMIT_CPU, (int(sys.argv[1]), int(sys.argv[1])))
-if sys.argv[2] == "pure":
-    sys.modules["ruamel.yaml.cyaml"] = None
 from smachac.commands.cli import main
-sys.exit(max(main(command.split()) for command in sys.argv[3:]))
+sys.exit(max(main(command.split()) for command in sys.argv[2:]))
 """
 
 COMMANDS = ("check main.yml", "build --target python main.yml", "migrate .")
@@ -87,12 +85,11 @@ def first_quick(texts: Iterable[str]) -> list[ParameterSet]:
     ]
 
 
-def run(folder: Path, *commands: str, pure: bool = False) -> None:
-    """Run commands in a folder, all in one process; fail where its limit ends it. `pure`: without
-    the YAML parser in C."""
+def run(folder: Path, *commands: str) -> None:
+    """Run commands in a folder, all in one process; fail where its limit ends it."""
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     done = subprocess.run(
-        [sys.executable, "-c", CHILD, str(SECONDS), "pure" if pure else "fast", *commands],
+        [sys.executable, "-c", CHILD, str(SECONDS), *commands],
         cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=300,
     )  # fmt: skip
     assert done.returncode in (0, 1), (done.returncode, done.stderr[-500:])
@@ -112,13 +109,12 @@ def test_templates(text: str, tmp_path: Path) -> None:
     run(tmp_path, *COMMANDS)
 
 
-@pytest.mark.parametrize("pure", [False, pytest.param(True, marks=pytest.mark.nightly)])
 @pytest.mark.parametrize("text", SCRIPTS)
 @pytest.mark.slow
-def test_scripts(text: str, pure: bool, tmp_path: Path) -> None:
+def test_scripts(text: str, tmp_path: Path) -> None:
     write(tmp_path, "main.yml", SCRIPTS[text])
     write(tmp_path, "templates/Own.tpl.py", "{% extends 'State.tpl.py' %}\n" + STATE)
-    run(tmp_path, *COMMANDS, pure=pure)
+    run(tmp_path, *COMMANDS)
 
 
 @pytest.mark.parametrize("text", SETTINGS)

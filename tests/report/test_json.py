@@ -49,6 +49,7 @@ BARE = diagnostic(Finding(span=NOWHERE, message="x"), Severity.WARNING)
 def test_a_report_in_full() -> None:
     assert render_json([FULL]) == dedent("""\
         {
+          "clusters": [],
           "counts": {
             "error": 1,
             "info": 0,

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, get_args
 
 import pytest
-from ruamel.yaml import YAML
 
 from smachac.commands.cli import main
 from smachac.commands.schema import SCHEMAS, schema_text
@@ -27,6 +26,7 @@ from smachac.frontend.schema import (
 from smachac.ir import nodes
 from smachac.ir.nodes import Container
 from smachac.report.json_schema import SHAPES, generated_schemas
+from smachac.robots.files import plain
 from tests.support.json_schema import faults
 
 GENERATED = {name: make() for name, make in generated_schemas(CODES).items()}
@@ -137,7 +137,7 @@ def test_bad_scripts_do_not(data: Any) -> None:
 
 @pytest.mark.parametrize("path", YAML_FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_files_of_the_repository_fit(path: Path) -> None:
-    data = YAML(typ="safe", pure=True).load(path.read_text("utf-8"))
+    data = plain(path.read_text("utf-8"))
     assert faults(data, GENERATED[kind(path)]) == []
 
 

@@ -14,7 +14,8 @@ from typing import Any
 
 import jsonschema
 import pytest
-from ruamel.yaml import YAML
+
+from smachac.robots.files import plain
 
 ROOT = Path(__file__).parents[2]
 BROKEN = (
@@ -25,7 +26,7 @@ RIGHT = BROKEN.replace("doen", "done")
 
 
 def load(text: str) -> Any:
-    return YAML(typ="safe", pure=True).load(text)
+    return plain(text)
 
 
 def snippets() -> dict[str, Any]:
@@ -154,7 +155,7 @@ def make_hostile(folder: Path) -> None:
     """A repository with an error in its script and modules of the names that a check imports."""
     folder.mkdir()
     (folder / "main.yml").write_text(BROKEN)
-    for name in ("argparse", "json", "re", "venv", "pip", "ruamel", "sitecustomize", "typing"):
+    for name in ("argparse", "json", "re", "venv", "pip", "yaml", "sitecustomize", "typing"):
         (folder / f"{name}.py").write_text(PASSES)
     for package in ("smachac", "smachac/commands"):
         (folder / package).mkdir()

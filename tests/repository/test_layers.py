@@ -31,13 +31,13 @@ PACKAGES: Mapping[str, frozenset[str]] = {
     "runtime": frozenset(
         {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs"}
     ),
-    "robots": frozenset({"ruamel"}),
+    "robots": frozenset({"yaml", "xacro"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),
 }
 """The rooms that generated programs stand on, with the packages that they may import."""
 
 HEAVY = {
-    *("networkx", "lark", "jinja2", "pybullet", "pybullet_data", "numpy", "PIL"),
+    *("networkx", "jinja2", "pybullet", "pybullet_data", "numpy", "PIL"),
     *("pygls", "lsprotocol", "ray"),
 }
 """Packages slow to load: imported inside the functions that use them, or for types alone."""
@@ -268,7 +268,7 @@ def test_a_package_that_its_own_module_imports_is_a_circle() -> None:
     "text",
     [
         "import networkx as nx",
-        "class A:\n    from lark import Lark",
+        "class A:\n    from numpy import array",
         "try:\n    import PIL.Image\nexcept ImportError:\n    pass",
         "if TYPE_CHECKING:\n    pass\nelse:\n    import numpy",
     ],
@@ -282,7 +282,7 @@ def test_heavy_packages_at_the_top_are_found(text: str) -> None:
     [
         "def f():\n    import networkx",
         "class A:\n    async def f(self):\n        from jinja2 import Environment",
-        "import typing\nif typing.TYPE_CHECKING:\n    from lark import Tree",
+        "import typing\nif typing.TYPE_CHECKING:\n    from numpy import array",
         "import json",
     ],
 )

@@ -22,6 +22,7 @@ LONGEST_FUNCTION = 70
 TOUCHES = {
     "smachac/frontend/files.py": "reads scripts, templates and project files",
     "smachac/frontend/standard_messages.py": "reads the definitions of common packages of ROS",
+    "smachac/runtime/signals.py": "replaces the streams of a terminal that was closed",
     "smachac/targets/python/runner.py": "runs what was built, and keeps its output",
     "smachac/verify/players/python.py": "runs what was built, and keeps its output off the report",
     "smachac/verify/players/python_file.py": "runs what a file builds, as python.py does",
@@ -31,6 +32,10 @@ TOUCHES = {
     "smachac/runtime/smach_ros2/program.py": "prints why ROS refuses to start",
     "smachac/__main__.py": "reports Ctrl-C before the command line is imported",
     "smachac/robots/files.py": "reads descriptions of robots and scenes",
+    "smachac/robots/xacro_process.py": "reads macro files of robots, as a program of its own",
+    "smachac/sim/loading.py": "writes the texts for the physics engine to a temporary folder",
+    "smachac/sim/robot_file.py": "reads the URDF files of robots and bodies",
+    "smachac/sim/trial.py": "reports its progress, as a program of its own",
     "smachac/sim/video.py": "writes films",
     "smachac/sweep/local.py": "drops what the runs print",
     "smachac/sim/physics.py": "keeps the physics engine's banner off the streams",
@@ -51,8 +56,10 @@ ABSOLUTE = re.compile(r"(?<![\w.<])/(?:home|mnt|root|tmp|work|Users)/\w")
 
 
 def modules() -> list[Path]:
-    """The modules of the package: a name with a dot in it, as `Name.tpl.py`, is a template."""
-    return [path for path in sorted((ROOT / "smachac").rglob("*.py")) if "." not in path.stem]
+    """The modules of the package: a name with a dot in it, as `Name.tpl.py`, is a template. The
+    parsers that scripts/parsers.py writes are not among them."""
+    found = [path for path in sorted((ROOT / "smachac").rglob("*.py")) if "." not in path.stem]
+    return [path for path in found if path.parent.name != "standalone"]
 
 
 parsed = functools.cache(ast.parse)

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from smachac.robots import description, fields, scene
-from smachac.robots.description import Description, Station, UrdfJoint
+from smachac.robots import description, fields, scene, urdf
+from smachac.robots.description import Description, Station
 from smachac.robots.fields import DataError
 from smachac.robots.files import BUILT_IN, built_in, plain
 
@@ -24,8 +24,14 @@ arms:
       joints: {f: {open: 0.04}}
       width: {open: 0.08, closed: 0}
 """
-JOINTS = {"a": UrdfJoint(-1, 1, True), "b": UrdfJoint(-2, 2, True), "f": UrdfJoint(0, 0.04, False)}
-LINKS = ("base", "hand")
+URDF = urdf.read("""<robot name="r">
+<link name="base"/><link name="arm"/><link name="hand"/><link name="pad"/>
+<joint name="a" type="revolute"><parent link="base"/><child link="arm"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<joint name="b" type="revolute"><parent link="arm"/><child link="hand"/>
+<limit lower="-2" upper="2" effort="1" velocity="1"/></joint>
+<joint name="f" type="prismatic"><parent link="hand"/><child link="pad"/>
+<limit lower="0" upper="0.04" effort="1" velocity="1"/></joint></robot>""")  # fmt: skip
 
 
 def changed(text: str, place: tuple[str | int, ...], value: Any) -> Any:
@@ -46,7 +52,7 @@ def mistake(data: Any) -> DataError | None:
     try:
         found = description.read(copy.deepcopy(data))
         assert isinstance(found, Description)
-        description.check(found, JOINTS, LINKS)
+        description.check(found, URDF)
     except DataError as error:
         return error
     return None

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ruamel.yaml import YAML
 
 from smachac.robots import description, scene
 from smachac.robots import faults as faults_of
@@ -160,7 +159,7 @@ def test_the_files_of_the_page_fit() -> None:
     blocks = [each.partition("\n```")[0] for each in page.split("```yaml\n")[1:]]
     found = []
     for block in blocks:
-        data = YAML(typ="safe", pure=True).load(block)
+        data = plain(block)
         schema = {"arms": description.SCHEMA, "parts": description.SCHEMA, "bodies": scene.SCHEMA,
                   "faults": faults_of.SCHEMA}  # fmt: skip
         for key in schema.keys() & data.keys():

@@ -97,7 +97,7 @@ def test_an_order_moves_the_start_but_what_came_pickled_is_dropped(
     observer = graph.node("observer", str(trap))
     observer.expect("status /ROOT ")
     observer.say("/ROOT/INNER THREE bomb")
-    program.expect("unpickling it may run any code")
+    program.expect("is dropped: it has more than plain values")
     observer.expect("REMOTE_INIT")
     program.say("on")
     observer.expect("status /ROOT/INNER ['THREE'] ['THREE'] {'seen': 'first'}")
@@ -135,8 +135,9 @@ def test_a_client_finds_the_server_and_is_told_whether_it_obeys(graph: Graph) ->
     assert program.expect("starting in 'THREE'")
 
 
-def test_userdata_of_an_order_is_taken_when_that_is_asked_for(graph: Graph) -> None:
-    program = started(graph, ", unpickle=True")
+@pytest.mark.parametrize("more", ["", ", unpickle=True"])
+def test_plain_userdata_of_an_order_is_taken(more: str, graph: Graph) -> None:
+    program = started(graph, more)
     observer = graph.node("observer")
     observer.say("/ROOT INNER data")
     observer.expect("status /ROOT ['INNER']")

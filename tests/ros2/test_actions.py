@@ -128,6 +128,8 @@ report({cause!r}, state.execute(smach.UserData()))
     server.expect(f"cancel {order}")
     assert f"{cause}: aborted" in output
     assert "was cancelled and has not ended" in output
+    is_rejected = "rejected the cancel request: the end of the goal is waited for, up to 0.3 s"
+    assert (is_rejected in output) == (cause == "refuses")
 
 
 def test_a_server_that_is_absent_ends_the_state(graph2: Graph) -> None:

@@ -145,7 +145,7 @@ def test_a_viewer_sees_the_active_states(graph2: Graph, tmp_path: Path) -> None:
     viewer.expect("nodes ['patrol', 'patrol_introspection']")
     viewer.expect(str(STRUCTURE))
     program.send(signal.SIGINT)
-    assert program.end() == 1, program.output
+    assert program.end() == 130, program.output
     assert "publisher already registered" not in program.output
 
 
@@ -180,7 +180,7 @@ def test_ctrl_c_cancels_the_goal(graph2: Graph) -> None:
     program = patrol(graph2)
     robot.expect("drive to")
     program.send(signal.SIGINT)
-    assert program.end() == 1, program.output
+    assert program.end() == 130, program.output
     assert program.output.endswith("outcome: preempted\n")
     robot.expect("cancelled")
 
@@ -192,6 +192,46 @@ def test_run_shows_progress(graph2: Graph) -> None:
     assert program.end() == 0, program.output
     assert "  DOCK  " in program.output
     assert program.output.endswith("outcome: docked\n")
+
+
+WAITING = """
+name: machine
+template: {base}
+outcomes: [succeeded]
+states:
+  - WAIT: {{template: SleepState, time: 1000, transitions: {{preempted: succeeded}}}}
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("way", ["run", "program", "own base"])
+def test_a_stop_signal_gives_the_exit_code(
+    graph2: Graph, tmp_path: Path, way: str, number: signal.Signals
+) -> None:
+    path = tmp_path / "machine.yml"
+    path.write_text(WAITING.format(base="Own" if way == "own base" else "ROSBase"))
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates/Own.tpl.py").write_text('{% extends "ROSBase.tpl.py" %}\n')
+    (tmp_path / "templates/Own.yml").write_text(
+        "{name: Own, kind: base, code: {python: Own.tpl.py}}"
+    )
+    if way == "run":
+        trace = tmp_path / "trace"
+        os.mkfifo(trace)
+        words = ["run", str(path), "--trace", str(trace), "--ros"]
+        program = graph2._launch([PYTHON, "-m", "smachac", *words])
+        with trace.open() as events:
+            while "WAIT" not in events.readline():
+                pass
+            program.send(number)
+            assert '"finish"' in events.read()
+    else:
+        (text,) = smachac.compile(path, "python").values()
+        program = graph2.start(text)
+        program.expect("starting in 'WAIT'")
+        program.send(number)
+    assert program.end() == 128 + number
+    assert program.output.endswith("outcome: succeeded\n")
 
 
 def test_the_commands_of_the_docs(graph2: Graph, tmp_path: Path) -> None:
@@ -291,7 +331,7 @@ def test_a_machine_is_offered_as_an_action(graph2: Graph, tmp_path: Path) -> Non
     caller.say("2")
     caller.expect("ended succeeded [0, 1]")
     program.send(signal.SIGINT)
-    assert program.end() == 0, program.output
+    assert program.end() == 130, program.output
 
 
 DRIVING = """
@@ -367,7 +407,7 @@ def test_the_feedback_of_the_action_is_the_path_of_the_active_state(
     caller.expect("paths ['/NAVIGATE', '/NAVIGATE/GO', '/DOCK']")
     caller.expect("result docked")
     program.send(signal.SIGINT)
-    assert program.end() == 0, program.output
+    assert program.end() == 130, program.output
 
 
 def test_a_managed_node(graph2: Graph, tmp_path: Path) -> None:
@@ -407,4 +447,4 @@ def test_a_managed_node_with_a_wrong_parameter_is_not_configured(
     manager.say("unconfigured")
     manager.expect("is unconfigured")
     program.send(signal.SIGINT)
-    assert program.end() == 1, program.output
+    assert program.end() == 130, program.output

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tests.ros2.ros2_graph import Graph
@@ -144,8 +146,10 @@ rclpy.init()
 node = rclpy.create_node("viewer")
 
 def show_status(message):
-    data = pickle.loads(base64.b64decode(bytes(message.local_data)))
-    print("status", message.path, list(message.active_states), data, flush=True)
+    data = pickle.loads(message.local_data)
+    # The client of smach_ros decodes it so.
+    same = pickle.loads(base64.b64decode(message.local_data)) == data
+    print("status", message.path, list(message.active_states), data, same, flush=True)
 
 def show_structure(message):
     print("structure", message.path, list(message.children), flush=True)
@@ -181,5 +185,122 @@ server.stop()
     viewer.expect("structure /ROOT ['ONLY']")
     viewer.expect("status /ROOT")
     program.say("run")
-    viewer.expect("status /ROOT ['ONLY'] {'key': 4}")
+    viewer.expect("status /ROOT ['ONLY'] {'key': 4} True")
     assert program.end() == 0, program.output
+
+
+COMMANDER = """
+import pickle, sys
+import rclpy
+from smach_msgs.msg import SmachContainerInitialStatusCmd, SmachContainerStatus
+
+class Trap:
+    def __reduce__(self):
+        return open, ("trap", "w")
+
+rclpy.init()
+node = rclpy.create_node("commander")
+
+def show_status(message):
+    states, userdata = list(message.initial_states), pickle.loads(message.local_data)
+    print("status", states, userdata, flush=True)
+
+node.create_subscription(SmachContainerStatus, "viewed/smach/container_status", show_status, 10)
+commands = node.create_publisher(
+    SmachContainerInitialStatusCmd, "viewed/smach/container_init", 10
+)
+while not commands.get_subscription_count():
+    rclpy.spin_once(node, timeout_sec=0.02)
+for state, data in [
+    ("LAST", pickle.dumps({"key": 5, "pose": [1.0, (2.0, None)], "same": "LAST"}, 2)),
+    ("FIRST", pickle.dumps({"key": Trap()}, 2)),
+    ("LAST", b"gAJ9cQAu"),
+    ("FIRST", b""),
+    ("NONE", pickle.dumps({"key": 6}, 2)),
+]:
+    commands.publish(SmachContainerInitialStatusCmd(
+        path="/ROOT", initial_states=[state], local_data=data
+    ))
+rclpy.spin(node)
+"""
+
+COMMANDED = (
+    START
+    + """
+import sys
+machine = smach.StateMachine(["succeeded"])
+with machine:
+    for name in "FIRST", "LAST":
+        state = smach.CBState(lambda ud: "succeeded", outcomes=["succeeded"])
+        smach.StateMachine.add(name, state)
+machine.set_initial_state(["FIRST"], smach.UserData())
+server = smach_ros.IntrospectionServer("viewed", machine, "/ROOT"%s)
+server.start()
+sys.stdin.readline()
+report("userdata", {key: machine.userdata[key] for key in machine.userdata.keys()})
+server.stop()
+"""
+)
+
+
+def test_a_command_of_smach_ros_sets_the_state_and_plain_userdata(
+    graph2: Graph, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    graph2.use_interfaces()
+    program = graph2.start(COMMANDED % "")
+    commander = graph2.start(COMMANDER)
+    values = "{'key': 5, 'pose': [1.0, (2.0, None)], 'same': 'LAST'}"
+    commander.expect(f"status ['LAST'] {values}")
+    commander.expect(f"status ['FIRST'] {values}")
+    commander.expect(f"status ['LAST'] {values}")
+    commander.expect(f"status ['FIRST'] {values}")
+    program.expect("container '/ROOT' has no states ['NONE'] to start in")
+    program.say("end")
+    assert program.end() == 0, program.output
+    assert f"userdata: {values}" in program.output
+    dropped = "the userdata of a command to container '/ROOT' is dropped: it "
+    assert f"{dropped}has more than plain values (opcode GLOBAL)" in program.output
+    assert program.output.count("is dropped: ") == 2
+    assert "Traceback" not in program.output
+    assert not (tmp_path / "trap").exists()
+
+
+SMACH_SERVER = """
+import pickle
+import rclpy
+from smach_msgs.msg import SmachContainerInitialStatusCmd, SmachContainerStatus
+
+rclpy.init()
+node = rclpy.create_node("server")
+statuses = node.create_publisher(SmachContainerStatus, "viewed/smach/container_status", 1)
+
+def obey(message):
+    userdata = pickle.loads(message.local_data)
+    print("userdata", userdata, flush=True)
+    status = SmachContainerStatus(path=message.path, initial_states=message.initial_states)
+    status.local_data = bytearray(pickle.dumps(userdata, 2))
+    statuses.publish(status)
+
+node.create_subscription(SmachContainerInitialStatusCmd, "viewed/smach/container_init", obey, 1)
+print("ready", flush=True)
+rclpy.spin(node)
+"""
+
+
+def test_a_client_commands_a_server_of_smach_ros(graph2: Graph) -> None:
+    graph2.use_interfaces()
+    server = graph2.start(SMACH_SERVER)
+    server.expect("ready")
+    output = graph2.run(
+        START
+        + """
+client = smach_ros.IntrospectionClient()
+userdata = smach.UserData()
+userdata.key, userdata.more = [1, (2.5, None)], {"a": b"b"}
+report("set", client.set_initial_state("viewed", "/ROOT", ["LAST"], userdata, timeout=60.0))
+client.destroy_node()
+"""
+    )
+    server.expect("userdata {'key': [1, (2.5, None)], 'more': {'a': b'b'}}")
+    assert "set: True" in output

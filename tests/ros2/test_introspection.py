@@ -90,5 +90,44 @@ report("set", done, outer.get_initial_states(), "key" in outer.userdata)
 server.stop()
 """
     )
-    assert "set: True ['LAST'] False" in output
-    assert "the userdata that came with it is dropped" in output
+    assert "set: True ['LAST'] True" in output
+
+
+def test_a_client_and_a_server_are_spun_from_their_construction(graph2: Graph) -> None:
+    output = graph2.run(
+        PROGRAM
+        + """
+client = smach_ros.IntrospectionClient()
+waiting = smach_ros.IntrospectionServer("waiting", machine(), "/ROOT")
+for each in client, waiting:
+    rate = each.create_rate(10)
+    rate.sleep()
+    report("slept", each.get_name())
+client.destroy_node()
+waiting.stop()
+server.stop()
+"""
+    )
+    assert "slept: introspection_client" in output
+    assert "slept: waiting_introspection" in output
+
+
+def test_commands_that_cannot_be_read_are_logged(graph2: Graph) -> None:
+    output = graph2.run(
+        PROGRAM
+        + """
+commands = node.create_publisher(String, "viewed/smach/container_init_json", 10)
+while not commands.get_subscription_count():
+    time.sleep(0.02)
+command = {"path": "/ROOT", "initial_states": ["LAST"], "local_data": ""}
+for data in "", "[]", "{}", "1", json.dumps({**command, "local_data": "a"}), "[" * 99999:
+    commands.publish(String(data=data))
+commands.publish(String(data=json.dumps({**command, "initial_states": 1})))
+commands.publish(String(data=json.dumps(command)))
+while outer.get_initial_states() != ["LAST"]:
+    time.sleep(0.02)
+server.stop()
+"""
+    )
+    assert output.count("a command to a container cannot be read: ") == 2 * 7  # of each container
+    assert "Traceback" not in output

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM in programs of smach_ros2, whatever they do at that moment."""
+"""Stop signals to programs of smach_ros2, whatever they do at that moment."""
 
 from __future__ import annotations
 
@@ -19,6 +19,10 @@ class Deaf(smach.State):
         report("state", "deaf")
         sys.stdin.readline()
         return "succeeded"
+
+    def request_preempt(self):
+        super().request_preempt()
+        report("requested")
 
 class Last(smach.State):
     def execute(self, ud):
@@ -66,7 +70,8 @@ def test_the_first_signal_preempts_the_machine(graph2: Graph, name: str) -> None
         server.expect({"goal": "goal 4", "call": "called"}[name])
     else:
         program.expect("starting in 'FIRST'")
-    program.send(signal.SIGTERM if name == "service" else signal.SIGINT)
+    number = {"service": signal.SIGTERM, "goal": signal.SIGHUP}.get(name, signal.SIGINT)
+    program.send(number)
     code = program.end()
     assert "state: last" in program.output, "the machine continues with its clean-up"
     assert "threads left: []" in program.output
@@ -74,7 +79,7 @@ def test_the_first_signal_preempts_the_machine(graph2: Graph, name: str) -> None
     if server is not None and name == "goal":
         server.expect("cancel 4")
     assert "outcome: succeeded" in program.output, "the request was answered by the first state"
-    assert code == 0
+    assert code == 128 + number
 
 
 def test_a_state_that_checks_nothing_is_given_five_seconds(graph2: Graph) -> None:
@@ -83,19 +88,23 @@ def test_a_state_that_checks_nothing_is_given_five_seconds(graph2: Graph) -> Non
     program.send(signal.SIGINT)
     program.expect("did not end within 5 s: the node shuts down")
     program.say("end")
-    assert program.end() == 1
+    assert program.end() == 130
     assert "outcome: None" in program.output
     assert "threads left: []" in program.output
 
 
-def test_the_second_ctrl_c_ends_a_state_that_checks_nothing(graph2: Graph) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_the_second_signal_ends_a_state_that_checks_nothing(
+    graph2: Graph, number: signal.Signals
+) -> None:
     program = graph2.start(START + RUN.format(name="deaf"))
     program.expect("state: deaf")
-    program.send(signal.SIGINT)
-    while "KeyboardInterrupt" not in program.output and program._process.poll() is None:
-        program.send(signal.SIGINT)
-    assert program.end() != 0
-    assert "KeyboardInterrupt" in program.output
+    program.send(signal.SIGTERM)
+    program.expect("requested")
+    program.send(number)
+    assert program.end() == 128 + number
+    assert "Traceback" not in program.output
+    assert "outcome" not in program.output
 
 
 UPSTREAM = """

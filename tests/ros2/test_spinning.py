@@ -255,3 +255,34 @@ left()
     assert program.end() == 0, program.output
     assert "outcome: aborted" in program.output
     assert "is cancelled after 1000.0 s" in program.output
+
+
+@pytest.mark.parametrize(
+    ("state", "served"),
+    [
+        ('smach_ros.SimpleActionState(node, "none", Fibonacci, server_wait_timeout=2.0)', False),
+        ('smach_ros.SimpleActionState(node, "work", Fibonacci, Fibonacci.Goal(order=4), '
+         "exec_timeout=2.0)", True),
+        ('smach_ros.ServiceState(node, "none", Trigger, server_wait_timeout=2.0)', False),
+        ('topics.WaitForMsgState(node, "none", String, timeout=2.0)', False),
+        ("smach_ros.ConditionState(node, lambda ud: False, timeout=2.0, max_checks=-1)", False),
+    ],
+)  # fmt: skip
+def test_the_log_says_that_no_simulated_time_comes(state: str, served: bool, graph2: Graph) -> None:
+    if served:
+        graph2.node("server")
+    program = graph2.start(
+        """
+from machine_node import *
+from smachac.runtime.smach_ros2 import topics
+
+state = STATE
+on_line(state.request_preempt)
+report("outcome", state.execute(smach.UserData()))
+""".replace("STATE", state),
+        *("--ros-args", "-p", "use_sim_time:=true"),
+    )
+    program.expect("no time came on /clock for 5 s: time limits begin with the first one")
+    program.say("stop")
+    assert program.end() == 0, program.output
+    assert "outcome: preempted" in program.output

@@ -109,3 +109,35 @@ report("paths", seen)
 """
     )
     assert "paths: [['/PART'], ['/PART/COUNT'], ['/LAST']]" in output
+
+
+FAILING = """
+import sys
+from machine_node import *
+
+class Wrapper(smach_ros.ActionServerWrapper):
+    def execute_cb(self, goal_handle):
+        if goal_handle.request.order == 1:
+            goal_handle.succeed()
+        raise ValueError("this fails")
+
+machine = smach.StateMachine(["succeeded"])
+with machine:
+    smach.StateMachine.add("ONLY", smach.CBState(lambda ud: "succeeded", outcomes=["succeeded"]))
+wrapper = Wrapper(node, "machine", Fibonacci, machine, ["succeeded"])
+report("serves")
+sys.stdin.readline()
+"""
+
+
+def test_an_error_after_the_end_of_a_goal_is_logged(graph2: Graph) -> None:
+    program = graph2.start(FAILING)
+    caller = graph2.node("caller")
+    caller.say("1")
+    caller.expect("ended succeeded []")  # a goal that has succeeded cannot be aborted
+    caller.say("2")
+    caller.expect("ended aborted []")
+    program.say("end")
+    assert program.end() == 0, program.output
+    assert program.output.count("ValueError: this fails") == 2
+    assert program.output.count("the client gets status 4 and an empty result") == 1

@@ -11,5 +11,5 @@ import pytest
 def test_the_import_names_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rclpy", None)
     monkeypatch.delitem(sys.modules, "smachac.runtime.smach_ros2", raising=False)
-    with pytest.raises(ImportError, match=r"needs ROS 2, .* pip install ros-rclpy"):
+    with pytest.raises(ImportError, match=r"needs ROS 2, .* pip install ros-kilted-rclpy"):
         import_module("smachac.runtime.smach_ros2")

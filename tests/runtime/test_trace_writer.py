@@ -18,6 +18,7 @@ from smachac.interpreter.userdata import trace_value as interpreted_value
 from smachac.ir.nodes import Machine, StateMachine
 from smachac.runtime import smach
 from smachac.runtime.tracing.trace import attach, script
+from smachac.runtime.tracing.values import shown_value
 from smachac.runtime.tracing.writer import Event, TraceWriter, trace_value
 from tests.support.ir_machines import concurrence, iterator, leaf, machine
 from tests.support.smach_machines import Steps, built
@@ -197,3 +198,16 @@ def test_a_killed_run_leaves_a_whole_file(tmp_path: Path) -> None:
     assert [event["seq"] for event in events] == list(range(1, len(events) + 1))
     assert (events[-1]["event"], events[-1]["path"]) == ("enter", "sm/A")
     assert [event["value"] for event in events if event["event"] == "write"] == [1, 2]
+
+
+@pytest.mark.parametrize(
+    "value", ["x" * 5_000_000, [[0.5] * 1000] * 1000, {"scan": list(range(10**6))}], ids=type
+)
+def test_a_line_is_never_longer_than_a_reader_accepts(value: object) -> None:
+    stream = io.BytesIO()
+    writer = TraceWriter(stream.write)
+    event = {"seq": 0, "event": "write", "path": "sm/A", "key": "k", "value": None, "t": 0.0}
+    writer.put(writer.prepare([event]), 1, 0.5, value)
+    line = stream.getvalue()
+    assert len(line) < 50_000
+    assert json.loads(line)["value"] == shown_value(value)

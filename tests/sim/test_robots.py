@@ -86,7 +86,7 @@ def baxter() -> Iterator[sim.World]:
 def draws(arm: sim.Arm, count: int) -> Iterator[list[float]]:
     source = random.Random(arm.name)
     for _ in range(count):
-        yield [source.uniform(low, high) for low, high in arm.limits]
+        yield [source.uniform(joint.lower, joint.upper) for joint in arm.facts]
 
 
 @pytest.mark.parametrize(("name", "side"), [("left", 1), ("right", -1)])

@@ -54,6 +54,7 @@ class Named(smach.State):
 
 ROS = (
     *MESSAGES,
+    "genpy",
     "rospy",
     "roslib",
     "rospkg",

@@ -230,7 +230,7 @@ def test_blocks_go_where_smacha_put_them() -> None:
              "shared_recorder = Shared()", "    sm = ", "footer_of_stop",
              "footer_of_pause", "footer_of_start",
              "before_stop", "before_start", "sm.execute()", "after_stop", "after_start",
-             "__main__"]  # fmt: skip
+             "\nif __name__"]  # fmt: skip
     places = [text.index(part) for part in order]
     assert places == sorted(places)
     assert text.count("class Shared") == text.count("class Recorder") == 1

@@ -22,7 +22,7 @@ HOSTILE_DOCS = (
     "'''\nevil()\n'''",
     '"quoted"',
     "\\N \\G \\\\",
-    "\ud800 \U0001f916",
+    "\U0001f916",
     "{{ evil() }} {% set evil = 1 %}",
     "-*- coding: utf-7 -*-",
 )
@@ -46,7 +46,8 @@ def script(doc: str) -> str:
     states = [state("A", "SMALL"), box("SMALL", 1, "LARGE"), box("LARGE", 9, "LIMITED")]
     states.append(state("LIMITED", "done", timeout=3))
     return json.dumps(
-        {"name": "sm", "template": "Base", "doc": doc, "outcomes": ["done"], "states": states}
+        {"name": "sm", "template": "Base", "doc": doc, "outcomes": ["done"], "states": states},
+        ensure_ascii=False,
     )
 
 

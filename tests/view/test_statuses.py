@@ -14,7 +14,12 @@ from smachac.diagnostics.source import NOWHERE, Source
 from smachac.driver import analyse_script
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, StateMachine
 from smachac.ir.traversal import walk
-from smachac.runtime.container_tree import containers, more_status, status_fields
+from smachac.runtime.container_tree import (
+    NEW_PROTOCOL,
+    containers,
+    more_status,
+    status_fields,
+)
 from smachac.runtime.smach.container import Container
 from smachac.runtime.tracing.compare import compare
 from smachac.runtime.tracing.trace import attach, script
@@ -58,7 +63,7 @@ class Node:
 
     def report(self, path: str, container: Container, info: str) -> None:
         with self._lock:
-            fields = status_fields(path, container, info)
+            fields = status_fields(path, container, info, NEW_PROTOCOL)
             more = more_status(container) if self._more else {}
             self.statuses.append({"stamp": next(self._time), **fields, **more})
 

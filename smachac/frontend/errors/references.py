@@ -455,8 +455,9 @@ def bad_robot(
     Without a description, values for the robot are not compared with its joint limits, lengths and
     frames.
 
-    Exactly: a description is a URDF file in or below the script's folder, without macros and
-    without a document type.
+    Exactly: a description, a URDF file or a xacro file is in or below the script's folder. A URDF
+    file is a tree of links in the format of URDF 1.0 to 1.2, without a document type; with a
+    description, the simulation can load it, with all its meshes.
 
     Wrong:
         name: sm

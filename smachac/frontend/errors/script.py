@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
     LONGEST_WORD,
+    Diagnostic,
     Finding,
     Problem,
     Related,
@@ -22,7 +23,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.repair import Edit, Repair
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import Guesser, respelt
+from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.diagnostics.wording import listed, possible
 from smachac.frontend.schema import VARIABLES
 
@@ -199,7 +200,7 @@ def unknown_variable(
     names = sorted({*known, *own})
     owned = f"use one of its {owner.part}s{possible(names, fitting)}"
     variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
-    sure = meant or Guesser(names).sure(word.text)
+    sure = meant or guesser_of(tuple(names)).sure(word.text)
     number = number_before(word)
     if number:
         certain = f"a decimal comma? write `{number}.{word.text}`"
@@ -240,6 +241,12 @@ def unknown_variable(
         severity=severity,
         effect=effect,
     )
+
+
+def one_of_many(word: Word, owner: Owner) -> Diagnostic:
+    """SM003 for one of very many unknown variables: without a search for what is meant."""
+    help = f"remove it, or correct all fields of {owner.text}"
+    return unknown_variable(word, owner, (), certain=help)
 
 
 def _misplaced(word: str) -> str | None:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import base64
-import pickle
 import threading
 from typing import Any
 
 from smachac.runtime import smach
-from smachac.runtime.container_tree import containers, pickled, status_fields
+from smachac.runtime.container_tree import (
+    PROTOCOL,
+    containers,
+    pickled,
+    received_userdata,
+    status_fields,
+)
 from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
-from smachac.runtime.smach.user_data import store
 from smachac.runtime.smach_ros import messages, ros
 
 STATUS_TOPIC = "/smach/container_status"
@@ -117,7 +121,9 @@ class _Reporter:
         """Publish the status of a container, if there are subscribers."""
         if not self._running or not self._statuses.get_num_connections():
             return
-        self._publish(self._statuses, **status_fields(path, container, info))
+        fields = status_fields(path, container, info, PROTOCOL)
+        text = base64.b64encode(fields["local_data"]).decode()
+        self._publish(self._statuses, **{**fields, "local_data": text})
 
     def _publish(self, topic: Any, **fields: Any) -> None:
         message = topic.data_class(**fields)
@@ -137,15 +143,12 @@ class _Reporter:
         if unknown:
             smach.logerr(f"container '{command.path}' has no states {unknown} to start in")
             return
-        userdata = UserData()
-        if command.local_data and self._unpickle:
-            store(userdata).update(pickle.loads(base64.b64decode(command.local_data)))
-        elif command.local_data not in ("", pickled(UserData())):
-            smach.logwarn(
-                f"container '{command.path}' is given an initial state; the userdata that came "
-                "with it is dropped, for unpickling it may run any code (IntrospectionServer: "
-                "unpickle)"
-            )
+        try:
+            data = base64.b64decode(command.local_data)
+        except ValueError as error:
+            smach.logerr(f"a command to container '{command.path}' cannot be read: {error}")
+            return
+        userdata = received_userdata(command.path, data, self._unpickle)
         container.set_initial_state([known[each] for each in command.initial_states], userdata)
         self._report(command.path, container, "REMOTE_INIT")
 
@@ -157,9 +160,9 @@ class IntrospectionServer(_Reporter):
     of SMACH's viewer: at every start, transition and end of a container, and on all containers for
     each new subscriber and every two seconds.
 
-    On `container_init` a viewer may set the initial state of a container for all later runs. The
-    userdata of such a command is a pickle, which can run any code: it is dropped, unless `unpickle`
-    is true.
+    On `container_init` a viewer may set the initial state of a container for all later runs, and
+    userdata. That is a pickle, and unpickling can run any code: only plain values are accepted
+    (plain_pickle), unless `unpickle` is true.
     """
 
     def __init__(self, server_name: str, state: State, path: str, unpickle: bool = False) -> None:
@@ -242,7 +245,7 @@ class IntrospectionClient:
 
         type_, limit = messages.initial_status_command(), ros.seconds(timeout)
         commands = self._rospy.Publisher(server + INIT_TOPIC, type_, queue_size=1, latch=True)
-        data = pickled(initial_userdata or UserData())
+        data = base64.b64encode(pickled(initial_userdata or UserData(), PROTOCOL)).decode()
         commands.publish(type_(path=path, initial_states=initial_states, local_data=data))
         if limit is None:
             return None

@@ -220,6 +220,8 @@ class ActionServerWrapper:
                 handle.canceled()
             else:
                 handle.abort()
+        else:  # rclpy cannot change the status any more
+            smach.logerr(f"the client gets status {handle.status} and an empty result")
         self._send_result(handle, self._spec.Result())
 
     def _send_result(self, handle: Any, result: Any) -> None:

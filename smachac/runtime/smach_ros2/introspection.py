@@ -1,26 +1,34 @@
 """IntrospectionServer: publishes the structure and the status of a machine on ROS topics.
 
 Where smach_msgs can be imported the messages are those of SMACH's viewer. Otherwise they are JSON
-texts (std_msgs/String) with the same fields, on topics of their own.
+texts (std_msgs/String) with the same fields, on topics of their own. The field `local_data` has
+userdata as a pickle: its bytes in smach_msgs, base64 in JSON.
 """
 
 from __future__ import annotations
 
 import base64
 import json
-import pickle
 import threading
 import time
 from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from smachac.runtime import smach
-from smachac.runtime.container_tree import containers, more_status, pickled, status_fields
+from smachac.runtime.container_tree import (
+    NEW_PROTOCOL,
+    containers,
+    more_status,
+    pickled,
+    received_userdata,
+    status_fields,
+)
 from smachac.runtime.smach import InvalidStateError, State, UserData
 from smachac.runtime.smach.container import Container
-from smachac.runtime.smach.user_data import store
-from smachac.runtime.smach_ros2 import ros, spinning
+from smachac.runtime.smach_ros2 import delivery, ros, spinning
 from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 
 STATUS_TOPIC = "/smach/container_status"
@@ -72,21 +80,57 @@ class Format:
         """The message with these fields."""
         if not self._types:
             stamp = node.get_clock().now().nanoseconds / ros.NANOSECONDS
-            return self._text(data=json.dumps({"stamp": stamp, **fields}))
+            texts = {
+                field: base64.b64encode(value).decode() if isinstance(value, bytes) else value
+                for field, value in fields.items()
+            }
+            return self._text(data=json.dumps({"stamp": stamp, **texts}))
         message = self.message_type(name)()
         if hasattr(message, "header"):
             message.header.stamp = node.get_clock().now().to_msg()
         for field, value in fields.items():
-            setattr(message, field, value.encode() if field == "local_data" else value)
+            setattr(message, field, value)
+        if name == STATUS_TOPIC:
+            message.local_data = readable_twice(fields["local_data"])
         return checked(message, type(message), name)
 
-    def decode(self, message: Any) -> dict[str, Any]:
-        """The fields of a message."""
-        if not self._types:
-            decoded: dict[str, Any] = json.loads(message.data)
-            return decoded
-        values = {field: getattr(message, field) for field in ros.fields(message)}
-        return {**values, "local_data": bytes(values.get("local_data", b"")).decode()}
+    def decode(self, message: Any) -> Initial:
+        """The path, initial states and userdata in a command or a status.
+
+        Raises ValueError for a JSON text that has no such fields.
+        """
+        if self._types:
+            states = list(message.initial_states)
+            return Initial(path=message.path, states=states, data=bytes(message.local_data))
+        try:
+            fields = json.loads(message.data)
+            states = [str(label) for label in fields["initial_states"]]
+            data = base64.b64decode(fields["local_data"])
+            return Initial(path=str(fields["path"]), states=states, data=data)
+        except (TypeError, KeyError, RecursionError) as error:
+            raise ValueError(f"it has not the fields of a command: {error!r}") from None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Initial:
+    """The initial states of a container, and the pickle of its userdata."""
+
+    path: str
+    states: list[str]
+    data: bytes
+
+
+def readable_twice(data: bytes) -> bytes:
+    """A pickle that gives the same value if it is decoded as base64 first.
+
+    In smach_ros 3.0.3 for ROS 2 the server sends the bytes of a pickle, as the viewer reads them,
+    but the client decodes the status as base64. The text in base64 stands before the pickle. It
+    begins with V, and a line that begins so is a text in a pickle; the value is what comes last. A
+    decoder of base64 ends at the padding. What gives the V is again a text in a pickle: `U`, its
+    length, one character.
+    """
+    padded = data if len(data) % 3 else data + b"."  # so that base64 has padding
+    return base64.b64encode(b"U\x01 " + padded) + b"\n" + data
 
 
 class ContainerProxy:
@@ -159,7 +203,7 @@ class ContainerProxy:
 
     def _publish_status(self, info: str = "") -> None:
         container = self._container
-        fields = status_fields(self._path, container, info)
+        fields = status_fields(self._path, container, info, NEW_PROTOCOL)
         if self._format.is_json:
             fields |= more_status(container)
         self._publish(STATUS_TOPIC, **fields)
@@ -176,24 +220,20 @@ class ContainerProxy:
 
     def _on_init_command(self, message: Any) -> None:
         """Set the initial state of the container for all later runs."""
-        command = self._format.decode(message)
-        if command["path"] != self._path:
+        try:
+            command = self._format.decode(message)
+        except ValueError as error:
+            smach.logerr(f"a command to a container cannot be read: {error}")
+            return
+        if command.path != self._path:
             return
         known = {str(label): label for label in self._container.get_children()}
-        unknown = [label for label in command["initial_states"] if label not in known]
+        unknown = [label for label in command.states if label not in known]
         if unknown:
             smach.logerr(f"container '{self._path}' has no states {unknown} to start in")
             return
-        data, userdata = command["local_data"], UserData()
-        if data and self._unpickle:
-            store(userdata).update(pickle.loads(base64.b64decode(data)))
-        elif data not in ("", pickled(UserData())):
-            smach.logwarn(
-                f"container '{self._path}' is given an initial state; the userdata that came with "
-                "it is dropped, for unpickling it may run any code (IntrospectionServer: unpickle)"
-            )
-        states = [known[each] for each in command["initial_states"]]
-        self._container.set_initial_state(states, userdata)
+        userdata = received_userdata(self._path, command.data, self._unpickle)
+        self._container.set_initial_state([known[label] for label in command.states], userdata)
         self._publish_status("REMOTE_INIT")
 
 
@@ -206,9 +246,11 @@ class IntrospectionServer(ros.Node):
     container, and on all containers every two seconds; a new subscriber gets the newest report on
     each container.
 
-    On `container_init` a viewer may set the initial state of a container for all later runs. The
-    userdata of such a command is a pickle, which can run any code: it is dropped, unless `unpickle`
-    is true.
+    On `container_init` a viewer may set the initial state of a container for all later runs, and
+    userdata. That is a pickle, and unpickling can run any code: only plain values are accepted
+    (plain_pickle), unless `unpickle` is true.
+
+    A thread spins the node, as in smach_ros, until another executor takes it.
     """
 
     def __init__(
@@ -221,7 +263,8 @@ class IntrospectionServer(ros.Node):
         self._path = path
         self._unpickle = unpickle
         self._proxies: list[ContainerProxy] = []
-        self._spinner: spinning.Spinner | None = None
+        self._spinner = spinning.Spinner(self)
+        self._spinner.start()
 
     def start(self) -> None:
         """Start to report. Raises InvalidStateError for a state that is no container."""
@@ -231,12 +274,12 @@ class IntrospectionServer(ros.Node):
             self._spinner.start()
 
     def stop(self) -> None:
-        """Stop to report."""
+        """Stop to report; the last reports get up to a second to arrive."""
         for proxy in self._proxies:
             proxy.stop()
-        if self._spinner is not None:
-            self._spinner.stop()
-            self._spinner = None
+        if self.context.ok():
+            delivery.await_acknowledgements(self.publishers)
+        self._spinner.stop()
 
     def construct(self, server_name: str, state: State, path: str) -> None:
         """Report also on the container `state`, whose path is `path`, and on those below it.
@@ -257,11 +300,21 @@ class IntrospectionServer(ros.Node):
 
 
 class IntrospectionClient(ros.Node):
-    """The viewer's side, a node: finds servers, and sets the initial states of containers."""
+    """The viewer's side, a node: finds servers, and sets the initial states of containers.
+
+    A thread spins it, as in smach_ros, until another executor takes it.
+    """
 
     def __init__(self, node_name: str = "introspection_client", **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
         self._format = Format()
+        self._spinner = spinning.Spinner(self)
+        self._spinner.start()
+
+    def destroy_node(self) -> None:
+        """Stop the thread, and destroy the node."""
+        self._spinner.stop()
+        super().destroy_node()
 
     def get_servers(self) -> list[str]:
         """The names of the introspection servers on the ROS graph."""
@@ -283,36 +336,42 @@ class IntrospectionClient(ros.Node):
         found may miss a command: with a timeout it is sent again until the server confirms it.
         """
         confirmed, limit = threading.Event(), ros.seconds(timeout)
-
-        def on_status(message: Any) -> None:
-            status = self._format.decode(message)
-            states = list(status["initial_states"])
-            if (status["path"], states) == (path, list(initial_states)):
-                confirmed.set()
-
         commands = self.create_publisher(
-            self._format.message_type(INIT_TOPIC), self._format.topic(server, INIT_TOPIC), latched()
+            self._format.message_type(INIT_TOPIC), self._format.topic(server, INIT_TOPIC), 10
         )
         fields = {
             "path": path,
             "initial_states": list(initial_states),
-            "local_data": pickled(initial_userdata or UserData()),
+            "local_data": pickled(initial_userdata or UserData(), NEW_PROTOCOL),
         }
         command = self._format.encode(self, INIT_TOPIC, fields)
         if limit is None:
+            delivery.await_subscription(self, commands)
             commands.publish(command)
             return None
-        self.create_subscription(
+
+        def on_status(message: Any) -> None:
+            with suppress(ValueError):  # it is of no server
+                status = self._format.decode(message)
+                if (status.path, status.states) == (path, list(initial_states)):
+                    confirmed.set()
+
+        statuses = self.create_subscription(
             self._format.message_type(STATUS_TOPIC),
             self._format.topic(server, STATUS_TOPIC),
             on_status,
-            latched(STATUS_DEPTH),
+            STATUS_DEPTH,
         )
         spinning.ensure(self)
         end = time.monotonic() + limit
         while not confirmed.is_set() and time.monotonic() < end:
             commands.publish(command)
-            confirmed.wait(min(REPEAT, end - time.monotonic()))
+            confirmed.wait(min(REPEAT, max(0.0, end - time.monotonic())))
+        for destroy, entity in (
+            (self.destroy_subscription, statuses),
+            (self.destroy_publisher, commands),
+        ):
+            self.executor.create_task(destroy, entity)
         return confirmed.is_set()
 
 

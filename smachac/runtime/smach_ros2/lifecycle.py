@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from smachac.runtime.smach_ros2 import program, ros
@@ -27,7 +27,10 @@ class LifecycleMachineNode(LifecycleNode):
     Attributes:
         machine: the machine, or None while the node is not configured.
         outcome: the outcome of the last run, or None.
+        arguments: the arguments of the program, with those of ROS.
     """
+
+    arguments: Sequence[str] = ()
 
     def __init__(self, node_name: str, build: Callable[[Any], Any], **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)
@@ -134,6 +137,6 @@ def start_node(
 
 
 def run(node: LifecycleMachineNode) -> str | None:
-    """Wait until the node is shut down by a transition, or by Ctrl-C or SIGTERM, which preempt its
+    """Wait until the node is shut down by a transition, or by a stop signal, which preempts its
     machine; the outcome of the last run."""
     return program.run(node, node)

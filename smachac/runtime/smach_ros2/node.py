@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from smachac.runtime.smach_ros2 import ros
@@ -9,7 +10,13 @@ from smachac.runtime.smach_ros2.spinning import Spinner
 
 
 class SmachNode(ros.Node):
-    """A node for a state machine. `start` spins it in a thread, `join` waits for its end."""
+    """A node for a state machine. `start` spins it in a thread, `join` waits for its end.
+
+    Attributes:
+        arguments: the arguments of the program, with those of ROS.
+    """
+
+    arguments: Sequence[str] = ()
 
     def __init__(self, node_name: str, **kwargs: Any) -> None:
         super().__init__(node_name, **kwargs)

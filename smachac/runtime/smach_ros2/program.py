@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import threading
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
 
-from smachac.runtime.smach_ros2 import ros
+from smachac.runtime import signals
+from smachac.runtime.smach_ros2 import delivery, ros
 from smachac.runtime.smach_ros2.node import SmachNode
 from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
@@ -18,9 +21,9 @@ def start_node(
 ) -> Any:
     """Initialize rclpy and start a node that a thread spins.
 
-    From now on SIGINT and SIGTERM preempt the machine of `run`; rclpy gets no signal handlers,
-    because they end the node before goals can be cancelled. `args` are the arguments of the program
-    (default: sys.argv); other arguments are those of `node_class`.
+    From now on SIGINT, SIGTERM and SIGHUP preempt the machine of `run`; rclpy gets no signal
+    handlers, because they end the node before goals can be cancelled. `args` are the arguments of
+    the program (default: sys.argv); other arguments are those of `node_class`.
 
     If ROS refuses to start, as with arguments that are not valid, this ends the program as argparse
     does: one line with the reason, SystemExit with exit code 2.
@@ -30,6 +33,8 @@ def start_node(
 
 def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
     """Initialize rclpy as `start_node` does, and start the node that `make` returns."""
+    arguments = sys.argv if args is None else args
+    _refuse_leading_zeros(arguments)
     handler = None
     if threading.current_thread() is threading.main_thread():
         handler = PreemptHandler(ros.rclpy.get_default_context())
@@ -40,7 +45,7 @@ def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
             with _silent_rcl():
                 ros.rclpy.init(args=args, signal_handler_options=options.NO)
             node = make()
-        node.signal_handler = handler
+        node.signal_handler, node.arguments = handler, arguments
         node.start()
     except BaseException:
         ros.rclpy.try_shutdown()
@@ -48,6 +53,20 @@ def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
             handler.remove()
         raise
     return node
+
+
+def _refuse_leading_zeros(args: list[str]) -> None:
+    """End the program with exit code 2 if a number of a parameter begins with 0: ROS 2 reads 010 as
+    8, 07 as 7, and 08 as a float."""
+    for before, rule in pairwise(args):
+        value = rule.partition(":=")[2]
+        if before in ("-p", "--param") and re.fullmatch(r"[-+]?0[0-9]+", value):
+            print(
+                f"ROS 2 cannot start: '-p {rule}': a number that begins with 0 is read as octal "
+                f"or as a float; write it without the 0, or in quotes if it is a text",
+                file=sys.stderr,
+            )
+            raise SystemExit(2)
 
 
 @contextmanager
@@ -84,8 +103,8 @@ def _silent_rcl() -> Iterator[None]:
 def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
     """Execute a machine in this thread and return its outcome; the node is one of `start_node`.
 
-    The first Ctrl-C or SIGTERM preempts it; after `grace` seconds the node shuts down, and states
-    that wait for ROS end. The second one ends the program.
+    The first stop signal preempts it; after `grace` seconds the node shuts down, and states that
+    wait for ROS end. The second one ends the program at once.
     """
     handler: PreemptHandler | None = node.signal_handler
     outcome: str | None
@@ -105,11 +124,14 @@ def run(node: Any, machine: Any, grace: float = GRACE) -> str | None:
 def stop_node(node: Any) -> None:
     """Stop the thread of a node of `start_node`, destroy the node and shut rclpy down.
 
-    Signals are ignored meanwhile; after that the former handlers are in place again.
+    Messages that are under way get up to a second to arrive. Signals are ignored meanwhile; after
+    that the former handlers are in place again.
     """
     handler: PreemptHandler | None = node.signal_handler
     if handler is not None:
         handler.ignore()
+    if node.context.ok():
+        delivery.await_acknowledgements(node.publishers)
     node.stop()
     node.destroy_node()
     node.context.try_shutdown()
@@ -119,5 +141,12 @@ def stop_node(node: Any) -> None:
 
 
 def exit_code(outcome: str | None, failures: Collection[str] = ("aborted", "preempted")) -> int:
-    """The exit code of a program for an outcome: 1 for none and for one of `failures`."""
-    return 1 if outcome is None or outcome in failures else 0
+    """The exit code of a program: after a stop signal 128 + its number, else that of an outcome: 1
+    for none and for one of `failures`."""
+    return signals.exit_code(1 if outcome is None or outcome in failures else 0)
+
+
+def stop_code() -> int:
+    """The exit code of a program without an outcome: after a stop signal 128 + its number, else
+    0."""
+    return signals.exit_code()

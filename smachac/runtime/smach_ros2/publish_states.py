@@ -7,11 +7,12 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 from weakref import WeakKeyDictionary
 
-from smachac.runtime import smach
+from smachac.runtime.smach_ros2 import delivery
 from smachac.runtime.smach_ros2.interfaces import message_class
 from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 from smachac.runtime.smach_ros2.plain_messages import parse_message
 from smachac.runtime.smach_ros2.qos import profile
+from smachac.runtime.smach_ros2.ros_state import RosState
 from smachac.runtime.smach_ros2.topics import Publications
 
 
@@ -27,8 +28,12 @@ def write_keys(userdata: Any, outputs: Sequence[str], names: Sequence[str], valu
             userdata[name] = value
 
 
-class _PublishingState(smach.State):
-    """A state that takes a message and a topic from userdata."""
+class _PublishingState(RosState):
+    """A state that takes a message and a topic from userdata.
+
+    The first message on a topic waits up to `subscriber_wait_timeout` seconds for a subscription;
+    a preempt request ends the wait, and the message is published.
+    """
 
     def __init__(
         self,
@@ -38,16 +43,18 @@ class _PublishingState(smach.State):
         input_keys: Sequence[str] = ("msg", "topic"),
         output_keys: Sequence[str] = (),
         qos: Any = None,
+        subscriber_wait_timeout: float = delivery.MATCH_LIMIT,
     ) -> None:
         super().__init__(
+            node,
             outcomes=["succeeded", "aborted"],
             input_keys=list(input_keys),
             output_keys=list(output_keys),
         )
-        self.node = node
         self.action = action
         self.topic = topic
         self.qos = qos
+        self._subscriber_wait_timeout = subscriber_wait_timeout
 
     def message(self, userdata: Any) -> Any:
         """The message to publish; None if the value is none, which is logged."""
@@ -66,6 +73,16 @@ class _PublishingState(smach.State):
         if hasattr(message, "header"):
             message.header.stamp = self.node.get_clock().now().to_msg()
         return message
+
+    def await_subscription(self, publisher: Any) -> None:
+        """Wait until a new publisher has a subscription."""
+        delivery.await_subscription(
+            self.node,
+            publisher,
+            self._subscriber_wait_timeout,
+            self._ros_wait,
+            self.preempt_requested,
+        )
 
     def write(self, userdata: Any, message: Any, topic: str) -> None:
         """Write the message and the topic to the output keys that the script lists."""
@@ -93,7 +110,7 @@ class PublishMsgState(_PublishingState):
         rate = None if self.action == "once" else optional(userdata, "rate", 100.0)
         make = self._maker(message, optional(userdata, "callback"))
         try:
-            running.start(topic, type(message), make, rate, self.qos)
+            running.start(topic, type(message), make, rate, self.qos, self.await_subscription)
         except FieldError as error:
             self.node.get_logger().error(f"the message is invalid: {error}")
             return "aborted"
@@ -122,12 +139,23 @@ class Observer:
         self._messages: dict[str, tuple[Any, Callable[[], Any]]] = {}
         self._subscription: Any = None
 
-    def add(self, topic: str, msg_type: Any, make: Callable[[], Any], qos: Any) -> bool:
+    def add(
+        self,
+        topic: str,
+        msg_type: Any,
+        make: Callable[[], Any],
+        qos: Any,
+        before_first: Callable[[Any], None],
+    ) -> bool:
         """Add a publication; False if the type of the observed topic is unknown. A message with a
-        value that does not fit its field ends it."""
+        value that does not fit its field ends it.
+
+        `before_first(publisher)` is called before the first message.
+        """
         if self._subscription is None and not self._observe():
             return False
         publisher = self._node.create_publisher(msg_type, topic, profile(qos))
+        before_first(publisher)
         with self._lock:
             self._messages[topic] = (publisher, lambda: checked(make(), msg_type, "msg"))
         return True
@@ -138,6 +166,7 @@ class Observer:
             publisher, _ = self._messages.pop(topic, (None, None))
         if publisher is None:
             return False
+        delivery.await_acknowledgements([publisher])
         self._node.destroy_publisher(publisher)
         return True
 
@@ -191,6 +220,12 @@ class PublishObserverMsgState(_PublishingState):
         message = self.message(userdata)
         if message is None:
             return "aborted"
-        added = self.observer.add(topic, type(message), lambda: self.stamped(message), self.qos)
+        added = self.observer.add(
+            topic,
+            type(message),
+            lambda: self.stamped(message),
+            self.qos,
+            self.await_subscription,
+        )
         self.write(userdata, message, topic)
         return "succeeded" if added else "aborted"

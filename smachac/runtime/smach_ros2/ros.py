@@ -33,7 +33,7 @@ def load(name: str) -> Any:
     except ImportError as error:
         raise ImportError(
             f"smach_ros2 needs ROS 2, and this Python has none ({error}); source the setup file of "
-            "a ROS 2 installation, or: pip install ros-rclpy ros-rmw-fastrtps-cpp"
+            "a ROS 2 installation, or: pip install ros-kilted-rclpy ros-kilted-rmw-fastrtps-cpp"
         ) from error
 
 
@@ -45,6 +45,8 @@ if TYPE_CHECKING:
         """The class rclpy.node.Node."""
 
         def __init__(self, node_name: str, **kwargs: Any) -> None: ...
+
+        def destroy_node(self) -> None: ...
 
         def __getattr__(self, name: str) -> Any: ...
 
@@ -139,10 +141,10 @@ def connect_smach() -> None:
     if (smach.loginfo, smach.logerr) == (log.loginfo, log.logerr):
         logger = load("rclpy.logging").get_logger("smach_ros")
         smach.set_loggers(
-            lambda text: logger.info(text),
-            lambda text: logger.warning(text),
-            lambda text: logger.debug(text),
-            lambda text: logger.error(text),
+            lambda text: logger.info(str(text)),  # rclpy raises TypeError for what is no text
+            lambda text: logger.warning(str(text)),
+            lambda text: logger.debug(str(text)),
+            lambda text: logger.error(str(text)),
         )
     if smach.is_shutdown is log.is_shutdown:
         smach.set_shutdown_check(shutdown_check())

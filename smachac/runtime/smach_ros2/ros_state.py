@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -49,16 +50,19 @@ class RosState(State):
     def _found(self, server: str, is_ready: Callable[[], bool], limit: float | None) -> bool:
         """Wait for a server up to `limit` seconds; whether it is there. After a few seconds the log
         names the server."""
-        most = math.inf if limit is None else limit
-        first = min(most, SILENCE_LIMIT)
-        if self._wait_until(is_ready, first, interval=DISCOVERY_INTERVAL):
-            return True
-        if self.preempt_requested() or not self.node.context.ok() or first == most:
+        report_at = time.monotonic() + SILENCE_LIMIT
+        left = "without a limit" if limit is None else f"up to {limit:g} s"
+
+        def is_found() -> bool:
+            nonlocal report_at
+            if is_ready():
+                return True
+            if time.monotonic() > report_at:
+                report_at = math.inf
+                smach.logwarn(f"there is no server for {server} yet: it is waited for, {left}")
             return False
-        left = "without a limit" if limit is None else f"up to {most:g} s"
-        smach.logwarn(f"there is no server for {server} yet: it is waited for, {left}")
-        rest = None if limit is None else most - first
-        return self._wait_until(is_ready, rest, interval=DISCOVERY_INTERVAL)
+
+        return self._wait_until(is_found, limit, interval=DISCOVERY_INTERVAL)
 
     def _is_preempted(self) -> bool:
         """Whether there is a preempt request; if so, it is marked as answered."""

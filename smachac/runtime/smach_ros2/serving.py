@@ -11,7 +11,7 @@ from smachac.runtime.smach_ros2.signals import GRACE, PreemptHandler
 
 
 def serve(node: Any, machine: Any, grace: float = GRACE) -> None:
-    """Wait for Ctrl-C or SIGTERM, which preempts the machine and then shuts the node down.
+    """Wait for a stop signal, which preempts the machine and then shuts the node down.
 
     The node is one of `start_node`.
     """

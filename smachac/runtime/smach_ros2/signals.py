@@ -1,8 +1,7 @@
-"""Ctrl-C and SIGTERM: machines are preempted while the node still works."""
+"""Stop signals: machines are preempted while the node still works."""
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
 import threading
@@ -10,20 +9,18 @@ import time
 from typing import Any
 
 from smachac.runtime import smach
+from smachac.runtime.signals import StopSignals, end_now
 from smachac.runtime.smach_ros2 import ros
 
 GRACE = 5.0
 """Seconds that a machine has to end after a stop request, before rclpy is shut down."""
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
-
-class PreemptHandler:
-    """The handler of SIGINT and SIGTERM that preempts machines.
+class PreemptHandler(StopSignals):
+    """The handler of the stop signals that preempts machines.
 
     The first signal preempts the machines, also those that are added later; the second one ends
-    the program. A thread reads the signal from a pipe, because Python runs no handler while the
-    main thread waits inside rclpy.
+    the program at once.
 
     Attributes:
         grace: seconds that the machines have to end.
@@ -32,6 +29,7 @@ class PreemptHandler:
     """
 
     def __init__(self, context: Any, shuts_down: bool = False) -> None:
+        super().__init__(self._stop_machines, end_now)
         self.grace = GRACE
         self.is_executing = False
         self._machines: list[Any] = []
@@ -39,16 +37,6 @@ class PreemptHandler:
         self._changing = threading.Lock()
         self._context = context
         self.shuts_down = shuts_down
-        self._pipe = os.pipe()
-        os.set_blocking(self._pipe[1], False)
-        self._thread = threading.Thread(target=self._wait, name="signals", daemon=True)
-        self._before: list[Any] = []
-
-    def install(self) -> None:
-        """Handle the signals from now on; to be called in the main thread."""
-        self._pipe_before = signal.set_wakeup_fd(self._pipe[1])
-        self._before = [signal.signal(number, self) for number in SIGNALS]
-        self._thread.start()
 
     def add(self, machine: Any) -> None:
         """Preempt this machine too; at once if a signal came before."""
@@ -63,39 +51,20 @@ class PreemptHandler:
         with self._changing:
             self._machines = [each for each in self._machines if each is not machine]
 
-    def ignore(self) -> None:
-        """Ignore all signals until `remove`, while the program cleans up."""
-        for number in SIGNALS:
-            signal.signal(number, signal.SIG_IGN)
+    def remove(self, limit: float | None = None) -> None:
+        """Restore the handlers that were there before, and wait for the end of the machines."""
+        super().remove(2 * self.grace if limit is None else limit)
 
-    def remove(self) -> None:
-        """Restore the handlers that were there before."""
-        signal.set_wakeup_fd(self._pipe_before)
-        for number, handler in zip(SIGNALS, self._before, strict=True):
-            signal.signal(number, handler)
-        os.write(self._pipe[1], b"\0")
-        self._thread.join(2 * self.grace)
-        for end in self._pipe:
-            os.close(end)
-
-    def __call__(self, number: int, frame: object) -> None:
-        """Let the next signal end the program; the thread does the rest."""
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-    def _wait(self) -> None:
-        """Wait for the first signal; a zero byte ends the wait."""
-        while number := os.read(self._pipe[0], 1)[0]:
-            if number in SIGNALS:
-                with self._changing:
-                    self._signalled = True
-                    machines = list(self._machines)
-                main = threading.main_thread().ident
-                is_main = any(is_executed_by(main, machine) for machine in machines)
-                self._preempt(machines)
-                if self.shuts_down and not is_main:
-                    self._context.try_shutdown()
-                return
+    def _stop_machines(self) -> None:
+        """Preempt the machines, and shut rclpy down if nothing else does."""
+        with self._changing:
+            self._signalled = True
+            machines = list(self._machines)
+        main = threading.main_thread().ident
+        is_main = any(is_executed_by(main, machine) for machine in machines)
+        self._preempt(machines)
+        if self.shuts_down and not is_main:
+            self._context.try_shutdown()
 
     def _preempt(self, machines: list[Any]) -> None:
         """Preempt the machines and wait for their end; shut rclpy down after the grace time."""
@@ -127,7 +96,7 @@ def is_executed_by(thread: int | None, container: Any) -> bool:
 
 
 def set_preempt_handler(sc: Any) -> None:
-    """Preempt a container at Ctrl-C, at SIGTERM and when rclpy is shut down.
+    """Preempt a container at a stop signal, and when rclpy is shut down.
 
     At a signal the container is preempted while the node still works, so that goals are cancelled.
     rclpy is shut down after its end, which ends `rclpy.spin`; if the main thread itself executes

@@ -189,7 +189,7 @@ class SimpleActionState(RosState):
         if not self._wait_until(ended, self._exec_timeout) and self.node.context.ok():
             if not self.preempt_requested():
                 smach.logwarn(f"action '{self._name}' is cancelled after {self._exec_timeout} s")
-            handle.cancel_goal_async()
+            handle.cancel_goal_async().add_done_callback(self._on_cancel_response)
             if not self._wait_until(ended, self._preempt_timeout, stopped=lambda: False):
                 smach.logerr(f"action '{self._name}' was cancelled and has not ended")
         if result.done():
@@ -197,6 +197,16 @@ class SimpleActionState(RosState):
         if self._server.is_gone():
             smach.logerr(f"the server of action '{self._name}' has ended: the goal is lost")
         return None
+
+    def _on_cancel_response(self, response: Any) -> None:
+        """Log that the server rejects a cancel request. The return code is then 0, no error, and
+        the response has no goals."""
+        answer = response.result()
+        if answer is not None and not answer.goals_canceling and answer.return_code == 0:
+            smach.logwarn(
+                f"the server of action '{self._name}' rejected the cancel request: the end of the "
+                f"goal is waited for, up to {self._preempt_timeout:g} s"
+            )
 
     def _on_feedback(self, ud: Any, feedback: Any) -> None:
         if self._feedback_cb is None:

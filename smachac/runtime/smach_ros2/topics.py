@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from smachac.runtime import smach
-from smachac.runtime.smach_ros2 import interfaces, ros
+from smachac.runtime.smach_ros2 import delivery, interfaces, ros
 from smachac.runtime.smach_ros2 import qos as qos_profiles
 from smachac.runtime.smach_ros2.message_fields import FieldError, checked
 from smachac.runtime.smach_ros2.ros_state import RosState
@@ -178,7 +178,10 @@ class ReadTopicState(RosState):
 
 
 class Publications:
-    """The publications of a node: once, or at a rate until they are stopped."""
+    """The publications of a node: once, or at a rate until they are stopped.
+
+    The first message on a topic waits for a subscription, up to delivery.MATCH_LIMIT seconds.
+    """
 
     def __init__(self, node: Any) -> None:
         self._node = node
@@ -187,12 +190,19 @@ class Publications:
         self._timers: dict[str, Any] = {}
 
     def start(
-        self, topic: str, msg_type: Any, message: Any, rate: float | None = None, qos: Any = None
+        self,
+        topic: str,
+        msg_type: Any,
+        message: Any,
+        rate: float | None = None,
+        qos: Any = None,
+        before_first: Callable[[Any], None] | None = None,
     ) -> None:
         """Publish a message, or the result of a function: once, or `rate` times a second.
 
         Raises FieldError for a value that does not fit its field. If a later message has one, the
-        log contains it, and the publication ends.
+        log contains it, and the publication ends. `before_first(publisher)` replaces the
+        wait for a subscription.
         """
         create = message if callable(message) else lambda: message
 
@@ -206,14 +216,25 @@ class Publications:
                 smach.logerr(f"the publication on '{topic}' ends: {error}")
                 self._stop_timer(topic)
 
-        first = checked_message()
         self._stop_timer(topic)
         with self._changing:
             publisher: Any = self._publishers.get(topic)
-            if publisher is None:
+            is_first = publisher is None
+            if is_first:
                 profile = qos_profiles.profile(qos)
                 publisher = self._node.create_publisher(msg_type, topic, profile)
                 self._publishers[topic] = publisher
+        if is_first and before_first is not None:
+            before_first(publisher)
+        elif is_first:
+            delivery.await_subscription(self._node, publisher)
+        try:
+            first = checked_message()
+        except FieldError:
+            if is_first:
+                self.stop(topic)
+            raise
+        with self._changing:
             publisher.publish(first)
             if rate is not None:
                 self._timers[topic] = self._node.create_timer(
@@ -226,6 +247,7 @@ class Publications:
         with self._changing:
             publisher = self._publishers.pop(topic, None)
         if publisher is not None:
+            delivery.await_acknowledgements([publisher])
             self._node.destroy_publisher(publisher)
         return publisher is not None
 

@@ -25,7 +25,8 @@ class TimeLimit:
     """A limit in the time of the node's clock: simulated time if the node uses it.
 
     In simulated time `wake` is called at each change of the clock. That clock is zero until its
-    first message, which may have any time: the limit begins with it.
+    first message, which may have any time: the limit begins with it. If none comes within
+    SILENCE_LIMIT seconds of real time, the log says so once.
     """
 
     def __init__(self, node: Any, length: float | None, wake: Callable[[], None]) -> None:
@@ -35,6 +36,8 @@ class TimeLimit:
         self._length = math.inf if length is None else length
         self._simulated = length is not None and self._clock.ros_time_is_active
         self._begin = self._now()
+        self._report_at = time.monotonic() + SILENCE_LIMIT if self._simulated else math.inf
+        self._node = node
 
     def __enter__(self) -> TimeLimit:
         if self._simulated:
@@ -64,6 +67,12 @@ class TimeLimit:
         """The seconds until the end; inf without a limit."""
         now = self._now()
         self._begin = self._begin or now
+        if not self._begin and time.monotonic() > self._report_at:
+            self._report_at = math.inf
+            self._node.get_logger().warning(
+                f"use_sim_time is set, and no time came on /clock for {SILENCE_LIMIT:g} s: "
+                "time limits begin with the first one"
+            )
         return self._length - (now - self._begin)
 
     def pause(self) -> float:

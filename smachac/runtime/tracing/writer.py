@@ -19,6 +19,16 @@ Observer = Callable[[Event], None]
 SECRET = "(secret)"
 """What a trace shows in place of the value of a secret key."""
 
+LONGEST_LINE = 4_000_000
+"""The most characters of an event as JSON; a trace with a longer one is refused, because JSON takes
+up to fifty times its size in memory."""
+
+LONGEST_NAME = 10_000
+"""The most characters of a path, an outcome or a key in an event."""
+
+LONGEST_VALUE = LONGEST_LINE - 10 * LONGEST_NAME
+"""The most characters of a value as JSON; of a longer one a trace has the form that views show."""
+
 NO_VALUE: object = object()
 """Stands for the value in an event that is not a write."""
 
@@ -241,11 +251,12 @@ _ENCODE = json.JSONEncoder(allow_nan=False).encode
 
 
 def _json(value: object) -> bytes:
-    """The JSON of `trace_value(value)`."""
+    """The JSON of `trace_value(value)`, or of the form that views show if it is too long."""
     try:
-        return (repr(value) if type(value) is int else _ENCODE(value)).encode()
+        text = repr(value) if type(value) is int else _ENCODE(value)
     except (TypeError, ValueError, RecursionError):
-        return json.dumps(trace_value(value)).encode()
+        text = json.dumps(trace_value(value))
+    return (text if len(text) <= LONGEST_VALUE else _ENCODE(shown_value(value))).encode()
 
 
 def trace_value(value: object) -> object:

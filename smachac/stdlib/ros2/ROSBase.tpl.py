@@ -23,9 +23,9 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
     program.stop_node(node)
     print(f"outcome: {outcome}")
 {% endblock execute %}
-{% block main %}
-{{ main }}
-
-if __name__ == "__main__":
-    {{ function_name | default("main") | lower }}()
-{% endblock main %}
+{% block defs %}
+{{ defs }}
+{% endblock defs %}
+{% block exit_code %}
+    raise SystemExit(program.stop_code())
+{% endblock exit_code %}

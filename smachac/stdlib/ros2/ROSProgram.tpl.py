@@ -13,6 +13,7 @@ except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach_ros2 as smach_ros
 {%- endif %}
 {%- endblock %}
+{%- block stop_signals %}{% endblock %}
 {%- block main %}
 {%- if ros_action %}
     """Offer the state machine as an action until a signal ends the node."""
@@ -73,7 +74,7 @@ def run_node():
     {{ result }}{{ function_name | default("main") }}()
 {%- endif %}
 {%- if ros_action %}
-    return 0
+    return program.stop_code()
 {%- else %}
     print(f"outcome: {outcome}")
     return program.exit_code(outcome, failures={{ ros_failures }})

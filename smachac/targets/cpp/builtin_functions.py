@@ -270,6 +270,10 @@ def _sum(given: list[Term], named: Named) -> Term:
     first = number(start[0].type)
     if first is None:
         raise UnportableError(f"the start value is `{shown(start[0].type)}`, not a number")
+    if start[0].type.name == "optional":
+        raise UnportableError("the start value may be None, which is then the sum of no items")
+    if present(start[0].type) == BOOL:
+        raise UnportableError("the start value is a truth value, which is then the sum of no items")
     type_ = first if kind == first else NUMBER
     if FLOAT in (first,) or (kind == FLOAT and size_of(source.type) is not None):
         type_ = FLOAT

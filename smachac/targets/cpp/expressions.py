@@ -33,6 +33,7 @@ from smachac.ir.expressions import (
     parse_expression,
     print_expression,
 )
+from smachac.ir.python_code import parse_code
 from smachac.ir.types import Type
 from smachac.targets.cpp import builtin_functions, literals, operators
 from smachac.targets.cpp.terms import (
@@ -145,8 +146,8 @@ def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[st
 def _portable_none(code: str) -> str | None:
     """The help for code that is portable with `== None` for `is None`."""
     try:
-        tree = ast.parse(code.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        tree = parse_code(code.strip())
+    except SyntaxError:
         return None
     words = None
     for node in ast.walk(tree):

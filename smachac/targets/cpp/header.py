@@ -145,7 +145,7 @@ def _refuse_names(plan: Plan, classes: Mapping[str, ClassCode]) -> None:
             first.setdefault(node.type, node)
     for name, leaf in first.items():
         code = classes[name]
-        if code.header == header:
+        if code.header.casefold() == header.casefold():  # equal names in some file systems
             text = f"the header of `{name}` and the generated header would both be `{header}`"
             help_ = "rename the header of the class, or the machine"
             plan.refuse(leaf.span, UnportableError(text, help=help_), leaf.name, header)

@@ -292,7 +292,10 @@ def _contains(left: Term, right: Term) -> CppText:
     if kind == STR or kind.name == "dict":
         if present(left.type) != STR:
             raise UnportableError(f"`{shown(kind)}` never contains `{shown(left.type)}`")
-        return call("contains", right.present(), left.present())
+        # None is in no mapping, but `None in "text"` is an error.
+        return call(
+            "contains", right.present(), left.text() if kind.name == "dict" else left.present()
+        )
     if kind.name not in SEQUENCES:
         raise UnportableError(f"`{shown(kind)}` has no items")
     _refuse_kinds(left.type, inside(kind))

@@ -74,7 +74,7 @@ def _arm(arm: Arm, name: str) -> Lines:
     """The constants of an arm."""
     limb, gripper = arm.limb, arm.limb.gripper
     yield f"inline constexpr smachac::JointDescription {name}_joints[] = {{"
-    yield "    // name, lower, upper, speed, home"
+    yield "    // name, lower, upper, speed, home, turns"
     for joint, home in zip(arm.joints, limb.home, strict=True):
         yield f"    {_joint(joint, home)},"
     yield "};"
@@ -102,7 +102,8 @@ def _arm(arm: Arm, name: str) -> Lines:
 
 def _joint(joint: Joint, home: float) -> str:
     numbers = (joint.lower, joint.upper, joint.velocity, home)
-    return f"{{{cpp_literal(joint.name)}, {', '.join(map(cpp_float, numbers))}}}"
+    turns = "true" if joint.turns else "false"
+    return f"{{{cpp_literal(joint.name)}, {', '.join(map(cpp_float, numbers))}, {turns}}}"
 
 
 def _pose(pose: Pose) -> str:

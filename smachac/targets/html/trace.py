@@ -7,14 +7,20 @@ from typing import Any
 
 from smachac.ir.nodes import Machine
 from smachac.runtime.tracing.values import shown_value
+from smachac.runtime.tracing.writer import LONGEST_LINE, LONGEST_NAME
 from smachac.targets import OptionError
 
 LONGEST_VALUE = 1_000
 """Characters of an event up to which its value is passed on as it is."""
 
+NAMES = ("event", "path", "outcome", "to", "key")
+"""The fields of events that have names."""
+
 
 def read_event(line: str | bytes) -> dict[str, Any] | None:
     """The event in a line of a trace, a long value of it cut; None if there is none."""
+    if len(line) > LONGEST_LINE:
+        return None
     try:
         event = json.loads(line)
     except (ValueError, RecursionError):
@@ -22,6 +28,8 @@ def read_event(line: str | bytes) -> dict[str, Any] | None:
     if not isinstance(event, dict):
         return None
     if not isinstance(event.get("event"), str) or not isinstance(event.get("path"), str):
+        return None
+    if any(isinstance(text, str) and len(text) > LONGEST_NAME for text in map(event.get, NAMES)):
         return None
     if "value" in event and len(line) > LONGEST_VALUE:
         event["value"] = shown_value(event["value"])

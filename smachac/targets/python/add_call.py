@@ -10,6 +10,7 @@ import ast
 from dataclasses import dataclass
 
 from smachac.ir.nodes import Concurrence, Container, Iterator, Node, Sequence, StateMachine
+from smachac.ir.python_code import parse_module
 from smachac.targets.python import structure
 from smachac.targets.python.formatter import flat
 
@@ -77,8 +78,8 @@ def _check_owner(text: str, node: Node, parent: Container) -> None:
     if isinstance(parent, Sequence) and all(each.origin == "written" for each in node.transitions):
         others = [each for each in others if each != StateMachine.__name__]
     try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        tree = parse_module(text)
+    except SyntaxError:
         return
     for call in ast.walk(tree):
         if isinstance(call, ast.Call) and _state_of(call, node.name) is not None:
@@ -106,7 +107,7 @@ def _find(text: str, name: str) -> _AddCall:
 
     found = [
         (call, state)
-        for call in ast.walk(ast.parse(text))
+        for call in ast.walk(parse_module(text))
         if isinstance(call, ast.Call) and (state := _state_of(call, name)) is not None
     ]
     if len(found) != 1:

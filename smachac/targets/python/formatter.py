@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from smachac.ir.nodes import Data, Expression, Struct
+from smachac.ir.python_code import parse_code
 from smachac.targets import comment_lines
 
 if TYPE_CHECKING:
@@ -108,11 +109,11 @@ def _one_line(text: str) -> str:
     if not any(mark in text for mark in "#\n,"):
         return text
     try:
-        tree = ast.parse(f"({text}\n)", mode="eval")
-        if isinstance(tree.body, ast.Tuple) or "#" in text or "\n" in text:
+        tree = parse_code(f"({text}\n)")
+        if isinstance(tree, ast.Tuple) or "#" in text or "\n" in text:
             return ast.unparse(tree)
         return text
-    except (SyntaxError, ValueError, RecursionError):
+    except SyntaxError:
         return " ".join(text.split("\n"))
 
 

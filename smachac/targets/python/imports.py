@@ -10,6 +10,7 @@ from textwrap import indent
 
 from smachac.frontend.loader import Ros
 from smachac.ir.nodes import DEFINITION_KINDS, Leaf, Machine
+from smachac.ir.python_code import parse_module
 from smachac.ir.traversal import expressions, walk
 from smachac.targets.python.formatter import WIDTH, laid_out, names
 
@@ -89,7 +90,7 @@ def import_lines(texts: Iterable[str]) -> str:
     others: dict[str, None] = {}
     for text in texts:
         try:
-            body = ast.parse(text).body
+            body = parse_module(text).body
         except SyntaxError:
             body = [ast.Pass()]
         if not all(isinstance(node, ast.Import | ast.ImportFrom) for node in body):

@@ -12,6 +12,7 @@ from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Machine
+from smachac.ir.python_code import parse_module
 from smachac.ir.traversal import walk
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
@@ -61,8 +62,11 @@ MOST_BRACKETS = 80
 """The most brackets of code that is never nested too deeply for Python, which allows 200 levels: a
 value of the script that contains the code has up to 100."""
 
+STOP_IMPORTS = [f"import {name}" for name in ("os", "signal", "socket", "threading")]
+"""The imports of a program that handles signals by itself (StopSignals.tpl.py)."""
+
 NODE_IMPORTS: Mapping[Ros, list[str]] = {
-    1: [f"import {name}" for name in ("os", "rospy", "signal", "threading", "time")],
+    1: [*STOP_IMPORTS, "import rospy", "import time"],
     2: ["from smachac.runtime.smach_ros2 import program"],
 }
 """The imports of a program that is a node, by version of ROS."""
@@ -233,7 +237,9 @@ def _node_variables(
 
 
 def _node_imports(template: str, settable: RosParameters, module: ModuleParts) -> list[str]:
-    """The imports of the code that starts the node."""
+    """The imports of the code that starts the node, and of that for signals."""
+    if template in ("Program.tpl.py", "Base.tpl.py"):
+        return STOP_IMPORTS
     if template not in ("ROSProgram.tpl.py", "ROSBase.tpl.py"):
         return []
     more = ["from smachac.runtime.smach_ros2 import parameters"] if settable.declared else []
@@ -329,8 +335,8 @@ def _uses(text: str, names: re.Pattern[str]) -> bool:
     if names.search(text) is None:
         return False
     try:
-        tree = ast.parse(modern(text)[0])
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        tree = parse_module(modern(text)[0])
+    except SyntaxError:
         return True
     for node in ast.walk(tree):
         match node:
@@ -383,7 +389,7 @@ def _checked(
     text = with_fallback(text, tree)
     lines = _BLANKS.sub("\n\n\n", text).split("\n")
     tidy = "\n".join(line.rstrip(" \t") for line in lines)
-    if tidy != text and ast.dump(ast.parse(tidy)) == ast.dump(ast.parse(text)):
+    if tidy != text and ast.dump(parse_module(tidy)) == ast.dump(parse_module(text)):
         text = tidy
     mark = f"# {made_by(machine)}\n"
     if mark not in text:

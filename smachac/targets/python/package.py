@@ -6,6 +6,7 @@ import ast
 import re
 
 from smachac.ir.nodes import Data, Machine
+from smachac.ir.python_code import parse_module
 from smachac.targets import Files, OptionError, made_by, stem
 from smachac.targets.package_xml import package_xml, summary
 from smachac.targets.python.formatter import flat, literal, string
@@ -44,7 +45,7 @@ def package_files(
 def message_packages(text: str) -> list[str]:
     """The packages of the messages that a program imports."""
     found = set()
-    for node in ast.parse(text).body:
+    for node in parse_module(text).body:
         if isinstance(node, ast.ImportFrom) and node.module is not None:
             package, _, module = node.module.partition(".")
             if module in MESSAGE_MODULES:

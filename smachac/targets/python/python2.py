@@ -6,6 +6,8 @@ import ast
 import re
 from typing import NamedTuple
 
+from smachac.ir.python_code import parse_module
+
 Change = tuple[str, str]
 """A line before and after its translation."""
 
@@ -15,7 +17,7 @@ class Modern(NamedTuple):
 
     text: str
     changes: list[Change]
-    tree: ast.Module | Exception
+    tree: ast.Module | SyntaxError
 
 
 _EXCEPT = re.compile(r"^(\s*except\s+(?:\([^()]*\)|[\w.]+))\s*,\s*(\w+)\s*:(.*)$")
@@ -79,9 +81,9 @@ def _line(line: str) -> str | None:
     return None
 
 
-def parsed(text: str) -> ast.Module | Exception:
+def parsed(text: str) -> ast.Module | SyntaxError:
     """The tree of a text, or the exception if it is no Python."""
     try:
-        return ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        return parse_module(text)
+    except SyntaxError as error:
         return error

@@ -1,13 +1,11 @@
-"""Runs a generated Python program in this process, with a trace and with preemption by Ctrl-C."""
+"""Runs a generated Python program in this process, with a trace; stop signals preempt it."""
 
 from __future__ import annotations
 
 import linecache
 import os
 import random
-import signal
 import sys
-import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial, wraps
 from pathlib import Path
-from types import FrameType, ModuleType
+from types import ModuleType
 from typing import Any
 
 from smachac.ir.nodes import Machine
@@ -23,6 +21,8 @@ from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import walk
 from smachac.robots.faults import Fault
+from smachac.runtime import signals
+from smachac.runtime.signals import StopSignals
 from smachac.runtime.smach.failures import one_line
 from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.writer import Observer, Sink
@@ -65,7 +65,7 @@ def execute(
     faults: Sequence[Fault] = (),
     poses: Mapping[str, Mapping[str, float]] | None = None,
     on_preempt: Callable[[], None] = lambda: None,
-    on_interrupt: Callable[..., Any] = signal.default_int_handler,
+    on_second_signal: Callable[[int], Any] = signals.end_now,
     arguments: Sequence[str] | None = None,
     gate: Gate | None = None,
 ) -> RunResult:
@@ -75,9 +75,10 @@ def execute(
     frontend/files.py), and where it finds descriptions of robots and scenes. `observe` gets every
     event of the trace, with paths of the script; `faults` are injected into the simulation, and are
     events of the trace; `poses` replace those of bodies in its scene (`sim.configure`). `gate` lets
-    a debugger stop the machine between two states. Ctrl-C requests the machine to preempt and calls
-    `on_preempt`; a second one calls the signal handler `on_interrupt`. `arguments` are those of a
-    node of ROS 2, which handles Ctrl-C itself. Exceptions of the program are not caught.
+    a debugger stop the machine between two states. The first stop signal requests the machine to
+    preempt and calls `on_preempt`; a second one calls `on_second_signal` with its number; both in
+    another thread. `arguments` are those of a node of ROS 2, which handles the signals itself.
+    Exceptions of the program are not caught.
     """
     from smachac.runtime.tracing import trace
 
@@ -118,7 +119,7 @@ def execute(
             _simulation(settings),
             watching(module, watch) as outcomes,
             quiet(module["smach"], _print_log),
-            _preempting(built, on_preempt, on_interrupt),
+            _stopping(built, on_preempt, on_second_signal),
         ):
             outcome: str | None = main_function(module, machine)(*given)
         return RunResult(
@@ -319,26 +320,17 @@ def main_function(module: Mapping[str, Any], machine: Machine) -> Callable[..., 
     raise NameError(f"the base of the program defines no function `{name}`")
 
 
-@contextmanager
-def _preempting(
-    built: list[Any], on_preempt: Callable[[], None], on_interrupt: Callable[..., Any]
-) -> Iterator[None]:
-    """The first Ctrl-C is a preempt request; the second calls `on_interrupt`."""
-
-    def preempt(number: int, frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, on_interrupt)
-        if not built:
-            on_interrupt(number, frame)
-            return
-        # Not from here: the signal may have come in the middle of a write to the trace.
-        threading.Thread(target=request, daemon=True).start()
+def _stopping(
+    built: Sequence[Any], on_preempt: Callable[[], None], on_second: Callable[[int], Any]
+) -> StopSignals:
+    """The first stop signal is a stop request; the second one calls `on_second`. Without a machine
+    the first one does."""
 
     def request() -> None:
+        if not built:
+            on_second(signals.received[0])
+            return
         on_preempt()
         built[-1].request_preempt()
 
-    before = signal.signal(signal.SIGINT, preempt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    return StopSignals(request, on_second)

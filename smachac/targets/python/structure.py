@@ -38,6 +38,7 @@ from smachac.targets.python.formatter import (
 OURS = (
     *("smach", "build", "main", "error_as_outcome", "with_callbacks"),
     *("ends_preempted", "stoppable", "stoppable_again", "withdraw"),
+    *("stop_at_signals", "stop_signals", "signals", "sim", "world"),
     *("rospy", "smach_ros", "start_node", "preempt_at_shutdown", "server", "sis"),
 )
 """Names of the module that variables of containers must not have."""

@@ -19,6 +19,7 @@ from types import ModuleType
 from typing import Any
 
 from smachac.ir.nodes import Machine, StateType
+from smachac.ir.python_code import parse_module
 
 ALWAYS = (
     *("rclpy", "rospy", "roslib", "rosgraph", "rostopic", "rosbag", "actionlib", "smach_ros"),
@@ -145,7 +146,7 @@ class _Finder(MetaPathFinder, Loader):
 def _message_packages(text: str) -> list[str]:
     """The packages of messages that a program imports."""
     try:
-        tree = ast.parse(text)
+        tree = parse_module(text)
     except SyntaxError:  # the player reports it
         return []
     modules = [

@@ -4,11 +4,14 @@
 // from `smachac::Arm` and `smachac::World`, and pass an object of each to the States of the
 // machine.
 //
-// Lengths are in metres, angles in radians, poses in the frame of the robot's base.
+// Lengths are in metres, angles in radians, poses in the frame of the robot's base. The position of
+// a joint is in radians, or in metres if it slides; in the speed of a motion, 0.2 m of a joint that
+// slides count as 1 rad of one that turns.
 #ifndef SMACHAC_ARM_HPP
 #define SMACHAC_ARM_HPP
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -41,13 +44,23 @@ template <class T> struct List {
 };
 
 /// A joint of an arm in the description of a robot: its limits and its home in radians, its largest
-/// speed in rad/s; infinite where there is no limit.
+/// speed in rad/s; in metres and m/s if it does not turn, but slides. Infinite where there is no
+/// limit: a joint that turns without limits is continuous.
 struct JointDescription {
   const char *name;
   double lower, upper;
   double speed;
   double home;
+  bool turns = true;
 };
+
+/// The way of a joint from one position to another, in radians or metres. A continuous joint turns
+/// the short way.
+inline double joint_way(const JointDescription &joint, double from, double to) {
+  const bool continuous = joint.turns && std::isinf(joint.lower) && std::isinf(joint.upper);
+  constexpr double turn = 6.283185307179586;
+  return continuous ? std::remainder(to - from, turn) : to - from;
+}
 
 /// A joint of a gripper: its positions when the gripper is open and closed, in metres, or in
 /// radians if the joint turns.

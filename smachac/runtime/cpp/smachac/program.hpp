@@ -1,7 +1,7 @@
 // Made by smachac, as it is for every machine: do not edit.
 //
-// The program around a machine: reads the option `--trace FILE`, makes Ctrl-C a preempt request,
-// prints the outcome at the end. For POSIX.
+// The program around a machine: reads the option `--trace FILE`, makes Ctrl-C, SIGTERM and SIGHUP
+// preempt requests, prints the outcome at the end. For POSIX.
 #ifndef SMACHAC_PROGRAM_HPP
 #define SMACHAC_PROGRAM_HPP
 
@@ -20,21 +20,32 @@ inline namespace v0_1_0 {
 
 namespace detail {
 
-/// The signal handling of a program, during the lifetime of the object: the first SIGINT or SIGTERM
-/// sends a preempt request, the second one ends the program with the exit code 128 + signal number.
-/// A thread of the object receives the signals. They are blocked in the thread that creates the
-/// object and in the threads that it starts later.
+/// The signal handling of a program, during the lifetime of the object: the first SIGINT, SIGTERM
+/// or SIGHUP sends a preempt request, the second one ends the program with the exit code 128 +
+/// signal number. Signals that are ignored, as SIGHUP is below nohup, stay so. A thread of the
+/// object receives the signals. They are blocked in the thread that creates the object and in the
+/// threads that it starts later.
 class Listener {
 public:
   explicit Listener(Stop &stop) {
     sigemptyset(&signals_);
-    sigaddset(&signals_, SIGINT);
-    sigaddset(&signals_, SIGTERM);
+    sigaddset(&signals_, SIGTERM); // always, the destructor sends it
+    for (const int number : {SIGINT, SIGHUP}) {
+      struct sigaction known {};
+      sigaction(number, nullptr, &known);
+      if (known.sa_handler != SIG_IGN) {
+        sigaddset(&signals_, number);
+      }
+    }
     pthread_sigmask(SIG_BLOCK, &signals_, &before_);
     thread_ = std::thread([this, &stop] { listen(stop); });
   }
   Listener(const Listener &) = delete;
   Listener &operator=(const Listener &) = delete;
+
+  /// The number of the first signal; 0 if there was none.
+  int signal() const { return first_; }
+
   ~Listener() {
     over_ = true;
     pthread_kill(thread_.native_handle(), SIGTERM);
@@ -49,6 +60,7 @@ private:
     if (over_) {
       return;
     }
+    first_ = signal;
     stop.request();
     sigwait(&signals_, &signal);
     if (!over_) {
@@ -59,6 +71,7 @@ private:
   sigset_t signals_{};
   sigset_t before_{};
   std::atomic<bool> over_{false};
+  std::atomic<int> first_{0};
   std::thread thread_{};
 };
 
@@ -79,8 +92,9 @@ public:
   }
 
   /// Runs a machine and prints the name of its outcome. `machine` takes an Observer * and a Stop &
-  /// and returns this name. Returns the exit code for `main`: 0, or 1 if the machine threw an
-  /// exception or the trace file could not be opened or completely written.
+  /// and returns this name. Returns the exit code for `main`: after a signal 128 + its number, else
+  /// 0, or 1 if the machine threw an exception or the trace file could not be opened or completely
+  /// written.
   template <class Machine> int run(Machine machine) {
     std::FILE *file = nullptr;
     if (trace_ != nullptr) {
@@ -91,7 +105,9 @@ public:
       }
     }
     TraceWriter writer(file);
-    int code = ended(machine, file != nullptr ? &writer : nullptr);
+    Stop stop;
+    const detail::Listener listener(stop);
+    int code = ended(machine, file != nullptr ? &writer : nullptr, stop);
     if (file != nullptr) {
       const bool bad = std::ferror(file) != 0;
       if (std::fclose(file) != 0 || bad) {
@@ -99,13 +115,12 @@ public:
         code = 1;
       }
     }
-    return code;
+    std::fflush(stdout);
+    return listener.signal() != 0 ? 128 + listener.signal() : code;
   }
 
 private:
-  template <class Machine> int ended(Machine &machine, Observer *observer) {
-    Stop stop;
-    const detail::Listener listener(stop);
+  template <class Machine> int ended(Machine &machine, Observer *observer, Stop &stop) {
 #if defined(__cpp_exceptions)
     try {
       std::printf("outcome: %s\n", machine(observer, stop));

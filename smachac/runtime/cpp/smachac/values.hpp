@@ -497,6 +497,12 @@ template <class A, class B> Order order(const A &a, const B &b) {
     }
   } else if constexpr (std::is_same_v<A, std::string> && std::is_same_v<B, std::string>) {
     return inner::plain_order(a.compare(b), 0);
+  } else if constexpr (std::is_same_v<A, None> || std::is_same_v<B, None>) {
+    fail("None where a value is needed");
+  } else if constexpr (detail::is_optional<A>::value) {
+    return order(present(a), b);
+  } else if constexpr (detail::is_optional<B>::value) {
+    return order(a, present(b));
   } else {
     const std::size_t both = std::min(a.size(), b.size());
     for (std::size_t i = 0; i < both; ++i) {
@@ -622,6 +628,12 @@ inline bool contains(const std::string &text, const std::string &part) {
 
 template <class T> bool contains(const std::map<std::string, T> &entries, const std::string &key) {
   return entries.find(key) != entries.end();
+}
+
+/// None is a key of no mapping.
+template <class T>
+bool contains(const std::map<std::string, T> &entries, const std::optional<std::string> &key) {
+  return key.has_value() && entries.find(*key) != entries.end();
 }
 
 template <class T, class U> bool contains(const T &items, const U &value) {

@@ -7,6 +7,7 @@ try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
+from smachac.runtime import signals
 
 
 def outcome_of(state, result):
@@ -120,7 +121,8 @@ class PoseToJointPositionsState(smach.State):
             pose = arm.grasp_pose(pose)
         joints = arm.solve_ik(pose, optional(userdata, "offset"))
         if joints is None:
-            smach.logwarn(f"PoseToJointPositionsState: {pose[0]} is out of reach")
+            place = [round(part, 3) for part in sim.as_pose(pose)[0]]
+            smach.logwarn(f"PoseToJointPositionsState: {place} is out of reach")
             return "aborted"
         userdata["joints"] = joints
         return "succeeded"
@@ -468,6 +470,8 @@ def main():
     with sim.World(robot="panda") as world:
         pick_and_place = build()
         world.attach(pick_and_place, "pick_and_place")
+        if __name__ == "__main__":
+            signals.stop_at_signals(pick_and_place)
         outcome = pick_and_place.execute()
         print(f"simulated time: {world.time:.2f} s")
         for name in world.bodies:
@@ -480,4 +484,4 @@ def main():
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

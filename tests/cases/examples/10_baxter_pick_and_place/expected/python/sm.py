@@ -8,6 +8,7 @@ try:
     import smach
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
+from smachac.runtime import signals
 from smachac.sim.gazebo import Point, Pose, Quaternion, rospkg  # noqa: F401
 
 
@@ -385,6 +386,8 @@ def main():
     with sim.World(robot="baxter") as world:
         sm = build()
         world.attach(sm, "sm")
+        if __name__ == "__main__":
+            signals.stop_at_signals(sm)
         outcome = sm.execute()
         print(f"simulated time: {world.time:.2f} s")
         for name in world.bodies:
@@ -397,4 +400,4 @@ def main():
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(signals.exit_code(outcome is None))

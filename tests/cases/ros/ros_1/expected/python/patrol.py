@@ -5,6 +5,7 @@ import copy
 import io
 import os
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -38,51 +39,6 @@ try:
 except ImportError:  # without SMACH: smachac.runtime has the same names
     from smachac.runtime import smach
     from smachac.runtime import smach_ros
-
-
-def start_node(name):
-    """Start a ROS node. The first signal shuts it down; the second ends the program.
-
-    A thread performs the shutdown: the signal handler of rospy can cause a deadlock if
-    the interrupted code holds a lock. The thread reads the signal number from a pipe,
-    because Python runs no signal handler while the main thread is blocked.
-    """
-    rospy.init_node(name, disable_signals=True)
-    read, write = os.pipe()
-    os.set_blocking(write, False)
-    signal.set_wakeup_fd(write)
-
-    def handle_signal(number, frame):
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-    def shut_down():
-        number = 0
-        while number not in (signal.SIGINT, signal.SIGTERM):
-            number = os.read(read, 1)[0]
-        reason = f"signal {number}"
-        threading.Thread(target=rospy.signal_shutdown, args=[reason], daemon=False).start()
-
-    threading.Thread(target=shut_down, daemon=True).start()
-    signal.signal(signal.SIGINT, handle_signal)
-    signal.signal(signal.SIGTERM, handle_signal)
-
-
-def preempt_at_shutdown(machine):
-    """Preempt a state machine before the node shuts down and wait up to 5 s."""
-
-    def preempt():
-        end = time.monotonic() + 5.0
-        machine.request_preempt()
-        while machine.is_running():
-            if time.monotonic() > end:
-                smach.logwarn(
-                    "the state machine did not end within 5 s: the node shuts down"
-                )
-                break
-            time.sleep(0.02)
-
-    rospy.on_shutdown(preempt)
 
 
 def optional(userdata, key, default=None):
@@ -952,6 +908,64 @@ def build():
     return patrol
 
 
+stop_signals = []
+
+
+def stop_at_signals(stop):
+    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP; the second one ends the program.
+
+    A thread reads the signals from a socket: Python runs no signal handler while the main
+    thread is blocked.
+    """
+    read, write = socket.socketpair()
+    write.setblocking(False)
+    signal.set_wakeup_fd(write.detach())
+    known = {signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)}
+    handled = [number for number in known if signal.getsignal(number) != signal.SIG_IGN]
+    for number in handled:
+        signal.signal(number, lambda number, frame: stop_signals.append(number))
+
+    terminals = [stream for stream in range(3) if os.isatty(stream)]
+
+    def wait():
+        is_stopping = False
+        while True:
+            number = read.recv(1)[0]
+            if number in handled and is_stopping:
+                os._exit(128 + number)
+            if number in handled:
+                is_stopping = True
+                for stream in terminals:
+                    if not os.isatty(stream):  # it was closed: output to it is an error
+                        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
+                threading.Thread(target=stop).start()
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def start_node(name):
+    """Start a ROS node, which the first signal shuts down."""
+    rospy.init_node(name, disable_signals=True)
+    stop_at_signals(lambda: rospy.signal_shutdown("signal"))
+
+
+def preempt_at_shutdown(machine):
+    """Preempt a state machine before the node shuts down and wait up to 5 s."""
+
+    def preempt():
+        end = time.monotonic() + 5.0
+        machine.request_preempt()
+        while machine.is_running():
+            if time.monotonic() > end:
+                smach.logwarn(
+                    "the state machine did not end within 5 s: the node shuts down"
+                )
+                break
+            time.sleep(0.02)
+
+    rospy.on_shutdown(preempt)
+
+
 def main():
     """Run the state machine once as a ROS node and return its outcome."""
     start_node("patrol")
@@ -963,4 +977,4 @@ def main():
 if __name__ == "__main__":
     outcome = main()
     print(f"outcome: {outcome}")
-    raise SystemExit(outcome is None)
+    raise SystemExit(128 + stop_signals[0] if stop_signals else outcome is None)

@@ -7,14 +7,14 @@
 namespace robots::panda {
 
 inline constexpr smachac::JointDescription arm_joints[] = {
-    // name, lower, upper, speed, home
-    {"panda_joint1", -2.9671, 2.9671, 2.175, 0.0},
-    {"panda_joint2", -1.8326, 1.8326, 2.175, -0.7853981633974483},
-    {"panda_joint3", -2.9671, 2.9671, 2.175, 0.0},
-    {"panda_joint4", -3.1416, 0.0, 2.175, -2.356194490192345},
-    {"panda_joint5", -2.9671, 2.9671, 2.61, 0.0},
-    {"panda_joint6", -0.0873, 3.8223, 2.61, 1.5707963267948966},
-    {"panda_joint7", -2.9671, 2.9671, 2.61, 0.7853981633974483},
+    // name, lower, upper, speed, home, turns
+    {"panda_joint1", -2.9671, 2.9671, 2.175, 0.0, true},
+    {"panda_joint2", -1.8326, 1.8326, 2.175, -0.7853981633974483, true},
+    {"panda_joint3", -2.9671, 2.9671, 2.175, 0.0, true},
+    {"panda_joint4", -3.1416, 0.0, 2.175, -2.356194490192345, true},
+    {"panda_joint5", -2.9671, 2.9671, 2.61, 0.0, true},
+    {"panda_joint6", -0.0873, 3.8223, 2.61, 1.5707963267948966, true},
+    {"panda_joint7", -2.9671, 2.9671, 2.61, 0.7853981633974483, true},
 };
 inline constexpr smachac::FingerDescription arm_fingers[] = {
     // name, open, closed

@@ -7,14 +7,14 @@
 namespace robots::baxter {
 
 inline constexpr smachac::JointDescription left_joints[] = {
-    // name, lower, upper, speed, home
-    {"left_s0", -1.70168, 1.70168, 1.5, -0.08},
-    {"left_s1", -2.147, 1.047, 1.5, -0.99998},
-    {"left_e0", -3.05418, 3.05418, 1.5, -1.18997},
-    {"left_e1", -0.05, 2.618, 1.5, 1.94002},
-    {"left_w0", -3.059, 3.059, 4.0, 0.67},
-    {"left_w1", -1.5708, 2.094, 4.0, 1.03001},
-    {"left_w2", -3.059, 3.059, 4.0, -0.5},
+    // name, lower, upper, speed, home, turns
+    {"left_s0", -1.70168, 1.70168, 1.5, -0.08, true},
+    {"left_s1", -2.147, 1.047, 1.5, -0.99998, true},
+    {"left_e0", -3.05418, 3.05418, 1.5, -1.18997, true},
+    {"left_e1", -0.05, 2.618, 1.5, 1.94002, true},
+    {"left_w0", -3.059, 3.059, 4.0, 0.67, true},
+    {"left_w1", -1.5708, 2.094, 4.0, 1.03001, true},
+    {"left_w2", -3.059, 3.059, 4.0, -0.5, true},
 };
 inline constexpr smachac::FingerDescription left_fingers[] = {
     // name, open, closed
@@ -33,14 +33,14 @@ inline constexpr smachac::ArmDescription left{
 };
 
 inline constexpr smachac::JointDescription right_joints[] = {
-    // name, lower, upper, speed, home
-    {"right_s0", -1.70168, 1.70168, 1.5, 0.08},
-    {"right_s1", -2.147, 1.047, 1.5, -0.99998},
-    {"right_e0", -3.05418, 3.05418, 1.5, 1.18997},
-    {"right_e1", -0.05, 2.618, 1.5, 1.94002},
-    {"right_w0", -3.059, 3.059, 4.0, -0.67},
-    {"right_w1", -1.5708, 2.094, 4.0, 1.03001},
-    {"right_w2", -3.059, 3.059, 4.0, 0.5},
+    // name, lower, upper, speed, home, turns
+    {"right_s0", -1.70168, 1.70168, 1.5, 0.08, true},
+    {"right_s1", -2.147, 1.047, 1.5, -0.99998, true},
+    {"right_e0", -3.05418, 3.05418, 1.5, 1.18997, true},
+    {"right_e1", -0.05, 2.618, 1.5, 1.94002, true},
+    {"right_w0", -3.059, 3.059, 4.0, -0.67, true},
+    {"right_w1", -1.5708, 2.094, 4.0, 1.03001, true},
+    {"right_w2", -3.059, 3.059, 4.0, 0.5, true},
 };
 inline constexpr smachac::FingerDescription right_fingers[] = {
     // name, open, closed

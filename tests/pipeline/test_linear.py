@@ -1,0 +1,82 @@
+"""No command is quadratic: twice the input takes at most 2.3 times the lines of Python.
+
+Lines are counted, not seconds: the number is the same on each machine.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import pytest
+
+from smachac.commands.cli import main
+
+BENCH = Path(__file__).parents[2] / "bench" / "hostile.py"
+SIZE = 250
+MOST = 2.3
+
+INPUTS = (
+    "wrong_targets",
+    "near_targets",
+    "wrong_outcomes",
+    "wrong_remappings",
+    "unknown_fields",
+    "outcomes",
+    "transitions",
+    "userdata",
+    "params",
+    "fields_outside_of_states",
+    "project_settings",
+    "project_folders",
+    "scenario_states",
+)
+
+
+def hostile() -> Any:
+    """The module bench/hostile.py."""
+    spec = importlib.util.spec_from_file_location("hostile", BENCH)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def lines(arguments: list[str]) -> int:
+    """The lines of Python that a command runs."""
+    count = 0
+
+    def trace(frame: FrameType, event: str, argument: object) -> Any:
+        nonlocal count
+        count += event == "line"
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        main(arguments)
+    except SystemExit:
+        pass
+    finally:
+        sys.settrace(before)
+    return count
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_twice_the_input_takes_about_twice_the_lines(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, write = hostile().INPUTS[name]
+    counts = []
+    for size in (10, SIZE, 2 * SIZE):  # the first one imports what is needed
+        folder = tmp_path / str(size)
+        folder.mkdir()
+        arguments = write(folder, size)
+        monkeypatch.chdir(folder)
+        counts.append(lines(arguments))
+    _, one, two = counts
+    assert two / one < MOST, counts
