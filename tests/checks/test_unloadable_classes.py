@@ -142,12 +142,18 @@ RIGHT = [
     imports(grasp="from cell.look import Look\n"),
     imports(grasp="import cell.look\n", look="import cell.grasp\n"),
     imports(grasp="from cell import look\n", look="from cell import grasp\n"),
-    imports(grasp="from cell.tools import close\n", tools="def close():\n    from cell.grasp import Grasp\n    return Grasp\n"),
-    imports(grasp="FORCE = 2.0\nfrom cell.tools import close\n", tools="from cell.grasp import FORCE\nclose = FORCE\n"),
-    imports(grasp="from cell import SPEED\n") | {"cell/__init__.py": "SPEED = 1\nfrom .grasp import Grasp\n"},
-    imports(grasp="from cell.tools import close\n", tools="try:\n    from cell.grasp import Grasp\nexcept ImportError:\n    Grasp = None\nclose = 1\n"),
-    # the order counts: look is complete before grasp begins in this one
-    imports(tools="close = 1\nfrom cell.grasp import Grasp\n", grasp="from cell.tools import close\n")
+    imports(grasp="from cell.tools import close\n",
+            tools="def close():\n    from cell.grasp import Grasp\n    return Grasp\n"),
+    imports(grasp="FORCE = 2.0\nfrom cell.tools import close\n",
+            tools="from cell.grasp import FORCE\nclose = FORCE\n"),
+    imports(grasp="from cell import SPEED\n")
+    | {"cell/__init__.py": "SPEED = 1\nfrom .grasp import Grasp\n"},
+    imports(grasp="from cell.tools import close\n",
+            tools="try:\n    from cell.grasp import Grasp\nexcept ImportError:\n    Grasp = None\n"
+            "close = 1\n"),
+    # the order counts: tools has defined close before grasp begins
+    imports(tools="close = 1\nfrom cell.grasp import Grasp\n",
+            grasp="from cell.tools import close\n")
     | {"templates/Grasp.yml": FILES["templates/Grasp.yml"].replace("cell.grasp", "cell.tools")},
 ]  # fmt: skip
 
@@ -179,9 +185,10 @@ UNDEFINED = [
     ("return [y for y in items if z]", ["items", "z"]),
     ("print(count)\n        count = 1\n        return 'done'", ["count"]),
     ("def inner():\n            return later\n        return inner()", ["later"]),
-    ("try:\n            return json.loads('1')\n        except Error:\n            return 'done'", ["json", "Error"]),
-    ("x: Unknown = 1\n        return x", ["Unknown"]),
-    ("del self.x, y\n        return 'done'", []),
+    ("try:\n            return json.loads('1')\n        except Error:\n            return 'done'",
+     ["json", "Error"]),
+    ("x: Unknown = 1\n        return str(x)", []),  # Python does not read the annotation
+    ("del y\n        return 'done'", ["y"]),
     ("global ready\n        ready = 1\n        return ready", []),
     ("if (n := 3) > 2:\n            return str(n)", []),
     ("match userdata:\n            case {'a': b, **rest}:\n                return b or rest", []),
