@@ -178,7 +178,7 @@ def _analysis(
             report.extend(undefined_names(context, library))
             report.extend(extra(machine) if extra is not None else ())
             report.extend(version_faults(machine, library) if render else ())
-            if render and not has_errors(report):
+            if render and not has_errors(without_class_errors(report)):
                 report.extend(template_faults(machine, library))
         sources = script.sources if script is not None else (source,)
         complete = machine is not None

@@ -108,8 +108,7 @@ def cycles(machine: Machine, library: Library, found: Sequence[Diagnostic]) -> l
         return []
     users: dict[str, tuple[Leaf, StateType, str]] = {}
     for leaf, type_ in own_types(machine, library):
-        code = type_.classes.get("python") or type_.code.get("python", "")
-        module, is_class, name = code.partition(":")
+        module, is_class, name = type_.code.get("python", "").partition(":")
         if is_class:
             users.setdefault(module, (leaf, type_, name))
     faults = circular_imports(sorted(users), library)  # the program imports them in this order
