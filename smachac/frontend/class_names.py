@@ -69,9 +69,11 @@ def undefined_names(
     those with a name that was certainly meant.
 
     `lists` are the outcomes and keys of the class, by parameter of `smach.State.__init__`."""
+    if module.dynamic or not any(True for _ in _unbound(node, {*module.names, *BUILT_IN})):
+        return []
     every = [*ast.walk(module.text.tree)]
     names = {each.id for each in every if isinstance(each, ast.Name)}
-    if module.dynamic or not MAKE_NAMES.isdisjoint(names):
+    if not MAKE_NAMES.isdisjoint(names):
         return []
     anywhere = {name for each in every for name in _bound(each)} | BUILT_IN
     inner = node not in module.names.get(node.name, ())  # in a function: its names are visible
