@@ -99,10 +99,10 @@ def test_a_sub_script_is_repaired_for_its_callers() -> None:
 
 
 def mutants() -> list[tuple[str, str]]:
-    """A kind of damage and the name of a project for each of 60 texts."""
+    """A kind of damage and the name of a project for each of 24 texts."""
     names = sorted(unusual_projects())
     kinds = [*ALL_MUTATIONS]
-    return [(kinds[turn % len(kinds)], names[(11 * turn) % len(names)]) for turn in range(60)]
+    return [(kinds[turn % len(kinds)], names[(11 * turn) % len(names)]) for turn in range(24)]
 
 
 def test_clusters_of_damaged_texts_obey_the_laws() -> None:
@@ -118,7 +118,7 @@ def test_clusters_of_damaged_texts_obey_the_laws() -> None:
         assert_disjoint(analysis, found)
         for cluster in found:
             assert_proven(analysis, cluster)
-    assert count > 20
+    assert count > 8
 
 
 def assert_disjoint(analysis: Analysis, found: list[Cluster]) -> None:
