@@ -140,6 +140,9 @@ set_up() {
   prepare_optional
   say "installing what is missing in .venv: a minute or two"
   if [[ $level == sim ]]; then pip install -q -e '.[sim]'; else pip install -q -e '.[sim,dev]'; fi
+  # In a folder of its own: beside the other packages it would replace the bundled runtime.
+  [[ $level == sim || -d .venv/standalone-smach/smach ]] ||
+    pip install -q --no-deps --target .venv/standalone-smach standalone-smach==0.0.9
   key >.venv/ready-sim
   [[ $level == sim ]] || key >.venv/ready-dev
   rm .venv/unfinished

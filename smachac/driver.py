@@ -38,7 +38,12 @@ from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.targets import BuildContext, Files, Target, errors, load_target
 from smachac.targets.hiding_files import hiding_files
-from smachac.targets.interface_check import code_faults, missing_templates, target_faults
+from smachac.targets.interface_check import (
+    OF_CLASSES,
+    code_faults,
+    missing_templates,
+    target_faults,
+)
 from smachac.targets.runtime_files import runtime_files
 from smachac.targets.template_imports import template_imports
 from smachac.targets.undefined_names import undefined_names
@@ -173,7 +178,7 @@ def _analysis(
             report.extend(undefined_names(context, library))
             report.extend(extra(machine) if extra is not None else ())
             report.extend(version_faults(machine, library) if render else ())
-            if render and not has_errors(report):
+            if render and not has_errors(without_class_errors(report)):
                 report.extend(template_faults(machine, library))
         sources = script.sources if script is not None else (source,)
         complete = machine is not None
@@ -185,7 +190,9 @@ def _analysis(
         script=source.name,
         source=source,
         machine=machine,
-        checked=Checked(machine) if machine is not None and not has_errors(found) else None,
+        checked=Checked(machine)
+        if machine is not None and not has_errors(without_class_errors(found))
+        else None,
         report=found,
         library=library,
         given=given,
@@ -266,6 +273,17 @@ def check(machine: Machine, report: Report) -> Checked | None:
     return None if has_errors(report) else Checked(machine)
 
 
+def without_class_errors(report: Report) -> Report:
+    """The findings, with those of the user's classes as warnings: what does not run the classes,
+    such as a scenario, a picture or a program in another language, needs none of them."""
+    return [
+        replace(item, severity=Severity.WARNING)
+        if item.code in OF_CLASSES and item.severity is Severity.ERROR
+        else item
+        for item in report
+    ]
+
+
 class Compiled(NamedTuple):
     """The files of a target with the runtime files they need, and the findings of the script and
     of the target. There are no files if a finding is an error."""
@@ -290,7 +308,7 @@ def compile_script(
     if files:
         context = BuildContext(library=analysis.library, options=options or {}, levels=levels)
         files |= runtime_files(target.runtime(analysis.checked, context))
-    return Compiled(files, merged(analysis.report, found))
+    return Compiled(files, merged(without_class_errors(analysis.report), found))
 
 
 def compile_files(
@@ -323,6 +341,8 @@ def build(
     try:
         with deep_recursion():
             found = [*target_faults(machine, library, target)]
+            if target.name == "python":
+                found += template_imports(machine, library)
             files = target.emit(machine, context, found)
     except MemoryError:
         found = [_out_of_memory(machine.root.span.source)]

@@ -570,6 +570,8 @@ def never_returned(context: Context) -> Iterator[Finding]:
         == cell/wait.py ==
         import smach
 
+        from cell_drivers import belt
+
 
         class WaitForPart(smach.State):
             def __init__(self):
@@ -595,6 +597,8 @@ def never_returned(context: Context) -> Iterator[Finding]:
         code: {python: "cell.wait:WaitForPart"}
         == cell/wait.py ==
         import smach
+
+        from cell_drivers import belt
 
 
         class WaitForPart(smach.State):

@@ -60,6 +60,8 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
         == cell/find_part.py ==
         import smach
 
+        from cell_drivers import camera
+
 
         class FindPart(smach.State):
             def __init__(self):
@@ -86,6 +88,8 @@ def unwritten_output(context: Context) -> Iterator[Finding]:
         code: {python: "cell.find_part:FindPart"}
         == cell/find_part.py ==
         import smach
+
+        from cell_drivers import camera
 
 
         class FindPart(smach.State):

@@ -16,7 +16,7 @@ from smachac.version import __version__
 TYPE_CHECKING = False  # typing costs more than the rest of `smachac --help`
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from typing import Any, NoReturn
 
 FAILED, BUG, INTERRUPTED, UNREAD = 1, 70, 130, 141
@@ -155,12 +155,36 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
     import argparse
 
     class Parser(argparse.ArgumentParser):
-        """A parser whose messages quote words that shells make of file names."""
+        """A parser whose messages name the known word that is nearest to an unknown one, and quote
+        words that shells make of file names."""
 
         def error(self, message: str) -> NoReturn:
             from smachac.report.terminal import on_one_line
 
             super().error(on_one_line(message))
+
+        def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+            """Reports an unknown option before the arguments that are then missing."""
+            for word in args:
+                name = word.partition("=")[0]
+                action = self._option_string_actions.get(name)
+                is_last = word == "--" or (
+                    action is not None and action.nargs == argparse.REMAINDER
+                )
+                if is_last or (self is parser and word in COMMANDS):
+                    break
+                known = any(option.startswith(name) for option in self._option_string_actions)
+                if word.startswith("--") and not known:
+                    near = _near(name, self._option_string_actions)
+                    self.error(f"unrecognized arguments: {name}{near}")
+            return super().parse_known_args(args, namespace)
+
+        def _check_value(self, action: argparse.Action, value: Any) -> None:
+            if action.choices is not None and value not in action.choices:
+                near = _near(str(value), map(str, action.choices))
+                if near:
+                    raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}")
+            super()._check_value(action, value)
 
     parser = Parser(
         prog="smachac",
@@ -177,6 +201,15 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
         if name in complete:
             _function(name, "arguments")(inner)
     return parser
+
+
+def _near(word: str, known: Iterable[str]) -> str:
+    """The end of a message that names the known word nearest to an unknown one; empty if none is
+    near."""
+    from smachac.diagnostics.diagnostic import did_you_mean
+
+    help = did_you_mean(word, known)
+    return f"; {help}" if help is not None else ""
 
 
 def _function(command: str, part: str) -> Any:

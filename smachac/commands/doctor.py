@@ -29,6 +29,7 @@ MODULES = (
      "pip install --force-reinstall PyYAML", True),
     ("networkx", "networkx", "graphs", "pip install smachac", True),
     ("jinja2", "Jinja2", "templates", "pip install smachac", True),
+    ("pyflakes", "pyflakes", "names in classes of states", "pip install smachac", True),
     ("shtab", "shtab", "completion for shells", "pip install smachac", True),
     ("pybullet", "pybullet", "the simulated arm", "pip install 'smachac[sim]'", False),
     ("numpy", "numpy", "the simulated arm", "pip install 'smachac[sim]'", False),

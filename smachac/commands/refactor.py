@@ -150,8 +150,15 @@ def put(script: EditedScript, arguments: Namespace) -> int:
     return put_changes(texts, sources, arguments, "changed", new=frozenset(script.made))
 
 
-def perform(arguments: Namespace, command: str, change: Callable[[EditedScript], object]) -> int:
-    """Run one of the commands below, and report why a change is refused; the exit code."""
+def perform(
+    arguments: Namespace,
+    command: str,
+    change: Callable[[EditedScript], object],
+    *words: str,
+) -> int:
+    """Run one of the commands below, and report why a change is refused; the exit code. `words` are
+    the arguments behind the script."""
+    from smachac.commands.swapped import swapped_argument
     from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Severity, has_errors
     from smachac.ir.recursion import deep_recursion
     from smachac.refactor.edited_script import EditedScript, HasErrorsError
@@ -163,6 +170,8 @@ def perform(arguments: Namespace, command: str, change: Callable[[EditedScript],
         try:
             change(script)
         except HasErrorsError:
+            if right := swapped_argument(arguments.script, words, [command]):
+                return usage(right)
             errors = [each for each in script.analysis.report if has_errors([each])]
             print_report(errors, arguments, sys.stderr)
             if script.analysis.machine is not None:
@@ -187,7 +196,10 @@ def extract_command(arguments: Namespace) -> int:
     if name is not None and (name.suffix not in (".yml", ".yaml") or len(name.parts) != 1):
         return usage("--to needs the name of a file without a folder, such as `pick.yml`")
     return perform(
-        arguments, "extract", lambda script: extract_state(script, arguments.state, name)
+        arguments,
+        "extract",
+        lambda script: extract_state(script, arguments.state, name),
+        arguments.state,
     )
 
 
@@ -195,7 +207,8 @@ def inline_command(arguments: Namespace) -> int:
     """Replace the call of a sub-script by its content; the exit code."""
     from smachac.refactor.refactorings import inline_state
 
-    return perform(arguments, "inline", lambda script: inline_state(script, arguments.state))
+    state = arguments.state
+    return perform(arguments, "inline", lambda script: inline_state(script, state), state)
 
 
 def rename_command(arguments: Namespace) -> int:
@@ -206,7 +219,9 @@ def rename_command(arguments: Namespace) -> int:
     path, new, kind = arguments.path, arguments.new, arguments.kind
     if not is_plain(new):
         return usage(f"`{new}` needs quotes in YAML: choose another name")
-    return perform(arguments, "rename", lambda script: rename_name(script, path, new, kind))
+    return perform(
+        arguments, "rename", lambda script: rename_name(script, path, new, kind), path, new
+    )
 
 
 def contain_command(arguments: Namespace) -> int:
@@ -217,7 +232,10 @@ def contain_command(arguments: Namespace) -> int:
     name, type_, states = arguments.name, arguments.type, arguments.states
     if not is_plain(name):
         return usage(f"`{name}` needs quotes in YAML: choose another name")
-    return perform(arguments, "contain", lambda script: contain_states(script, name, type_, states))
+    words = name, type_, *states
+    return perform(
+        arguments, "contain", lambda script: contain_states(script, name, type_, states), *words
+    )
 
 
 def edit_command(arguments: Namespace) -> int:

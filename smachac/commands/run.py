@@ -13,6 +13,7 @@ from functools import partial
 from smachac.commands.arguments import SCRIPT, as_path, colour, count, names, search_folders, seed
 from smachac.commands.interrupts import end_at_stop_signals
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.swapped import swapped_option
 from smachac.commands.terminal import wants_colour
 from smachac.commands.view import PortError, browser, port, run_view
 
@@ -137,6 +138,8 @@ def run_command(arguments: Namespace) -> int:
         if path is not None and in_the_way(path, is_ours):
             what = "is a file of another kind: it was not overwritten"
             return usage(f"--{option} {path} {what}")
+    if right := swapped_option(arguments, "mock", "faults"):
+        return usage(right)
     analysis = _analysis(arguments)
     if isinstance(analysis, str):
         return usage(analysis)
@@ -243,18 +246,20 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
 
 def _run_scenario(arguments: Namespace, analysis: Analysis) -> int:
     """Play a scenario; the exit code."""
+    from smachac.driver import without_class_errors
     from smachac.interpreter.interpreter import MAX_STEPS
     from smachac.runtime.signals import StopSignals, end_now
     from smachac.sweep.play import SHOWN_STATES, FailedError, play
     from smachac.view.control import Control
 
-    print_report(without_notes(analysis.report), arguments, sys.stderr)
+    report = without_class_errors(analysis.report)
+    print_report(without_notes(report), arguments, sys.stderr)
     machine = analysis.checked or _playable(analysis)
     if machine is None:
         return FINDINGS
-    report: Report = []
-    scenario, last_steps = read_scenario_file(arguments.mock, machine, report)
-    print_report(report, arguments, sys.stderr)
+    found: Report = []
+    scenario, last_steps = read_scenario_file(arguments.mock, machine, found)
+    print_report(found, arguments, sys.stderr)
     if scenario is None:
         return FINDINGS
     seed, most = arguments.seed, arguments.max_steps or MAX_STEPS
@@ -289,8 +294,10 @@ def _playable(analysis: Analysis) -> Machine | None:
     """The machine of a script whose only errors are properties that fail: their counterexamples can
     be played."""
     from smachac.diagnostics.diagnostic import Severity
+    from smachac.driver import without_class_errors
 
-    errors = [item.code for item in analysis.report if item.severity is Severity.ERROR]
+    report = without_class_errors(analysis.report)
+    errors = [item.code for item in report if item.severity is Severity.ERROR]
     return analysis.machine if errors and set(errors) == {"SM701"} else None
 
 
@@ -339,11 +346,13 @@ def _where(errors: list[dict[str, Any]]) -> str:
 
 def sugar_of(machine: Machine) -> Sugar:
     """The containers made of sugar, for the progress of a run."""
-    from smachac.ir.script_paths import added_states, sugared_containers
+    from smachac.ir.script_paths import added_states, script_paths, sugared_containers
+    from smachac.ir.traversal import walk
     from smachac.runtime.tracing.progress import Repeated, Sugar
 
     found = sugared_containers(machine.root)
     repeated = {"retry": "attempt", "for_each": "item"}
+    shown = script_paths(machine.root)
     return Sugar(
         states={path: each.state for path, each in found.items()},
         repeated={
@@ -353,6 +362,9 @@ def sugar_of(machine: Machine) -> Sugar:
         },
         limits={path: each.limit for path, each in found.items() if each.role == "timeout"},
         added=added_states(machine.root),
+        catching=frozenset(
+            shown.get(path, path) for path, node in walk(machine.root) if node.catches
+        ),
     )
 
 
@@ -429,7 +441,17 @@ def perform(
     from smachac.frontend.files import module_folders
     from smachac.runtime.ros2_errors import ParameterError
     from smachac.sweep.play import FailedError
+    from smachac.targets.python.output_check import output_check
     from smachac.targets.python.runner import execute, failure_text
+
+    watched = observe
+    if not arguments.quiet:
+        check = output_check(machine)
+
+        def watched(event: Event) -> None:
+            observe(event)
+            for sentence in check(event):
+                print(f"warning: {sentence}", file=sys.stderr)
 
     gc.enable()  # from here on the user's program runs
     # The program may change the working folder.
@@ -439,7 +461,7 @@ def perform(
             name,
             text,
             machine,
-            observe,
+            watched,
             folders=folders,
             seed=arguments.seed,
             gui=arguments.gui,
@@ -521,26 +543,26 @@ def _raise_first(failures: list[OSError]) -> None:
         raise failures[0]
 
 
+NO_FAULTS = "the faults cannot be injected, so nothing is run"
+NO_SCENARIO = "the scenario cannot be played, so nothing is run"
+"""What the findings in a file of faults or a scenario have as their effect."""
+
+
 def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
     """The faults of a file; None, with findings in the report, if it has mistakes."""
-    from smachac.diagnostics.source import Span
     from smachac.frontend.data_files import plain, span_at
     from smachac.frontend.errors.script import wrong_shape
-    from smachac.frontend.files import read_source
-    from smachac.frontend.yaml_tree import parse
     from smachac.robots.faults import read_file
     from smachac.robots.fields import DataError
 
-    source = read_source(path, report)
-    tree = parse(source, report) if source is not None else None
+    tree = _read_tree(path, report, NO_FAULTS)
     if tree is None:
-        if source is not None and not report:
-            report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
         return None
     try:
         return read_file(plain(tree))
     except DataError as error:
-        report.append(wrong_shape(span_at(tree, error.place), error.message, error.help))
+        place = span_at(tree, error.place)
+        report.append(wrong_shape(place, error.message, error.help, effect=NO_FAULTS))
         return None
 
 
@@ -549,22 +571,18 @@ def read_scenario_file(
 ) -> tuple[Scenario | None, Mapping[str, Span]]:
     """The scenario of a file, and the places of the last steps of its states, by full path; None,
     with findings in the report, if it has faults."""
-    from smachac.diagnostics.source import Span
     from smachac.frontend.data_files import plain
     from smachac.frontend.errors.script import wrong_shape
-    from smachac.frontend.files import read_source
-    from smachac.frontend.yaml_tree import Map, Seq, parse
+    from smachac.frontend.yaml_tree import Map, Seq
     from smachac.interpreter.scenario import read_scenario
 
-    source = read_source(path, report)
-    tree = parse(source, report) if source is not None else None
+    tree = _read_tree(path, report, NO_SCENARIO)
     if tree is None:
-        if source is not None and not report:
-            report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
         return None, {}
     scenario, found = read_scenario(plain(tree), machine)
     for problem in found:
-        report.append(wrong_shape(_place(problem, tree), problem.message))
+        place = _place(problem, tree)
+        report.append(wrong_shape(place, problem.message, effect=NO_SCENARIO))
     if report:
         return None, {}
     states = tree.get("states") if isinstance(tree, Map) else None
@@ -575,6 +593,24 @@ def read_scenario_file(
         for entry in states.value.entries
     )
     return scenario, {path: step.span for path, step in zip(scenario.steps, last, strict=True)}
+
+
+def _read_tree(path: Path, report: Report, effect: str) -> Tree | None:
+    """The YAML of a file that is no script; None if it cannot be read. Its findings have the effect
+    of such a file."""
+    from dataclasses import replace
+
+    from smachac.diagnostics.source import Span
+    from smachac.frontend.errors.script import wrong_shape
+    from smachac.frontend.files import read_source
+    from smachac.frontend.yaml_tree import parse
+
+    source = read_source(path, report)
+    tree = parse(source, report) if source is not None else None
+    if tree is None and not report and source is not None:
+        report.append(wrong_shape(Span(source, 0, 0), "this file is empty"))
+    report[:] = [replace(item, finding=replace(item.finding, effect=effect)) for item in report]
+    return tree
 
 
 def _place(problem: ScenarioProblem, tree: Tree) -> Span:

@@ -178,6 +178,7 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     """The checked machine, the task of the workers and the digests of the inputs; or the exit code
     after a message."""
     from smachac.commands.run import NO_ARM, read_fault_file, read_scenario_file
+    from smachac.commands.swapped import swapped_option
     from smachac.driver import analyse_script, compile_script
     from smachac.frontend.files import module_folders, read_source
     from smachac.interpreter.interpreter import MAX_STEPS
@@ -192,6 +193,8 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     if source is None:
         print_report(report, arguments, sys.stderr)
         return FINDINGS
+    if right := swapped_option(arguments, "mock", "faults"):
+        return usage(right)
     analysis = analyse_script(source, arguments.scripts, arguments.templates)
     files, report = compile_script(analysis, TARGET)
     if arguments.mock is not None:

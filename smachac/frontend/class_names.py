@@ -1,15 +1,16 @@
-"""Names in the methods of a class that nothing defines: names of the module, attributes of `self`.
+"""Names in the methods of a class that nothing defines: names of the module, as pyflakes finds
+them, with what was probably meant, and attributes of `self`.
 
-Only names that nothing in the text can bind are found; where a name can come from elsewhere, such
-as a star import or a base class that is not read, none is.
+Where a name can come from elsewhere, such as a star import or a base class that is not read, none
+is found.
 """
 
 from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from typing import TypeAlias
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -20,8 +21,11 @@ from smachac.ir.class_facts import ClassFault, FaultKind
 BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "__class__", "_"])
 """Names that a module has without a definition; `_` is that of gettext."""
 
+MAKE_NAMES = frozenset(["exec", "globals"])
+"""Functions that can define a name of a module at run time."""
+
 DYNAMIC = frozenset(["exec", "eval", "globals", "locals", "vars", "setattr", "__import__"])
-"""Functions that can define a name at run time."""
+"""Functions that can define an attribute at run time."""
 
 USUAL_MODULES = frozenset([
     "collections", "copy", "datetime", "functools", "itertools", "json", "logging", "math", "os",
@@ -57,49 +61,56 @@ LATE = frozenset(["__getattr__", "__getattribute__", "__dict__", "__slots__"])
 """Names in a class that can have attributes without a definition."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Scope:
-    """The nodes of a method, or those of the class outside its methods (`method` is None), and the
-    names bound there and in functions inside."""
-
-    nodes: Sequence[ast.AST]
-    bound: frozenset[str]
-    method: ast.FunctionDef | ast.AsyncFunctionDef | None = None
-
-
 def undefined_names(
     own: OwnClass, module: Module, node: ast.ClassDef, lists: Mapping[str, Iterable[str]]
 ) -> list[ClassFault]:
-    """The names in a class, one of `own.classes`, that nothing defines where they are used: a name
-    is in the scope of another function or is an attribute of `self`, a name one slip away is
-    defined, or it is a usual module. Other names may be those of a sketch.
+    """The names in a class, one of `own.classes`, that nothing defines where they are used, each
+    once. In a template, whose names other templates can define, only those of another scope, and
+    those with a name that was certainly meant.
 
-    `lists` are the outcomes and keys of the class, by parameter of `smach.State.__init__`. Each
-    name is found once in a class."""
-    text = module.text
-    if module.dynamic or "NameError" in text.source.text:
+    `lists` are the outcomes and keys of the class, by parameter of `smach.State.__init__`."""
+    if module.dynamic or not any(True for _ in _unbound(node, {*module.names, *BUILT_IN})):
         return []
-    every = [*ast.walk(text.tree)]
-    if not DYNAMIC.isdisjoint(each.id for each in every if isinstance(each, ast.Name)):
+    every = [*ast.walk(module.text.tree)]
+    names = {each.id for each in every if isinstance(each, ast.Name)}
+    if not MAKE_NAMES.isdisjoint(names):
         return []
     anywhere = {name for each in every for name in _bound(each)} | BUILT_IN
     inner = node not in module.names.get(node.name, ())  # in a function: its names are visible
     shared = anywhere if inner else {*module.names, *BUILT_IN, *_declared_global(every)}
     near = _Near(own, module, every, anywhere, lists)
     found, done = [], set[str]()
-    if not module.name:  # a template: other templates of the program can define names too
-        visible = anywhere | {each.id for each in every if isinstance(each, ast.Name)}
+    if not module.name:
         outcomes = USUAL_OUTCOMES.union(lists.get("outcomes", ()))
-        shared = visible - CONSTANTS.keys() - STATE_METHODS - outcomes | anywhere
-    for scope in _scopes(node):
-        visible = shared | scope.bound
-        for each in scope.nodes:
-            if isinstance(each, ast.Name) and each.id not in visible and each.id not in done:
-                fault = near.fault(each, scope)
-                if fault is not None:
-                    done.add(each.id)
-                    found.append(fault)
+        shared = anywhere | names - CONSTANTS.keys() - STATE_METHODS - outcomes
+    for name, method in _unbound(node, shared):
+        if name.id in done:
+            continue
+        fault = near.fault(name, method)
+        if fault is not None:
+            done.add(name.id)
+            found.append(fault)
     return found
+
+
+Method: TypeAlias = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def _unbound(node: ast.ClassDef, shared: Set[str]) -> Iterator[tuple[ast.Name, Method | None]]:
+    """The names in a class that pyflakes does not find bound, each with its method; `shared` are
+    those that the module binds."""
+    from pyflakes.checker import Checker
+    from pyflakes.messages import UndefinedLocal, UndefinedName
+
+    tree = ast.Module(body=[node], type_ignores=[])
+    places = {(message.lineno, message.col)
+              for message in Checker(tree, builtins=shared, withDoctest=False).messages
+              if isinstance(message, UndefinedName | UndefinedLocal)}  # fmt: skip
+    methods = {part: method for method in node.body if isinstance(method, Method)
+               for body in method.body for part in ast.walk(body)}  # fmt: skip
+    for part in _evaluated(node) if places else ():
+        if isinstance(part, ast.Name) and (part.lineno, part.col_offset) in places:
+            yield part, methods.get(part)
 
 
 def _before_execute(own: OwnClass) -> set[str]:
@@ -156,22 +167,23 @@ class _Near:
         )
         self.is_state = own.root == "state"
 
-    def fault(self, node: ast.Name, scope: _Scope) -> ClassFault | None:
-        """The fault of a name; None if it may be one of a sketch."""
+    def fault(self, node: ast.Name, method: Method | None) -> ClassFault | None:
+        """The fault of a name; None if another finding covers it, or if another template can
+        define it."""
         word = Word(node.id, self.module.text.span(node))
         bound = node.id in self.anywhere
         if node in self.owners and node.id in USUAL_MODULES and not bound:
             return self._not_imported(node.id)
-        if scope.method is not None and node.id in ("self", "userdata", "ud", self.userdata):
-            if scope.method.name in self.early and node.id != "self":
-                return self._early(node, word, scope.method.name)
-            return self._no_parameter(word, scope.method, scope.nodes)
-        runs = scope.method is not None and scope.method.name == "execute"
+        if method is not None and node.id in ("self", "userdata", "ud", self.userdata):
+            if method.name in self.early and node.id != "self":
+                return self._early(node, word, method.name)
+            return self._no_parameter(word, method)
+        runs = method is not None and method.name == "execute"
         if node.id in self.outcomes:
             near: str | None = f'"{node.id}"'
         elif node.id in CONSTANTS and not bound:
             near = CONSTANTS[node.id]
-        elif self._is_inherited(node, scope) or (
+        elif self._is_inherited(node, method) or (
             node.id in self.attributes and node not in self.kept
         ):
             near = f"self.{node.id}"
@@ -184,10 +196,13 @@ class _Near:
         elif self._is_text(node, bound):
             near = f'"{node.id}"'
         else:
-            known = {*self.module.names, *scope.bound} if bound else self.anywhere - BUILT_IN
+            local = {name for part in ast.walk(method) for name in _bound(part)} if method else ()
+            known = {*self.module.names, *local} if bound else self.anywhere - BUILT_IN
             near = guesser(sorted(known)).sure(node.id)
-        if near is None:
-            return ClassFault(kind="other scope", name=word) if bound else None
+        if near is None and not bound and not self.module.name:
+            return None
+        if near is None and bound:
+            return ClassFault(kind="other scope", name=word)
         return ClassFault(kind="undefined name", name=word, near=near)
 
     def _is_text(self, node: ast.Name, bound: bool) -> bool:
@@ -196,9 +211,8 @@ class _Near:
         used = node in self.owners or node in self.called
         return not bound and not used and node.id in self.texts
 
-    def _is_inherited(self, node: ast.Name, scope: _Scope) -> bool:
+    def _is_inherited(self, node: ast.Name, method: Method | None) -> bool:
         """Whether a function that a method calls is a method of `smach.State`."""
-        method = scope.method
         first = method.args.args[0].arg if method is not None and method.args.args else ""
         called = self.is_state and first == "self" and node in self.called
         return called and node.id in STATE_METHODS
@@ -212,9 +226,7 @@ class _Near:
         near = f"{near}.{key}" if key is not None else near
         return ClassFault(kind="early userdata", name=word, near=near, more=method)
 
-    def _no_parameter(
-        self, word: Word, method: ast.FunctionDef | ast.AsyncFunctionDef, nodes: Sequence[ast.AST]
-    ) -> ClassFault | None:
+    def _no_parameter(self, word: Word, method: Method) -> ClassFault | None:
         """The fault of `self` or the userdata in a method that has no such parameter."""
         text = self.module.text
         given = [each.arg for each in method.args.args]
@@ -222,7 +234,8 @@ class _Near:
             if word.text == "self" or len(given) != 2:
                 return None  # a fault of the parameters of `execute`
             parameter = method.args.args[1]
-            if any(isinstance(each, ast.Name) and each.id == parameter.arg for each in nodes):
+            names = (part.id for part in ast.walk(method) if isinstance(part, ast.Name))
+            if parameter.arg in names:
                 return ClassFault(kind="undefined name", name=word, near=parameter.arg)
             start = text.offset(parameter.lineno, parameter.col_offset)
             place = Span(text.source, start, start + len(parameter.arg))
@@ -267,32 +280,6 @@ def _declared_global(every: Iterable[ast.AST]) -> Iterator[str]:
     for each in every:
         if isinstance(each, ast.Global):
             yield from each.names
-
-
-def _scopes(node: ast.ClassDef) -> Iterator[_Scope]:
-    """The scopes of a class: that of the class itself, and one for each method."""
-    methods = [each for each in node.body
-               if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef)]  # fmt: skip
-    head: list[ast.AST] = [*node.decorator_list, *node.bases, *node.keywords]
-    for each in node.body:
-        if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef):
-            head += [
-                *each.decorator_list,
-                *each.args.defaults,
-                *filter(None, each.args.kw_defaults),
-            ]
-        else:
-            head.append(each)
-    names = {name for each in head for part in ast.walk(each) for name in _bound(part)}
-    nodes = [part for each in head for part in _evaluated(each)]
-    yield _Scope(nodes=nodes, bound=frozenset(names.union(each.name for each in methods)))
-    for method in methods:
-        inner = [part for each in [method.args, *method.body] for part in ast.walk(each)]
-        yield _Scope(
-            nodes=[part for each in method.body for part in _evaluated(each)],
-            bound=frozenset(name for each in inner for name in _bound(each)),
-            method=method,
-        )
 
 
 def _bound(node: ast.AST) -> Iterator[str]:

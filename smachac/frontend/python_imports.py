@@ -57,10 +57,14 @@ def missing_imports(module: Module, library: Library) -> list[ClassFault]:
     return [fault for each in _statements(module) for fault in _faults(each, library, module.text)]
 
 
-def missing_in_template(source: Source, library: Library) -> list[ClassFault]:
-    """The imports in the block `imports` of a template that fail. A line with a tag of Jinja is not
-    judged."""
-    return [fault for each in _lines(source) for fault in _faults(each, library)]
+def missing_in_template(source: Source, library: Library) -> list[tuple[ClassFault, bool]]:
+    """The imports in the block `imports` of a template that fail, each with whether it is certainly
+    printed: the block has no tags of Jinja. A line with a tag is not judged."""
+    return [
+        (fault, is_printed)
+        for statement, is_printed in _lines(source)
+        for fault in _faults(statement, library)
+    ]
 
 
 def _statements(module: Module) -> Iterator[Import]:
@@ -70,8 +74,9 @@ def _statements(module: Module) -> Iterator[Import]:
             yield from _imports(node, text.span(node), module)
 
 
-def _lines(source: Source) -> Iterator[Import]:
+def _lines(source: Source) -> Iterator[tuple[Import, bool]]:
     for block in _BLOCK.finditer(source.text):
+        is_printed = "{%" not in block[1]
         for found in _IMPORT.finditer(source.text, block.start(1), block.end(1)):
             if "{{" in found[0] or "{%" in found[0]:
                 continue
@@ -80,7 +85,8 @@ def _lines(source: Source) -> Iterator[Import]:
             except (SyntaxError, ValueError):
                 continue
             if isinstance(node, ast.Import | ast.ImportFrom):
-                yield from _imports(node, Span(source, found.start(), found.end()), None)
+                for statement in _imports(node, Span(source, found.start(), found.end()), None):
+                    yield statement, is_printed
 
 
 def _imports(

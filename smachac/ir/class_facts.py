@@ -15,6 +15,7 @@ FaultKind = Literal[
     "no class",
     "no imported module",
     "no imported name",
+    "circular import",
     "syntax",
     "no state",
     "no execute",

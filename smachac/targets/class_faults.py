@@ -521,6 +521,40 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
 }
 """What happens in a program in Python, where it is certain."""
 
+STOPS_PROGRAM = frozenset[FaultKind](
+    [
+        "no state",
+        "no execute",
+        "no method",
+        "coroutine",
+        "arguments",
+        "no constructor call",
+        "no base constructor call",
+        "no outcomes",
+        "data class",
+        "no state class",
+        "no argument",
+        "no keyword",
+        "no argument here",
+        "no base argument",
+        "argument twice",
+        "too many arguments",
+        "missing base argument",
+        "no parameter",
+        "no such parameter",
+        "other parameter",
+        "renamed parameter",
+        "required parameter",
+        "missing argument",
+        "not passed",
+        "not accepted",
+        "other guard",
+        "no quotes",
+    ]
+)
+"""The faults with which the program certainly stops when it makes the state, or the first time that
+the state runs: errors of a check."""
+
 WRITTEN = frozenset[FaultKind](
     [
         "wrong result",

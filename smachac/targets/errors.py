@@ -396,15 +396,16 @@ def code_not_found(
     fault: ClassFault, target: str, state_type: str, name: str, used: tuple[Related, ...]
 ) -> Finding:
     """The class that an interface names as the code of a state type does not exist, its file cannot
-    be parsed, or an import in it or in a template fails.
+    be parsed, or an import in it or in a template fails, also because it is circular.
 
     The generated program stops when it starts.
 
     Exactly: of a class, its module and those of its base classes are read, of a template the block
     `imports`; there, imports of modules of the project are checked. A module is missing if the
     folder of its package has other modules, or if a module with nearly the same name exists. Other
-    modules can be installed packages, which are not searched. `check` reports a warning; a build
-    for the language of the class fails.
+    modules can be installed packages, which are not searched. In a circular import, a name is
+    imported from a module that has begun to load and has not defined it yet. A build for another
+    language than that of the class reports a warning.
 
     Wrong:
         name: sm
@@ -469,6 +470,15 @@ def code_not_found(
             help = f"{near} Write it here and in line{'s' if fault.lines[1:] else ''} {lines}"
         if fault.more:
             help = f"import `{word.text}` from `{fault.more}`, which defines it"
+    elif fault.kind == "circular import":
+        message = (
+            f"`{word.text}` is not defined yet: `{fault.file}` is still loading, and imports"
+            f" `{fault.more}` before it defines `{word.text}`"
+        )
+        help = (
+            f"import it in the function that uses it, or move `{word.text}` to a module that"
+            " imports neither of the two"
+        )
     else:
         place = f"`{fault.file}`" if fault.file else f"the {file} that `{state_type}` names"
         message = f"no class `{word.text}` is defined in {place}"
@@ -539,8 +549,10 @@ def bad_class(
     The generated program stops with an error when it makes the state or runs it.
 
     Exactly: the class is read, never run. A program makes the state with the variables that a
-    script sets, passed by their names. `check` reports a warning; a build for the language of the
-    class fails. Found are also misspelt names, names that only another function defines, usual
+    script sets, passed by their names. `check` reports an error if the program cannot make the
+    state, or stops each time that the state runs; other faults are warnings. A build for the
+    language of the class fails with all of them, a build for another language with none. Found are
+    also misspelt names, names that only another function defines, usual
     modules that are not imported, methods of `self` that no class defines, methods without `()`,
     `is` with a text or a number, `==` in place of `=`, and keys that are not in a list; outcomes
     that `execute` makes and does not return, names without a value after an `except`, attributes

@@ -16,11 +16,12 @@ from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
+from smachac.frontend.import_cycles import circular_imports
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, Parameter, renamed_name
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import remapping, walk
-from smachac.targets.class_faults import CHECKED_ONLY, SET_IN_SCRIPT
+from smachac.targets.class_faults import CHECKED_ONLY, SET_IN_SCRIPT, STOPS_PROGRAM
 from smachac.targets.errors import (
     Difference,
     bad_class,
@@ -31,8 +32,14 @@ from smachac.targets.errors import (
 from smachac.targets.smacha_templates import call_faults, guard_faults
 from smachac.targets.template_bodies import body_faults
 
-NOT_FOUND = ("no module", "no class", "syntax", "no imported module", "no imported name")
-"""The kinds of faults of code that does not exist (SM608)."""
+NOT_FOUND = (
+    "no module", "no class", "syntax", "no imported module", "no imported name", "circular import",
+)  # fmt: skip
+"""The kinds of faults of code that does not exist, or does not load (SM608)."""
+
+OF_CLASSES = ("SM608", "SM609")
+"""The codes of faults for which a check reports an error and only a build for the language of the
+class fails: other targets do not need the class."""
 
 Words = tuple[Word, ...]
 
@@ -73,8 +80,9 @@ Load = Callable[[str], Language | None]
 
 
 def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diagnostic]:
-    """The differences between classes and interfaces, at the first state of each type, as warnings:
-    only a build for the language of the class fails.
+    """The differences between classes and interfaces, at the first state of each type. They are
+    errors if the program certainly stops when it starts, or when the state runs; otherwise
+    warnings: only a build for the language of the class fails.
     """
     targets: dict[str, Language | None] = {}
     found: list[Diagnostic] = []
@@ -85,10 +93,30 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
             target = targets[language]
             if target is not None:
                 found.extend(type_faults(leaf, type_, target, library, machine))
-    for item in _once(found):
-        yield replace(item, severity=Severity.WARNING)
-    for item in (*argument_faults(machine, library), *_smacha_faults(machine, library)):
-        yield replace(item, severity=Severity.WARNING)
+    found += [*cycles(machine, library, found), *argument_faults(machine, library)]
+    for item in (*_once(found), *_smacha_faults(machine, library)):
+        stops = item.code == "SM608" or (
+            item.code == "SM609" and item.finding.arguments[2] in STOPS_PROGRAM
+        )
+        yield item if stops else replace(item, severity=Severity.WARNING)
+
+
+def cycles(machine: Machine, library: Library, found: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """The circular import (SM608) at which the Python program stops, if its modules load otherwise
+    (`found` are the other faults of the classes)."""
+    if any(item.code == "SM608" for item in found):
+        return []
+    users: dict[str, tuple[Leaf, StateType, str]] = {}
+    for leaf, type_ in own_types(machine, library):
+        module, is_class, name = type_.code.get("python", "").partition(":")
+        if is_class:
+            users.setdefault(module, (leaf, type_, name))
+    faults = circular_imports(sorted(users), library)  # the program imports them in this order
+    for fault in faults:
+        leaf, type_, name = next(iter(users.values()))
+        used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`")
+        return [code_not_found(fault, "python", type_.name, name, (used,))]
+    return []
 
 
 def missing_templates(machine: Machine, library: Library) -> list[Diagnostic]:
@@ -119,6 +147,8 @@ def target_faults(machine: Machine, library: Library, target: Language) -> Itera
     for leaf, type_ in own_types(machine, library):
         if target.name in languages(type_) and not type_.open:
             found.extend(type_faults(leaf, type_, target, library))
+    if target.name == "python":
+        found += cycles(machine, library, found)
     yield from _once(found)
     if target.name == "python":
         yield from argument_faults(machine, library)
@@ -137,7 +167,7 @@ def _once(found: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     seen: set[tuple[Span, tuple[str, ...]]] = set()
     for item in found:
         fault = item.finding.arguments[2:]
-        if item.code in ("SM608", "SM609"):
+        if item.code in OF_CLASSES:
             if (item.span, fault) in seen:
                 continue
             seen.add((item.span, fault))

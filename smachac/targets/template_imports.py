@@ -13,13 +13,14 @@ from smachac.targets.errors import code_not_found
 
 
 def template_imports(machine: Machine, library: Library) -> Iterator[Diagnostic]:
-    """The imports in the user's templates that fail, as warnings: only the Python program stops."""
+    """The imports in the user's templates that fail: errors, or warnings in a block with tags of
+    Jinja, which can leave the import out."""
     from smachac.targets.python.template_sources import template_sources, uses_own_templates
 
     if not uses_own_templates(machine, library):
         return
     for file, source in template_sources(machine, library):
         if library.own_template(file) is not None:
-            for fault in missing_in_template(source, library):
+            for fault, is_printed in missing_in_template(source, library):
                 found = code_not_found(fault, "python", "", file, ())
-                yield replace(found, severity=Severity.WARNING)
+                yield found if is_printed else replace(found, severity=Severity.WARNING)

@@ -21,6 +21,7 @@ code: {python: "cell.states:Move"}
 """
 BASE = """\
 import smach
+from cell_tools import Other, logged
 
 
 class Drive(smach.State):
@@ -89,10 +90,10 @@ def test_a_call_that_does_not_fit(call: str, place: str, help: str) -> None:
         f"Drive.__init__(self, node, {LISTS})",
         f"super().__init__(None, {LISTS}, rate=5)",
         'super().__init__(node=node, outcomes=["moved", "lost"], input_keys=["offset"])',
-        "super().__init__(*LISTS)",
-        "super().__init__(node, **LISTS)",
+        "super().__init__(*dir())",
+        "super().__init__(node, **dict())",
         f"make = super().__init__\n        make(node, {LISTS})",
-        f"Other.__init__({LISTS})",
+        f"print.__init__({LISTS})",
     ],
 )
 def test_no_finding(call: str) -> None:
@@ -102,7 +103,7 @@ def test_no_finding(call: str) -> None:
 @pytest.mark.parametrize(
     "base",
     [
-        BASE.replace("input_keys=(), *, rate=10", "*more, rate=10, **others"),
+        BASE.replace("input_keys=(), *, rate=10", "*input_keys, rate=10, **others"),
         BASE.replace("    def __init__", "    @logged\n    def __init__"),
         BASE.replace("class Drive(smach.State)", "class Drive(Other)")
         .replace("    def __init__", "    def start"),

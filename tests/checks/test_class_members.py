@@ -20,7 +20,7 @@ outcomes: {fast: {}, slow: {}}
 code: {python: "cell.states:Choose"}
 """
 CLASS = """\
-import smach
+import sensor, smach
 
 from cell.modes import Mode
 

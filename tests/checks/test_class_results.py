@@ -45,8 +45,8 @@ def test_results_that_are_values(value: str) -> None:
             "write `names.append(1)`, and then `other = names`",
         ),
         ("names = sorted(userdata.parts); names = names.sort()", None),
-        ("names = numbers(); names = names.sort(); print(names)", None),
-        ("names = []; names = frame; names = names.sort(); print(names)", None),
+        ("names = open(0); names = names.sort(); print(names)", None),
+        ("names = []; names = self; names = names.sort(); print(names)", None),
         ("names = []; names.sort(); print(names)", None),
     ],
 )

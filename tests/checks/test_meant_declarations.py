@@ -130,8 +130,8 @@ def test_names_of_a_c_plus_plus_class_count() -> None:
         ),
         "take.hpp": header,
     }
-    report = [item for item in analysed(files).report if item.severity is Severity.ERROR]
-    assert [(item.code, item.span.text) for item in report] == [("SM102", "doe")]
+    found = [(item.code, item.span.text) for item in analysed(files).report]
+    assert [each for each in found if each[0] != "SM609"] == [("SM102", "doe")]
 
 
 def test_a_pair_of_an_unknown_target_and_a_state_that_nothing_leads_to() -> None:

@@ -108,7 +108,7 @@ def test_one_fault(old: str, new: str, place: str, help: str) -> None:
         ("hardware.scale()", "(hardware.scale or offset)()", HARDWARE),
         ("reading + hardware.LIMIT", "[hardware.scale, reading]", HARDWARE),
         ("hardware.ready()", "hardware.ready", HARDWARE.replace("def ready", "@cached\ndef ready")),
-        ("(self, userdata):", "(self, userdata):\n        hardware = make_box(1)", HARDWARE),
+        ("(self, userdata):", "(self, userdata):\n        hardware = open('box')", HARDWARE),
         ("hardware.scale()", "hardware.grams()", HARDWARE + "globals()['grams'] = scale\n"),
         ("hardware.scale()", "hardware.grams()", "from arm import *\n" + HARDWARE),
         ("hardware.scale()", "hardware.grams()", HARDWARE + "def __getattr__(name): return 1\n"),

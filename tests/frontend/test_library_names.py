@@ -130,7 +130,7 @@ def test_attributes_in_a_class() -> None:
         ("from cell import time", "time.now()"),
         ("import arrow as time", "time.now()"),
         ("try:\n    import arrow as time\nexcept ImportError:\n    import time", "time.now()"),
-        ("import time", "time = arrow.clock(); time.now()"),
+        ("import time", "time = open('clock'); time.now()"),
         ("import time", "x = lambda time: time.now()"),
         ("import time", "x = time.now() if hasattr(time, 'now') else 1"),
         ("import time\ntime.now = time.time", "x = time.now()"),

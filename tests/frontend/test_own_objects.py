@@ -87,8 +87,8 @@ def test_a_method_that_is_not_called(call: str, message: str) -> None:
         ("self.arm.done()", "self.arm.done", DRIVER.replace("class Arm:", "class Arm(Base):")),
         ("self.arm.done()", "self.arm.done", DRIVER.replace("class Arm:", "@fast\nclass Arm:")),
         ("        while not self.arm.done()",
-         "        self.arm.done = f()\n        while not self.arm.done", DRIVER),
-        ("self.arm = Arm()", "self.arm = Arm() or other()", DRIVER),
+         "        self.arm.done = print()\n        while not self.arm.done", DRIVER),
+        ("self.arm = Arm()", "self.arm = Arm() or print()", DRIVER),
         ("self.arm.done()", "callable(self.arm.done)", DRIVER),
     ],
 )  # fmt: skip

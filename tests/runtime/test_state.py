@@ -109,11 +109,14 @@ def test_cb_interface_keeps_io_keys() -> None:
         smach.InvalidUserCodeError,
     ],
 )
-def test_errors_log_themselves_when_made(
+def test_errors_are_logged_where_they_are_made_as_in_smach_only_with_compat(
     kind: type[smach.exceptions.SmachError], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     errors: list[str] = []
     monkeypatch.setattr(smach, "logerr", errors.append)
+    kind("reported by the code that catches it")
+    assert not errors
+    monkeypatch.setattr(smach, "compat", True)
     error = kind("what went wrong")
     assert errors == [f"{kind.__name__}: what went wrong"]
     assert isinstance(error, smach.exceptions.SmachError)

@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from smachac.interpreter.behaviours import builtin_behaviour
-from smachac.runtime.tracing.progress import Progress
+from smachac.runtime.tracing.progress import Progress, Sugar
 from tests.support.ir_machines import leaf, machine, ran
 
 
@@ -75,14 +75,16 @@ def test_a_stream_that_is_gone_is_left_alone() -> None:
 
 def test_errors_and_requests_to_stop_are_told() -> None:
     stream = io.StringIO()
-    progress = Progress(stream)
+    progress = Progress(stream, Sugar(catching=frozenset({"sm/B"})))
     progress({"event": "start", "path": "sm", "t": 0.0})
     progress({"event": "preempt", "path": "sm", "t": 0.5})
     progress({"event": "preempt", "path": "sm/A", "t": 0.5})
     progress({"event": "enter", "path": "sm/A", "t": 0.5})
     progress({"event": "error", "path": "sm/A", "message": "ValueError: broken", "t": 0.6})
+    progress({"event": "error", "path": "sm/B", "message": "ValueError: broken", "t": 0.6})
     assert [line.split() for line in stream.getvalue().splitlines()] == [
         ["sm", "asked", "to", "stop"],
         ["sm"],
-        ["A", "error:", "ValueError:", "broken"],
+        ["A", "error"],  # the report of the run has the message
+        ["B", "error:", "ValueError:", "broken"],
     ]

@@ -60,7 +60,7 @@ def test_names_of_methods_are_readable_by_item_only() -> None:
     assert ud.keys() == ["keys"]
 
 
-def test_absent_keys_raise_key_error_and_are_logged(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_absent_keys_raise_key_error(monkeypatch: pytest.MonkeyPatch) -> None:
     errors: list[str] = []
     monkeypatch.setattr(smach, "logerr", errors.append)
     ud = smach.UserData()
@@ -74,6 +74,11 @@ def test_absent_keys_raise_key_error_and_are_logged(monkeypatch: pytest.MonkeyPa
         with pytest.raises(KeyError) as caught:
             read()
         assert str(caught.value) == "userdata key 'k' is absent; present: []"
+    assert not errors
+    monkeypatch.setattr(smach, "compat", True)
+    for read in reads:
+        with pytest.raises(KeyError):
+            read()
     assert len(errors) == 4
     assert all("'k'" in error for error in errors)
 

@@ -54,7 +54,7 @@ def class_lines(interface: Mapping[str, Any]) -> list[str]:
 
 def module_of(project: Mapping[str, Any]) -> list[str]:
     """The lines of the module with the classes of all interfaces."""
-    lines = ["import smach", "", ""]
+    lines = ["import smach", "from robot_driver import robot", ""]
     for interface in interfaces(project).values():
         lines += class_lines(interface)
     return lines

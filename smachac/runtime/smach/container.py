@@ -96,8 +96,8 @@ class Container(State):
         _open.stack.pop()
         try:
             self.check_consistency()
-        except (InvalidStateError, InvalidTransitionError):
-            settings.logerr("the container is inconsistent")
+        except (InvalidStateError, InvalidTransitionError) as error:
+            settings.logerr(f"the container is inconsistent: {error}")
 
     def __enter__(self) -> None:
         self.open()
@@ -115,7 +115,7 @@ class Container(State):
         if error is None:
             raise InvalidStateError(f"a {type(self).__name__} is closed before what it contains")
         if not isinstance(error, (InvalidStateError, InvalidTransitionError)):
-            settings.logerr(f"construction failed: {described(error)}")
+            settings.log_raised(f"construction failed: {described(error)}")
 
     def _abandon(self) -> None:
         """Remove this container, and those left open inside it, from the stack."""
@@ -197,12 +197,10 @@ class Container(State):
             settings.logwarn(f"input keys absent in the parent's userdata: {missing}")
 
     def copy_output_keys(self, parent_ud: Any) -> None:
-        """Copy the output keys to the parent (UserData, Remapper or mapping; None: nothing)."""
-        if parent_ud is None or not self._output_keys:
-            return
-        missing = write_keys(parent_ud, self._output_keys, store(self.userdata))
-        if missing:
-            settings.logwarn(f"output keys never written: {missing}")
+        """Copy the output keys to the parent (UserData, Remapper or mapping; None: nothing). Keys
+        that were never written are left out, as in SMACH."""
+        if parent_ud is not None and self._output_keys:
+            write_keys(parent_ud, self._output_keys, store(self.userdata))
 
     def _view(self, state: State, remapping: Mapping[str, str]) -> Remapper:
         """The userdata of a child. Later changes of a State's keys apply to it too."""

@@ -6,8 +6,8 @@ from smachac.runtime.smach import settings
 
 
 class SmachError(Exception):
-    """The common base. As in SMACH, creating one writes its message to the error logger, unless it
-    is `logged` already.
+    """The common base. With `compat`, creating one writes its message to the error logger, as in
+    SMACH, unless it is `logged` already.
 
     Attributes:
         blames: the state that failed first, and how, as a sentence; empty if not known.
@@ -17,7 +17,7 @@ class SmachError(Exception):
         super().__init__(message)
         self.blames = blames
         if not logged:
-            settings.logerr(f"{type(self).__name__}: {message}")
+            settings.log_raised(f"{type(self).__name__}: {message}")
 
 
 class InvalidTransitionError(SmachError):

@@ -21,15 +21,14 @@ def child_error(kind: type[E], label: str, state: object, error: BaseException) 
     its cause is the error of that state. The error itself, to be raised on, if it is of this kind,
     as in SMACH, or if it is no Exception.
 
-    It is logged, with the lines of user code, once. Frames of the runtime are removed from the
-    traceback of the error.
+    Frames of the runtime are removed from the traceback of the error.
     """
     if not (isinstance(error, Exception) or settings.compat):
         return error
     blames = error.blames if isinstance(error, SmachError) else ""
     if not blames:
         blames = f"state '{label}' of type {type(state).__name__} failed: {one_line(error)}"
-        _log(kind, blames, error)
+        _own_frames_only(kind, blames, error)
     if isinstance(error, kind):
         if not error.blames and hasattr(error, "add_note"):
             error.add_note(f"in state '{label}' of type {type(state).__name__}")
@@ -45,17 +44,19 @@ def child_error(kind: type[E], label: str, state: object, error: BaseException) 
 def callback_error(kind: type[E], called: str, error: Exception) -> E:
     """The error of a container for the error of one of its callbacks, which is its cause."""
     blames = f"{called} failed: {one_line(error)}"
-    _log(kind, blames, error)
+    _own_frames_only(kind, blames, error)
     found = kind(blames, logged=True, blames=blames)
     found.__cause__ = error
     return found
 
 
-def _log(kind: type[SmachError], message: str, error: BaseException) -> None:
-    """Log a message with the lines of user code of an error, without the frames of the runtime."""
+def _own_frames_only(kind: type[SmachError], message: str, error: BaseException) -> None:
+    """Remove the frames of the runtime from the traceback of an error; with `compat`, log a message
+    with the lines of user code."""
     own = without_runtime(error.__traceback__)
     error.__traceback__ = own or error.__traceback__
-    settings.logerr("\n".join([f"{kind.__name__}: {message}", *_frames(own)]))
+    if settings.compat:
+        settings.log_raised("\n".join([f"{kind.__name__}: {message}", *_frames(own)]))
 
 
 def one_line(error: BaseException) -> str:

@@ -18,7 +18,8 @@ Ctrl-C and SystemExit become errors of the state; an exception of the items of a
 as if there were no more items; `keys` of remapped userdata gives the container's names, and
 `update` writes undeclared keys too; Concurrences and Iterators do not pass on a preempt request
 that came before their children ran; a container does not pass on a second request while the same
-child runs; a child that did not answer a request starts its next visit with it.
+child runs; a child that did not answer a request starts its next visit with it; errors are logged
+where they are raised.
 To be set before a machine runs. The rules are listed in docs/semantics.md, section "Where the
 bundled runtime differs from SMACH".
 """
@@ -28,6 +29,13 @@ logwarn: log.Logger = log.logwarn
 logdebug: log.Logger = log.logdebug
 logerr: log.Logger = log.logerr
 is_shutdown: Callable[[], bool] = log.is_shutdown
+
+
+def log_raised(message: str) -> None:
+    """Log the message of an error that is raised, as SMACH does, if `compat` is set. Otherwise only
+    the code that handles the error reports it."""
+    if compat:
+        logerr(message)
 
 
 def set_loggers(info: log.Logger, warn: log.Logger, debug: log.Logger, error: log.Logger) -> None:

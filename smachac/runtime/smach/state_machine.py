@@ -226,8 +226,8 @@ class StateMachine(Container):
         if not self._consistent:
             try:
                 self.check_consistency()
-            except (InvalidStateError, InvalidTransitionError):
-                settings.logerr("the state machine is inconsistent and does not run")
+            except (InvalidStateError, InvalidTransitionError) as error:
+                settings.logerr(f"the state machine is inconsistent and does not run: {error}")
                 return None
             self._consistent = True
         self._claim()

@@ -75,10 +75,14 @@ class Branches:
                 self._changed.notify_all()
 
     def _fail(self, label: str, error: BaseException) -> None:
-        settings.logerr(f"branch '{label}' failed: {one_line(error)}")
         with self._changed:
+            is_first = self.failure is None
             if self.failure is None:
                 self.failure = (label, error)
+        if not is_first or settings.compat:
+            settings.logerr(f"branch '{label}' failed: {one_line(error)}")
+        else:
+            settings.loginfo(f"branch '{label}' failed: the others are requested to end")
         self.stop()
 
     def request(self) -> None:

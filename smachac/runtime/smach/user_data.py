@@ -256,22 +256,20 @@ def read_keys(source: Any, keys: Collection[str], data: MutableMapping[str, Any]
     return missing
 
 
-def write_keys(target: Any, keys: Collection[str], data: Mapping[str, Any]) -> list[str]:
-    """Copy `keys` by reference to a UserData, Remapper or mapping; the keys not found in `data`."""
+def write_keys(target: Any, keys: Collection[str], data: Mapping[str, Any]) -> None:
+    """Copy `keys` by reference to a UserData, Remapper or mapping, except those not in `data`."""
     outputs, remapping, held = keys, _SAME, target
     if isinstance(target, Remapper):
         _, outputs, remapping, held = target._view
     elif type(target) is UserData:
         held = target._data
-    missing = []
     for key in keys:
         if key not in data:
-            missing.append(key)
-        elif key in outputs:
+            continue
+        if key in outputs:
             held[remapping[key] if key in remapping else key] = data[key]
         else:
             target._drop(key)
-    return missing
 
 
 class _AbsentKeyError(KeyError):
@@ -293,5 +291,5 @@ def _absent(key: object, data: Collection[str], own: object = None) -> KeyError:
     words = f"userdata key {called} is absent;{hint} present: {present}"
     if present is None:
         words = f"userdata key {called} is absent in a store of another kind"
-    settings.logerr(words)
+    settings.log_raised(words)
     return _AbsentKeyError(words)

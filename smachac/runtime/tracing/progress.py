@@ -28,13 +28,15 @@ class Sugar(NamedTuple):
     """The containers that time limits, retries and loops put around states, by path.
 
     `states` are the paths of the states inside, `repeated` the retries and loops, `limits` the time
-    limits in words. `added` are the timers and pauses, which are not shown.
+    limits in words. `added` are the timers and pauses, which are not shown. `catching` are the
+    states whose errors become an outcome: their lines have the message, as no report follows.
     """
 
     states: Mapping[str, str] = {}
     repeated: Mapping[str, Repeated] = {}
     limits: Mapping[str, str] = {}
     added: frozenset[str] = frozenset()
+    catching: frozenset[str] = frozenset()
 
 
 class Progress:
@@ -70,7 +72,8 @@ class Progress:
             elif kind in ("exit", "finish"):
                 self._ended(path, event["outcome"], event["t"])
             elif kind == "error":
-                self._line(path, f"{self._paint(_RED, 'error')}: {event['message']}")
+                message = f": {event['message']}" if path in self._sugar.catching else ""
+                self._line(path, f"{self._paint(_RED, 'error')}{message}")
             elif kind == "preempt" and "/" not in path:
                 self._line(path, self._paint(_YELLOW, "asked to stop"))
             elif kind == "fault":
