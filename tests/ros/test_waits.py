@@ -76,7 +76,7 @@ def test_a_signal_ends_a_wait(graph: Graph, tmp_path: Path, what: str) -> None:
     program = graph.start(built(tmp_path, f"  - WAIT:{waiting}"))
     program.expect("starting in 'WAIT'")
     program.send(signal.SIGINT)
-    assert program.end() == 0
+    assert program.end() == 130
     assert program.output.endswith("outcome: preempted\n")
     assert "/sis" not in str(graph.ask("getSystemState"))
 
@@ -122,7 +122,7 @@ def test_a_signal_ends_a_call_that_hangs(graph: Graph, tmp_path: Path) -> None:
     program = graph.start(built(tmp_path, CALL.format(service="hang")))
     server.expect("called")
     program.send(signal.SIGINT)
-    assert program.end() == 0
+    assert program.end() == 130
     assert program.output.endswith("outcome: aborted\n")
 
 
@@ -134,7 +134,7 @@ def test_a_signal_in_mid_call_takes_the_answer_and_goes_on_to_the_next_state(
     server.expect("called")
     program.send(signal.SIGINT)
     server.say("answer")
-    assert program.end() == 0
+    assert program.end() == 130
     assert "transition 'CALL':'succeeded'-->'NEXT'" in program.output
     assert program.output.endswith("outcome: preempted\n")
 
@@ -166,6 +166,6 @@ def test_after_a_signal_the_machine_ends_as_it_will_while_the_node_works(
     program = graph.start(built(tmp_path, TIDY))
     server.expect("goal 3")
     program.send(signal.SIGTERM)
-    assert program.end() == 0
+    assert program.end() == 130
     assert "tidied up" in program.output
     assert program.output.endswith("outcome: aborted\n")

@@ -266,7 +266,7 @@ publish(msg=String(data=5), topic="text")
 publish("once", msg=Bool(data="yes"), topic="text")
 publish(msg=Bool(), msg_type="std_msgs/Float64", topic="text")
 publish(msg=PointStamped(), frame_id=7, topic="text")
-publish(msg=Float64(), callback=lambda message: Float64(data="x"), topic="text")
+publish(msg=Float64(), callback=lambda message: Float64(data="x"), topic="number")
 report("silent", wait_for_message(node, "text", Float64, timeout=0.1))
 publish("stop_all")
 
