@@ -601,9 +601,12 @@ def _rewrite(clash: Clash) -> str:
     change = _other_change(clash)
     origin = clash.flow.origin
     if origin.how == "declared" and isinstance(origin.cell.node, Container):
-        inputs = [key.name for key in origin.cell.node.inputs]
-        keys = "input_keys" if origin.cell.key in inputs else "output_keys"
-        declared = f"`{origin.cell.key}: {wanted}` in the `{keys}` of {_owner(origin.cell)}"
+        node, key = origin.cell.node, origin.cell.key
+        if key not in {key.name for key in (*node.inputs, *node.outputs)}:
+            place = f"in the `userdata` of {_owner(origin.cell)}"
+            return f"declare `{key}` as `{wanted}` {place}, if that is its type{change}"
+        keys = "input_keys" if key in {key.name for key in node.inputs} else "output_keys"
+        declared = f"`{key}: {wanted}` in the `{keys}` of {_owner(origin.cell)}"
         return f"write {declared}, if that is its type{change}"
     number = _number_in_list(clash)
     if number:

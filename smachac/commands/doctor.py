@@ -148,11 +148,13 @@ def _writers(packages: set[str]) -> dict[str, list[_Writer]]:
 
     found: dict[str, list[_Writer]] = {}
     for distribution in distributions():
-        for file in distribution.files or ():
-            if file.parts[0] in packages:
-                digest = file.hash.value if file.hash is not None else ""
-                writer = (distribution.metadata["Name"], distribution.version, digest)
-                found.setdefault(str(file.locate()), []).append(writer)
+        own = [file for file in distribution.files or () if file.parts[0] in packages]
+        if not own:
+            continue
+        name, version = distribution.metadata["Name"], distribution.version
+        for file in own:
+            digest = file.hash.value if file.hash is not None else ""
+            found.setdefault(str(file.locate()), []).append((name, version, digest))
     return found
 
 

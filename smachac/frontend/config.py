@@ -71,6 +71,22 @@ class Project:
     readable: bool = True
 
 
+def _is_too_big(source: Source, path: Path, report: Report) -> bool:
+    """Whether a file exceeds a limit, which is reported."""
+    settings_of = len(source.text) if path.name == "smachac.toml" else 0
+    if settings_of > LONGEST_FILE:
+        message = f"the file has {settings_of:,} characters; the limit is {LONGEST_FILE:,}"
+        help = "keep only settings of smachac in it"
+        report.append(too_big(Span(source, 0, 0), message, help, arguments=("characters",)))
+        return True
+    crowded = next((line for line in source.text.split("\n") if line.count(".") > MOST_DOTS), None)
+    if crowded is not None:  # tomllib takes time and memory quadratic in the parts of a key
+        place = Span(source, *[source.text.index(crowded)] * 2)
+        message = f"a line has {crowded.count('.'):,} dots; the limit is {MOST_DOTS}"
+        report.append(too_big(place, message, "break it into lines", arguments=("dots",)))
+    return crowded is not None
+
+
 def read_project(
     source: Source, path: Path, report: Report, codes: Mapping[str, Code] | None = None
 ) -> Project | None:
@@ -79,19 +95,7 @@ def read_project(
     Wrong settings are reported (SM007) and left out. `codes` are those whose severity can be set;
     without them the codes in the file are not checked.
     """
-    crowded = next((line for line in source.text.split("\n") if line.count(".") > MOST_DOTS), None)
-    settings_of = len(source.text) if path.name == "smachac.toml" else 0
-    if settings_of > LONGEST_FILE:
-        message = f"the file has {settings_of:,} characters; the limit is {LONGEST_FILE:,}"
-        help = "keep only settings of smachac in it"
-        report.append(too_big(Span(source, 0, 0), message, help, arguments=("characters",)))
-        return Project(readable=False)
-    if crowded is not None:  # tomllib takes time and memory quadratic in the parts of a key
-        start = source.text.index(crowded)
-        message = f"a line has {crowded.count('.'):,} dots; the limit is {MOST_DOTS}"
-        report.append(
-            too_big(Span(source, start, start), message, "break it into lines", arguments=("dots",))
-        )
+    if _is_too_big(source, path, report):
         return Project(readable=False)
     try:
         import tomllib as toml

@@ -53,8 +53,11 @@ def read_source(path: Path, report: Report) -> Source | None:
         report.append(_not_text(path, error))
     except (OSError, ValueError) as error:
         words = (getattr(error, "strerror", None) or str(error)).lower()
-        folder = isinstance(error, IsADirectoryError)
-        near = _script_inside(path) if folder else did_you_mean(path.name, _names_beside(path))
+        near = None
+        if isinstance(error, IsADirectoryError):
+            near = _script_inside(path)
+        elif isinstance(error, FileNotFoundError):
+            near = did_you_mean(path.name, _names_beside(path))
         message = f"this file cannot be read: {words}"
         report.append(unreadable_file(place, message, near, arguments=("read",)))
     return None

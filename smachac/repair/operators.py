@@ -125,7 +125,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
         path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
         found += _turned_pairs(path)
         found += _exchanged_values(path)
-        found += _repeated_parts(path, span.source)
+        found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
         found += _other_types(path, around.types)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
     return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
@@ -273,7 +273,7 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
         return
 
 
-def _repeated_parts(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
+def _repeated_parts(path: list[Tree | Entry], source: Source, cost: float) -> Iterator[Candidate]:
     """The lines of an entry or an item that is in its mapping or list twice, deleted."""
     for around, part in reversed([*pairwise(path)]):
         others: list[Tree | Entry] = []
@@ -284,5 +284,5 @@ def _repeated_parts(path: list[Tree | Entry], source: Source) -> Iterator[Candid
         if sum(other == part for other in others) > 1:
             start = source.text.rfind("\n", 0, _start(part)) + 1
             end = source.text.find("\n", _end(part)) + 1 or len(source.text)
-            yield candidate(1.0, "delete a copy", Edit(span=Span(source, start, end), text=""))
+            yield candidate(cost, "delete a copy", Edit(span=Span(source, start, end), text=""))
             return

@@ -114,7 +114,7 @@ def clusters(
     analysis: Analysis, shown: Report, analysed: Again, most: int = MOST_CLUSTERS
 ) -> list[Cluster]:
     """The clusters of the errors and warnings that are shown, in order; at most `most`. Of two
-    repairs that correct the same finding, the one after which fewer are left is taken."""
+    repairs that correct the same finding, the first one by `_rank` is taken."""
     if analysis.source is None or analysis.library is None:
         return []
     types = _interfaces(analysis.library)
@@ -137,7 +137,7 @@ def clusters(
             proven.append(proof)
     found: dict[int, Cluster] = {}
     covered: set[int] = set()
-    for proof in sorted(proven, key=lambda proof: proof.left.total()):
+    for proof in sorted(proven, key=_rank):
         members = [item for item in _gone(proof, serious) if id(item) not in covered]
         if id(proof.item) not in covered and len(found) < most:
             others = tuple(item for item in members if item is not proof.item)
@@ -176,6 +176,15 @@ class Proof(NamedTuple):
     item: Diagnostic
     candidate: Candidate
     left: Counter[Mark]
+
+
+def _rank(proof: Proof) -> tuple[int, bool, bool]:
+    """What a report names first: the repair after which fewer findings are left, then the one of an
+    error, then the one on the line of its finding."""
+    item = proof.item
+    place = proof.candidate.repair.edits[0].span
+    is_there = place.source is item.span.source and place.line == item.span.line
+    return (proof.left.total(), item.severity is not Severity.ERROR, not is_there)
 
 
 def _proof(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from smachac.diagnostics.repair import Repair, edited_texts
 from smachac.diagnostics.source import Span
 
@@ -16,7 +18,7 @@ def in_words(repair: Repair, finding: Span) -> str:
     if not others and old.isidentifier() and new.isidentifier():
         return f"did you mean `{new}`{_instead(first.span, finding)}?"
     (source, text), *rest = edited_texts(repair.edits).items()
-    start = min(edit.span.start for edit in repair.edits)
+    start = _start_of_entry(source.text, min(edit.span.start for edit in repair.edits))
     end = max(edit.span.end for edit in repair.edits)
     changed = Span(source, start, end)
     lines = _lines(changed)
@@ -28,6 +30,12 @@ def in_words(repair: Repair, finding: Span) -> str:
     if not old and not others:
         piece = text.split("\n")[changed.line - 1].strip()
     return f"write `{piece}`" + ("" if _here(changed, finding) else f" in {lines}")
+
+
+def _start_of_entry(text: str, start: int) -> int:
+    """The start of the name before a value, if the edits start with the value."""
+    name = re.search(r"[\w-]+: *$", text[text.rfind("\n", 0, start) + 1 : start])
+    return start - len(name[0]) if name else start
 
 
 def _here(one: Span, other: Span) -> bool:

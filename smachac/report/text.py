@@ -78,13 +78,16 @@ MOST_EXPLAINED = 5
 
 
 def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
-    """A finding with the repair of its cluster as a help, and the explained findings as notes."""
+    """A finding with the repair of its cluster as a help, and the explained findings as notes. Its
+    own help is left out if it is a repair too: that one was tried, and corrects less."""
     if cluster is None:
         return item
     words = in_words(cluster.repair, item.span)
-    help = words if item.help in (None, words) else f"{words}\n{item.help}"
-    if cluster.repair.edits in [repair.edits for repair in item.finding.all_repairs]:
-        help = item.help or words
+    own, repairs = item.help, [repair.edits for repair in item.finding.all_repairs]
+    if own and (cluster.repair.edits in repairs or words in own):
+        help = own
+    else:
+        help = f"{words}\nor {own}" if own and not repairs else words
     notes = [
         Related(span=NOWHERE, message=f"this also corrects {other.span}: {other.message}")
         for other in cluster.explained[:MOST_EXPLAINED]

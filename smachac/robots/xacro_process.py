@@ -114,7 +114,8 @@ def expand(task: Mapping[str, Any]) -> dict[str, Any]:
 
     _restrict(xacro, substitution_args, files, evaluator, parsed, opened)
     try:
-        text = xacro.process_file(str(main), mappings=dict(task["arguments"])).toprettyxml("  ")
+        document: Any = xacro.process_file(str(main), mappings=dict(task["arguments"]))
+        text = document.toprettyxml("  ")
         if len(text) > _LONGEST_TEXT:
             raise RefusedError("the expanded text is too large", "name a file with fewer parts")
         return {"text": text, "files": [*files.read_texts]}

@@ -1,4 +1,4 @@
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -52,8 +52,13 @@ def _hidden_module(path: PurePosixPath, text: str, files: Mapping[str, str]) -> 
 
 
 def _imported(text: str) -> Iterator[str]:
-    """The outermost names of the modules that a program imports."""
-    for node in ast.walk(parse_module(text)):
+    """The outermost names of the modules that a program imports; none of one that is too deep to be
+    read."""
+    try:
+        tree = parse_module(text)
+    except SyntaxError:
+        return
+    for node in ast.walk(tree):
         match node:
             case ast.Import(names=names):
                 yield from (each.name.partition(".")[0] for each in names)

@@ -101,7 +101,7 @@ def test_at_some_imports_of_commands(tmp_path: Path, words: list[str]) -> None:
     expect_no_traceback(tmp_path, words, 59)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "words",
     [["check", SCRIPT], ["verify", SCRIPT], ["fmt", SCRIPT, "--check"]],

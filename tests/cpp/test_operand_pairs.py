@@ -41,7 +41,7 @@ def test_kinds_that_were_wrong(compiler: Compiler, tmp_path: Path) -> None:
     assert list(differences(batch, INPUTS, lines, Tally())) == []
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @COMPILERS
 def test_every_pair_of_kinds(compiler: Compiler, tmp_path: Path) -> None:
     tally = Tally()

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from smachac.commands.cli import main
+from tests.support.examples import every
 
 BENCH = Path(__file__).parents[2] / "bench" / "hostile.py"
 SIZE = 250
@@ -67,7 +68,7 @@ def lines(arguments: list[str]) -> int:
     return count
 
 
-@pytest.mark.parametrize("name", INPUTS)
+@pytest.mark.parametrize("name", every(5, INPUTS))
 def test_twice_the_input_takes_about_twice_the_lines(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -55,7 +55,7 @@ def test_valid_machines_have_all_there_is() -> None:
     assert any(node.rules for node in nodes if isinstance(node, Concurrence))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_busy_machines_have_all_there_is() -> None:
     found: set[str] = set()
 

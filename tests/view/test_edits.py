@@ -326,7 +326,7 @@ def test_the_picture_follows_an_edit_that_leaves_an_error(script: Path, view: Vi
     elsewhere leave the picture as it is."""
     view.until(lambda each: each["kind"] == "report")
     applied(view, ADD)
-    model = view.message()["model"]
+    model = view.until(lambda each: each["kind"] == "model")["model"]
     assert "sm/MORE" in [node["path"] for node in model["nodes"]]
     report = view.message()
     assert (report["broken"], report["outdated"]) == (True, False)

@@ -268,8 +268,9 @@ def _items(kind: Any, value: Any) -> Any:
         raise _misfit(_written(kind), value)
     if isinstance(value, bytes | bytearray | memoryview) and not is_bytes:
         raise _misfit(_written(kind), value)
-    if getattr(value, "ndim", 1) != 1:
-        raise FieldError(f"is {_written(kind)}, and the array has the shape {value.shape}")
+    shape = getattr(value, "shape", (len(value),))
+    if len(shape) != 1:
+        raise FieldError(f"is {_written(kind)}, and the array has the shape {shape}")
     if kind.has_maximum_size() and not _allows(kind, len(value)):
         raise FieldError(f"is {_written(kind)}, and the list has {len(value)} values")
     if code is not None:

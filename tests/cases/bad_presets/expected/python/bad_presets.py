@@ -56,7 +56,7 @@ def build():
     return bad_presets
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

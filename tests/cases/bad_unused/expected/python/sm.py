@@ -101,7 +101,7 @@ def build_sub():
     return sm_call
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -42,7 +42,7 @@ def build():
     return code_in_both
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -76,7 +76,7 @@ def build():
     return count
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -242,7 +242,7 @@ def build_c27():
     return sm_c27
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

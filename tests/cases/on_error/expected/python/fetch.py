@@ -401,7 +401,7 @@ def build():
     return fetch
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

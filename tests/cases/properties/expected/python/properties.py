@@ -291,7 +291,7 @@ def build():
     return properties
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

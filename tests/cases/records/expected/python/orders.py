@@ -211,7 +211,7 @@ def build():
     return orders
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

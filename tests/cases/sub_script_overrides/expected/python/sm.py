@@ -99,7 +99,7 @@ def build_sub_2():
     return sm_other
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

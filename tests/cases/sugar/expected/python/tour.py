@@ -502,7 +502,7 @@ def build_look():
     return sm_look
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -96,7 +96,7 @@ def build():
     return pass_door
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -179,7 +179,7 @@ def build():
     return prepare
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -94,7 +94,7 @@ def build_wave(topic, times):
     return sm_wave
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -128,7 +128,7 @@ def build():
     return measure
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

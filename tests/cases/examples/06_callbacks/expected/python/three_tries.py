@@ -131,7 +131,7 @@ def build():
     return three_tries
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

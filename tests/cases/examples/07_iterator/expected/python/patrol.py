@@ -184,7 +184,7 @@ def build():
     return patrol
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -908,7 +908,7 @@ def build():
     return patrol
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

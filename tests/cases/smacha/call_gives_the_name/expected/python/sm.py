@@ -64,7 +64,7 @@ def build_part():
     return sm_part
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

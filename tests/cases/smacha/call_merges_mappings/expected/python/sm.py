@@ -78,7 +78,7 @@ def build_pick():
     return sm_first
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -61,7 +61,7 @@ def build_box():
     return sm_a
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -64,7 +64,7 @@ def build():
     return sm
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

@@ -54,7 +54,7 @@ def build():
     return sm
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):

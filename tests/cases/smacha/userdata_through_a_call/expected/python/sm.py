@@ -85,7 +85,7 @@ def build_pick():
     return sm_pick
 
 
-stop_signals = []
+stop_signals: list[int] = []
 
 
 def stop_at_signals(stop):
