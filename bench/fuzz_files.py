@@ -20,6 +20,7 @@ import resource
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import fuzz
@@ -29,7 +30,7 @@ from smachac.commands.cli import main as smachac
 COUNT = 1000
 SECONDS = 10
 BYTES = 4_000_000_000
-CASES = fuzz.ROOT / "tests" / "cases"
+CASES = Path(__file__).parents[1] / "tests" / "cases"
 
 MAIN = """name: main
 template: Base
@@ -271,8 +272,12 @@ def deep(draw: random.Random, text: str) -> str:
     return text[:at] + opening * draw.choice([100, 1000, 20_000, 100_000]) + text[at:]
 
 
-KINDS = ((valued, 40), (fuzz.signs, 15), (fuzz.words, 10), (fuzz.lines, 15), (deep, 5),
-         (fuzz.splice, 3), (fuzz.noise, 2), (written, 15))  # fmt: skip
+Damage = Callable[[random.Random, str], str]
+KINDS: tuple[tuple[Damage | None, int], ...] = (
+    *((valued, 40), (fuzz.signs, 15), (fuzz.words, 10), (fuzz.lines, 15), (deep, 5)),
+    *((fuzz.splice, 3), (fuzz.noise, 2), (None, 15)),
+)
+"""The kinds of damage with their weights; None for that of bytes (`written`)."""
 
 
 def damaged(made: dict[str, bytes], seed: int, index: int) -> tuple[str, str, bytes, str]:
@@ -280,11 +285,11 @@ def damaged(made: dict[str, bytes], seed: int, index: int) -> tuple[str, str, by
     draw = random.Random(f"{seed}/{index}")
     name = draw.choice([*COMMANDS])
     (kind,) = draw.choices([kind for kind, _ in KINDS], [weight for _, weight in KINDS])
-    if kind is written:
+    if kind is None:
         data = written(draw, made[name])
     else:
         data = kind(draw, made[name].decode()).encode("utf-8", "surrogatepass")
-    return kind.__name__, name, data, draw.choice(COMMANDS[name])
+    return (kind or written).__name__, name, data, draw.choice(COMMANDS[name])
 
 
 def run(folder: Path, command: str) -> tuple[int, str]:
