@@ -235,7 +235,8 @@ class Searches:
 
     def _search(self, scope: UserdataScope, key: str) -> Search:
         found = search(self.flow, scope, key, ["unset"], stops=True)
-        self.left -= len(scope.reads) + len(found)
+        read = sum(len(scope.reads.get(each.vertex, ())) for each in found)
+        self.left -= len(scope.reads) + len(found) + read // 10  # a look at a key is a short step
         return found
 
     def _inside(
