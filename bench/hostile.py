@@ -511,11 +511,16 @@ def at_most_in_a_ring(folder: Path, size: int) -> list[str]:
 # Depth and length
 
 
-@hostile(1_500)
+NEST = 300
+"""Blocks one inside another: a text of more than 900 levels is refused before any other work."""
+
+
+@hostile(3_000)
 def nested_blocks(folder: Path, size: int) -> list[str]:
-    """The text has a number of characters that grows with the square of the size."""
-    text = "".join(" " * depth + "a:\n" for depth in range(1, size))
-    return check(folder, f"{HEAD}userdata:\n{text}{' ' * size}a: 1\n")
+    """Blocks in nests of 300."""
+    nest = "".join(" " * depth + "a:\n" for depth in range(2, NEST)) + " " * NEST + "a: 1\n"
+    nests = "".join(f" k{number}:\n{nest}" for number in range(size // NEST))
+    return check(folder, state("", f"userdata:\n{nests}"))
 
 
 @hostile(3_000)
@@ -633,7 +638,7 @@ def fields_outside_of_states(folder: Path, size: int) -> list[str]:
 # fmt
 
 
-@hostile(1_500)
+@hostile(3_000)
 def fmt_nested_blocks(folder: Path, size: int) -> list[str]:
     nested_blocks(folder, size)
     return ["fmt", "main.yml"]

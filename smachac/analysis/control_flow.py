@@ -57,12 +57,17 @@ class MeantTarget(NamedTuple):
     paired: bool = False
 
 
+MOST_MEANT = 1000
+"""The most unknown targets of a container for which a known name is searched."""
+
+
 def meant_targets(container: Linear) -> dict[str, MeantTarget]:
     """The names that are meant by the unknown targets of transitions in a container: the nearest
     one, first of those to which nothing leads; or the only one to which nothing leads. None for a
     state that is missing (`_missing_states`)."""
     names, exits = children_names(container), frozenset(outcome_names(container))
-    lost = [step.target for step in strays(container.children, names, exits)]
+    unknown = dict.fromkeys(step.target for step in strays(container.children, names, exits))
+    lost = [*unknown][:MOST_MEANT]
     if not lost:
         return {}
     led = {step.target for child in container.children for step in child.transitions
@@ -72,12 +77,12 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
     ends = [name for name in outcome_names(container) if name not in led]
     free, every = guesser([*states, *ends]), places_of(container)
     found: dict[str, MeantTarget] = {}
-    for target in dict.fromkeys(lost):
+    for target in lost:
         near = (free.sure(target) or every.sure(target)) if target else None
         if near is not None:
             found[target] = MeantTarget(near)
     taken = {each.name for each in found.values()}
-    left = [target for target in dict.fromkeys(lost) if target and target not in found]
+    left = [target for target in lost if target and target not in found]
     states = [name for name in states if name not in taken]
     ends = [name for name in ends if name not in taken and name.islower()]
     if len(left) == 1 and len(names) == len(container.children):

@@ -306,9 +306,9 @@ def _uses_of(flow: DataFlow, scope: UserdataScope, child: Node) -> Iterator[tupl
 
 def place_of(node: Node, key: Key) -> Span:
     """The span of a key of a state: in its list of keys, else its remap, else the state."""
-    remap = next((remap for remap in node.remaps if remap.key == key.name), None)
     if key.span.source is node.span.source:
         return key.span
+    remap = next((remap for remap in node.remaps if remap.key == key.name), None)
     return remap.span if remap is not None else node.span
 
 

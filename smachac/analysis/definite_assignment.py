@@ -14,6 +14,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol, TypeVar
 
 from smachac.analysis.accesses import (
@@ -36,7 +37,16 @@ from smachac.analysis.fixpoint import (
 )
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings, transitions
-from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node, OutcomeRule
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Expression,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    OutcomeRule,
+)
 from smachac.ir.traversal import PREEMPTED, containers, ends_preempted, outcome_names, remapping
 
 T = TypeVar("T")
@@ -52,7 +62,8 @@ class UserdataScope:
     needs. `unset`: those of them that can be unset if no input is set. `needed`: the inputs that
     are read inside before they are written. `endings`: for each outcome, the keys of the container
     around it that are set then. `inner`: the names of the containers inside. `again`: those of
-    them that a path can enter more than once. `filled`: it is an iterator that surely has items.
+    them that a path can enter more than once. `inputs_at`: the inputs of the state at a vertex, by
+    the key that each reads. `filled`: it is an iterator that surely has items.
     """
 
     path: str
@@ -70,6 +81,7 @@ class UserdataScope:
     endings: Mapping[str, Writes]
     inner: frozenset[str]
     again: frozenset[Vertex]
+    inputs_at: Callable[[str], Mapping[str, Key]]
     filled: bool = False
 
 
@@ -204,8 +216,14 @@ def _scope(
         endings=_with_caught(container, _endings(outputs, at_end, found, steps, order)),
         inner=frozenset(scopes),
         again=looping(steps, order).intersection(scopes) if scopes else frozenset(),
+        inputs_at=cache(lambda vertex: _inputs_by_key(children[vertex])),
         filled=filled,
     )
+
+
+def _inputs_by_key(node: Node) -> dict[str, Key]:
+    names = remapping(node)
+    return {names.get(key.name, key.name): key for key in reversed(node.inputs)}
 
 
 def _endings(

@@ -31,7 +31,7 @@ MOST_PAIRS, PAIRS_BY_STATE = 50_000, 30
 seconds of CPU time, and so many more for each state of the machine. Each property that is not
 decided halves it for the others."""
 
-STEPS_OF_A_PAIR = 6
+STEPS_OF_A_PAIR = 3
 """The limit on the steps that are examined, for each pair of the limit above: a configuration of
 many branches has many steps."""
 

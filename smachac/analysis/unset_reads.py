@@ -235,7 +235,8 @@ class Searches:
 
     def _search(self, scope: UserdataScope, key: str) -> Search:
         found = search(self.flow, scope, key, ["unset"], stops=True)
-        self.left -= len(scope.reads) + len(found)
+        read = sum(len(scope.reads.get(each.vertex, ())) for each in found)
+        self.left -= len(scope.reads) + len(found) + read // 10  # a look at a key is a short step
         return found
 
     def _inside(
@@ -287,8 +288,7 @@ def reader_at(scope: UserdataScope, vertex: Vertex, key: str) -> Reader:
         span = node.span if span.source is NOWHERE.source else span
         return Reader(scope.path, node, key, span, f"`{node.name}` iterates over `{key}`")
     node = scope.children[vertex]
-    names = remapping(node)
-    own = next((each for each in node.inputs if names.get(each.name, each.name) == key), None)
+    own = scope.inputs_at(vertex).get(key)
     span = node.span if own is None else place_of(node, own)
     called = f"`{key}`"
     if own is not None and own.name != key:

@@ -416,7 +416,8 @@ def _mapping_faults(
             text = f"{described(message)} has no field `{steps[-1]}`"
             help = level or did_you_mean(near_field(steps[-1], fields))
             help = help or _only_missing(flow.value, steps, message)
-            help = help or f"use one of its fields: {listed(fields)}"
+            known = f"use one of its fields: {listed(fields)}" if fields else "it has no fields"
+            help = help or known
             if wanted is not None:
                 text = f"the value of `{steps[-1]}` does not fit: the field of"
                 text += f" {described(message)} is `{wanted}`"

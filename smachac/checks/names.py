@@ -175,7 +175,7 @@ def _lost(path: str, container: Linear) -> Iterator[_Lost]:
         if not _was_reported(step) and step.target != copied:  # SM106
             meant = near.get(step.target)
             name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
-            sure = guess.sure(step.target)
+            sure = guess.sure(step.target) if meant is not None else None
             yield _Lost(path, container, targets, child, step, name, sure, paired)
 
 

@@ -305,13 +305,13 @@ def _targets(
             free.remove(choice)
     for outcome in rest[:MOST_EXPLAINED]:
         if outcome not in found:
-            found[outcome] = _target(container, child, outcome)
+            found[outcome] = _target(container, child, outcome, outcome in sure)
     last = found[rest[:MOST_EXPLAINED][-1]]
     found |= dict.fromkeys(rest[MOST_EXPLAINED:], last)
     return {name: found[name] for name in rest}
 
 
-def _target(container: Linear, child: Node, outcome: str) -> str:
+def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
     """The target that an outcome probably needs: that of the other failures of the state, the state
     after a stop request, that of the same outcome of other states, a failure of the container or
     its stop, or what comes after a success."""
@@ -330,7 +330,7 @@ def _target(container: Linear, child: Node, outcome: str) -> str:
         stopped = [step.target for step in child.transitions
                    if step.outcome == PREEMPTED and step.target in names]  # fmt: skip
         targets = [*(own if len(own) == 1 else ()), *stopped, *others, *failed]
-    elif outcome in successes(child):
+    elif succeeds:
         targets = [*names[names.index(child.name) + 1 :], *successes(container)]
     else:
         used = {step.target for each in container.children for step in each.transitions}

@@ -30,6 +30,9 @@ MOST_CANDIDATES = 8
 MOST_NEAR = 3
 """The most names near to a word."""
 
+MOST_WORDS = 20
+"""The most names of a finding, and of the other findings, that are compared with others."""
+
 RENAME = "write another name"
 
 LONGEST_NAME = 100
@@ -167,7 +170,7 @@ def _near_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
             cost += text.counts[name] < text.counts[word]
             for span in _places(word, item.span):
                 yield candidate(cost, RENAME, Edit(span=span, text=name))
-    for word in dict.fromkeys((*words, *item.finding.arguments)):
+    for word in dict.fromkeys((*words, *item.finding.arguments[:MOST_WORDS])):
         if not _NAME.fullmatch(word):
             continue
         for cost, name in _near(word, text):
@@ -183,7 +186,8 @@ def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candid
     if not _NAME.fullmatch(word):
         return
     near = [related.span.text for related in item.finding.related]
-    for cost, names in ((1.6, (*item.finding.arguments, *near)), (1.7, others)):
+    own = (*item.finding.arguments[:MOST_WORDS], *near)
+    for cost, names in ((1.6, own), (1.7, others)):
         for name in dict.fromkeys(names):
             if name != word and _NAME.fullmatch(name):
                 yield candidate(cost, RENAME, Edit(span=item.span, text=name))

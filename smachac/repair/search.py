@@ -30,9 +30,12 @@ from smachac.repair.operators import Around, Candidate, candidates, text_of
 MOST_CLUSTERS = 10
 """The most findings of a script for which a repair is searched."""
 
-MOST_CHECKED = 20_000
-"""The most states that all trials of a script check together: each trial is a check of the whole
-script, so that large ones get few trials."""
+MOST_CHECKED = 100_000
+"""The most that all trials of a script check together, in units of `_size`: each trial is a check
+of the whole script, so that large ones get few trials."""
+
+CHARACTERS = 20
+"""The characters of a text that take about as long as one part of a machine."""
 
 MOST_FINDINGS = 100
 """In a report of more findings nothing is searched."""
@@ -119,8 +122,9 @@ def clusters(
     serious = [item for item in shown if item.severity is not Severity.INFO]
     if len(serious) > MOST_FINDINGS:
         return []
-    states = 1 if analysis.machine is None else sum(1 for _ in walk(analysis.machine.root))
-    trials = MOST_CHECKED // states
+    if any(item.code == "SM704" for item in analysis.report):
+        return []  # a property that takes all of its limit takes it again in each trial
+    trials = MOST_CHECKED // _size(analysis.source, analysis.machine)
     proven: list[Proof] = []
     for item in serious[:MOST_CLUSTERS]:
         if trials <= 0:
@@ -141,6 +145,16 @@ def clusters(
             found[id(proof.item)] = Cluster(finding=proof.item, repair=repair, explained=others)
             covered.update(map(id, (proof.item, *others)))
     return [found[id(item)] for item in serious if id(item) in found]
+
+
+def _size(source: Source, machine: Machine | None) -> int:
+    """What a check of a script costs: the states, outcomes, transitions and keys of its machine, or
+    the length of its text where that is more."""
+    parts = 0 if machine is None else sum(
+        1 + sum(map(len, (node.outcomes, node.transitions, node.inputs, node.outputs)))
+        for _, node in walk(machine.root)
+    )  # fmt: skip
+    return max(1, parts, len(source.text) // CHARACTERS)
 
 
 MOST_TYPES = 200

@@ -29,6 +29,7 @@ INPUTS = (
     "outcomes",
     "transitions",
     "userdata",
+    "unset_keys",
     "params",
     "fields_outside_of_states",
     "project_settings",

@@ -144,8 +144,13 @@ class Blocks:
         return None
 
     def _load(self, file: str) -> tuple[str, str, Callable[[], bool]] | None:
+        from smachac.targets.templates.nesting import refuse_deep
+
         source = self.source(file)
-        return None if source is None else (source.text, file, lambda: True)
+        if source is None:
+            return None
+        refuse_deep(self._environment, source.text, file)
+        return source.text, file, lambda: True
 
     def _chain(self, file: str) -> list[Template]:
         """A template, the one it extends, and so on."""
