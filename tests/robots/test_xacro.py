@@ -100,7 +100,7 @@ def test_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         ('<link name="$(arg side)"/>', "the argument `side` has no value", "$(arg side)"),
         ('<link name="${side}"/>', "the name `side` is not defined", "side"),
         ('<link name="${1 +}"/>', "invalid syntax", "1 +"),
-        ('<link name="${9 ** 9 ** 9}"/>', "Numerical result out of range", "9 ** 9 ** 9"),
+        ('<link name="${9.0 ** 999}"/>', "Numerical result out of range", "9.0 ** 999"),
         ('<link name="${1 / 0}"/>', "division by zero", "1 / 0"),
         ('<link name="$(env HOME)"/>', "`$(env ...)` is not read", "$(env"),
         ('<link name="$(eval 1 + 1)"/>', "`$(eval ...)` is not read", "$(eval"),

@@ -38,7 +38,7 @@ def faults(inside: str) -> list[str]:
     return [item.message for item in report if item.code == "SM605"]
 
 
-@pytest.mark.parametrize("count", [60, 500, 30_000])
+@pytest.mark.parametrize("count", [51, 60])
 @pytest.mark.parametrize(
     ("before", "middle", "after"),
     [
@@ -55,7 +55,7 @@ def test_deep_nesting_is_refused(before: str, middle: str, after: str, count: in
     assert found == ["the template has more than 50 levels of nesting"]
 
 
-@pytest.mark.parametrize("count", [150, 20_000])
+@pytest.mark.parametrize("count", [101, 150])
 @pytest.mark.parametrize("part", [".b", "|int", "+1", "[0]~1", " and 1", " if 1 else 1"])
 def test_long_expressions_are_refused(part: str, count: int) -> None:
     found = faults("{{ a" + part * count + " }}")
