@@ -163,7 +163,9 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
 
             super().error(on_one_line(message))
 
-        def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride]
+            self, args: Any = None, namespace: Any = None
+        ) -> Any:
             """Reports an unknown option before the arguments that are then missing."""
             for word in args:
                 name = word.partition("=")[0]

@@ -444,14 +444,12 @@ def perform(
     from smachac.targets.python.output_check import output_check
     from smachac.targets.python.runner import execute, failure_text
 
-    watched = observe
-    if not arguments.quiet:
-        check = output_check(machine)
+    check = output_check(machine)
 
-        def watched(event: Event) -> None:
-            observe(event)
-            for sentence in check(event):
-                print(f"warning: {sentence}", file=sys.stderr)
+    def watched(event: Event) -> None:
+        observe(event)
+        for sentence in check(event) if not arguments.quiet else ():
+            print(f"warning: {sentence}", file=sys.stderr)
 
     gc.enable()  # from here on the user's program runs
     # The program may change the working folder.
