@@ -5,7 +5,10 @@ Jinja 3.1 takes quadratic time and more for the depth of an expression, and recu
 
 from __future__ import annotations
 
-from jinja2 import Environment, TemplateSyntaxError
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 MOST_LEVELS = 50
 """The most tags one inside another, and the most brackets inside one tag or expression."""
@@ -20,6 +23,8 @@ _OPENING = frozenset(["if", "for", "block", "macro", "call", "filter", "with"])
 
 def refuse_deep(environment: Environment, text: str, name: str) -> None:
     """Raise TemplateSyntaxError at the first place of a template that is nested too deep."""
+    from jinja2 import TemplateSyntaxError
+
     tags = brackets = operations = 0
     begins = False
     for line, kind, word in environment.lex(text, name, name):
