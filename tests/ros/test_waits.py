@@ -166,6 +166,6 @@ def test_after_a_signal_the_machine_ends_as_it_will_while_the_node_works(
     program = graph.start(built(tmp_path, TIDY))
     server.expect("goal 3")
     program.send(signal.SIGTERM)
-    assert program.end() == 130
+    assert program.end() == 143
     assert "tidied up" in program.output
     assert program.output.endswith("outcome: aborted\n")

@@ -285,4 +285,4 @@ report("outcome", state.execute(smach.UserData()))
     program.expect("no time came on /clock for 5 s: time limits begin with the first one")
     program.say("stop")
     assert program.end() == 0, program.output
-    assert "outcome: preempted" in program.output
+    assert "preempted" in program.output

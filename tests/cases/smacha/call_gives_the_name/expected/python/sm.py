@@ -94,7 +94,7 @@ def stop_at_signals(stop):
                 for stream in terminals:
                     if not os.isatty(stream):  # it was closed: output to it is an error
                         os.dup2(os.open(os.devnull, os.O_RDWR), stream)
-                threading.Thread(target=stop).start()
+                threading.Thread(target=stop, daemon=False).start()
 
     threading.Thread(target=wait, daemon=True).start()
 
