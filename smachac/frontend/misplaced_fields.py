@@ -12,7 +12,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend import schema
 from smachac.frontend.errors.script import duplicate_key, wrong_shape
-from smachac.frontend.paired_fields import fits_field
+from smachac.frontend.field_shapes import fits_field
 from smachac.frontend.params import look_up_word
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.sugar import duration

@@ -23,6 +23,11 @@ from smachac.frontend.errors.script import (
     wrong_shape,
 )
 from smachac.frontend.extra_keys import check_interface
+from smachac.frontend.field_shapes import (
+    ends_with_any,
+    fitting_fields,
+    paired_help,
+)
 from smachac.frontend.fields import (
     READERS,
     YAML_1_1_BOOLEANS,
@@ -32,11 +37,6 @@ from smachac.frontend.fields import (
     wrong,
 )
 from smachac.frontend.missing_outcomes import outcomes_used
-from smachac.frontend.paired_fields import (
-    ends_with_any,
-    fitting_fields,
-    paired_help,
-)
 from smachac.frontend.params import Scope
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script import Keys, Pairs, State

@@ -16,8 +16,8 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, either, listed
 from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
+from smachac.frontend.field_shapes import paired_help
 from smachac.frontend.fields import as_items, as_name, as_names, pairs_of, wrong
-from smachac.frontend.paired_fields import paired_help
 from smachac.frontend.script import ERROR, EXHAUSTED, TIMEOUT, ForEach, Retry, Sugar, Timeout
 from smachac.frontend.values import UNKNOWN
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
