@@ -491,13 +491,14 @@ def watching(
 ) -> Iterator[tuple[Callable[[Event], None], list[Event]]]:
     """An observer that writes the trace, shows progress and feeds the view, and the error events it
     received."""
+    from smachac.commands.files import make_folders
     from smachac.runtime.tracing.progress import Progress
     from smachac.runtime.tracing.writer import TraceWriter
 
     recorders: list[TraceWriter | LiveTrace] = [] if view is None else [view]
     with ExitStack() as stack:
         if arguments.trace is not None:
-            arguments.trace.parent.mkdir(parents=True, exist_ok=True)
+            make_folders(arguments.trace.parent)
             stream = stack.enter_context(arguments.trace.open("wb", buffering=0))
             failures: list[OSError] = []
             recorders.append(TraceWriter(partial(_write_lines, stream.fileno(), failures)))
