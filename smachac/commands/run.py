@@ -581,7 +581,7 @@ def read_scenario_file(
     scenario, found = read_scenario(plain(tree), machine)
     for problem in found:
         place = _place(problem, tree)
-        report.append(wrong_shape(place, problem.message, effect=NO_SCENARIO))
+        report.append(wrong_shape(place, problem.message, problem.help, effect=NO_SCENARIO))
     if report:
         return None, {}
     states = tree.get("states") if isinstance(tree, Map) else None
