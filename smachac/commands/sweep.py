@@ -224,7 +224,7 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     if arguments.expect is not None and arguments.expect not in known:
         return usage(f"the machine has no outcome `{arguments.expect}`", arguments.expect, known)
     found: Report = []
-    faults = () if arguments.faults is None else read_fault_file(arguments.faults, found)
+    faults = () if arguments.faults is None else read_fault_file(arguments.faults, machine, found)
     scenario = None
     if arguments.mock is not None:
         scenario, _ = read_scenario_file(arguments.mock, machine, found)

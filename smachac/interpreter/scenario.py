@@ -349,6 +349,15 @@ class _Leaves:
         return self.by_path[path]
 
 
+def leaves_named(name: str, machine: Machine) -> tuple[list[str], ScenarioProblem | None]:
+    """The full paths of the leaves that a name means, which can be several; without one, the
+    fault."""
+    leaves = _leaves(machine)
+    found = _matches(name, leaves)
+    problem = None if found else ScenarioProblem(*_not_found(name, machine, leaves))
+    return found, problem
+
+
 def _leaves(machine: Machine) -> _Leaves:
     by_path = _leaves_by_path(machine)
     by_end: tuple[dict[str, list[str]], ...] = ({}, {}, {})
@@ -400,7 +409,8 @@ def _not_found(name: str, machine: Machine, leaves: _Leaves) -> tuple[str, str |
         return f"`{name}` may be any of {named}", "write one of them, or an entry for each"
     paths = (path for each in walk_script(machine.root) for path in (each.shown, each.full))
     if any(f"/{path}".endswith(f"/{name}") for path in paths):
-        return f"`{name}` is a container: it ends as its states make it end", None
+        message = f"`{name}` is a container: it ends as its states make it end"
+        return message, "name one of its states"
     shown = [each.paths[0] for each in leaves.by_path.values()]
     names = [*shown, *(path.rpartition("/")[2] for path in shown)]
     return f"there is no state `{name}`", did_you_mean(name, names)
