@@ -97,7 +97,7 @@ def _texts(dotted: str | None, library: Library) -> list[str]:
     return [source.text for source in sources if source is not None]
 
 
-def _values(function: ast.AST, tried: set[ast.AST]) -> Iterator[_Reference]:
+def _values(function: ast.AST, tried: Set[ast.AST]) -> Iterator[_Reference]:
     """The names in a function whose value is a number, a truth value or a value of the userdata,
     or that are alone in a line."""
     for each in ast.walk(function):

@@ -238,10 +238,10 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
         path = _found(name, leaves)
         if path is None:
             unknown += 1
-            message, help_ = f"there is no state `{name}`", None
+            found: tuple[str, str | None] = (f"there is no state `{name}`", None)
             if unknown <= MOST_EXPLAINED:
-                message, help_ = _not_found(name, machine, leaves)
-            problems.append(ScenarioProblem(message, help_, name))
+                found = _not_found(name, machine, leaves)
+            problems.append(ScenarioProblem(*found, name))
             continue
         if path in names:
             message = f"`{names[path]}` and `{name}` are the same state"

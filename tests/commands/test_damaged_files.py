@@ -94,7 +94,8 @@ def test_deep_json_is_refused(
     for command in ("trace check", "trace stats", "stats"):
         code, printed = ended(f"{command} main.yml run.jsonl", capsys)
         assert code == 1
-        assert f"run.jsonl:{len(trace.splitlines()) + 1}: " in printed
+        reason = "this line has too many brackets in brackets"
+        assert f"run.jsonl:{len(trace.splitlines()) + 1}: {reason}" in printed
         assert len(printed) < 10_000
     for text in (deep, f'{{"version": 2, "findings": {deep}}}'):
         (project / "known.json").write_text(text)
