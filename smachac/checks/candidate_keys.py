@@ -9,7 +9,6 @@ from itertools import chain, islice
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, misfit, widened
@@ -20,7 +19,7 @@ from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, words
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Node, Remap
 from smachac.ir.script_paths import sugared_child
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs, outer_outputs, outputs_to, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -30,8 +29,7 @@ def keys_around(container: Container) -> set[str]:
     if isinstance(container, nodes.Iterator):
         return found - {container.item_key}
     for child in container.children:
-        names = remapping(child)
-        found |= {names.get(key.name, key.name) for key in child.outputs}
+        found.update(outer_outputs(child))
     return found
 
 
@@ -81,7 +79,7 @@ def unread_outputs(scope: UserdataScope, missing: str) -> Iterator[UnreadOutput]
     for child in scope.container.children:
         names = remapping(child)
         for key in child.outputs:
-            outer = names.get(key.name, key.name)
+            outer = names[key.name]
             if outer in read:
                 continue
             help = f"nothing reads `{outer}`, which `{child.name}` sets: did you mean it?"
@@ -115,7 +113,7 @@ def fitting_keys(types: Types, scope: UserdataScope, reader: Reader, wanted: Typ
     names = remapping(reader.node)
     if is_open(wanted) or reader.key in names or reader.node is scope.container:
         return []
-    own = {names.get(each.name, each.name) for each in reader.node.inputs}
+    own = {*outer_inputs(reader.node)}
     keys = {key: type_ for (path, key), type_ in types.keys.items() if path == scope.path}
     found = [
         key
@@ -177,11 +175,7 @@ def meant_by_remap(
     if key is None or place is None:
         near = near or _named_by_state(types, scope, child, wanted)
         return MeantByRemap(near) if near is not None else None
-    setters = [
-        each.name
-        for each in scope.container.children
-        if any(remapping(each).get(one.name, one.name) == key for one in each.outputs)
-    ]
+    setters = [each.name for each in scope.container.children if outputs_to(each, key)]
     return MeantByRemap(key, place, setters[0] if setters and key not in scope.held else "")
 
 
@@ -238,8 +232,7 @@ def _unread_of_type(
             widened(types.keys.get((scope.path, key), ANY)).name in SCALARS for key in held
         )
         return held if len(held) == 1 and not simple else []
-    names = remapping(child)
-    own = {names.get(each.name, each.name) for each in child.outputs}
+    own = {*outer_outputs(child)}
     found = [
         key
         for key in sorted(keys_of(scope) - read - own)
@@ -264,12 +257,7 @@ def written_place(scope: UserdataScope, key: str) -> Span | None:
     for preset in scope.container.userdata:
         if preset.key == key:
             return preset.span
-    for child in scope.container.children:
-        names = remapping(child)
-        for each in child.outputs:
-            if names.get(each.name, each.name) == key:
-                return place_of(child, each)
-    return None
+    return next((use.span for use in scope.uses.writers(key)), None)
 
 
 def _input_type(types: Types, reader: Reader) -> Type:

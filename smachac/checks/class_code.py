@@ -26,7 +26,7 @@ from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
-from smachac.ir.traversal import enclosing, outcome_names, remapping
+from smachac.ir.traversal import enclosing, outcome_names, outer_outputs, remapping
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
@@ -430,13 +430,10 @@ def _sets_first(facts: ClassFacts, word: Word) -> bool:
 
 def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
     """Whether a key of a leaf can have a value before the leaf sets it."""
-    outer = remapping(leaf).get(key, key)
+    outer = remapping(leaf)[key]
     known = {each.key for each in around.userdata} | {each.name for each in around.inputs}
     return outer in known or any(
-        remapping(child).get(each.name, each.name) == outer
-        for child in around.children
-        if child is not leaf
-        for each in child.outputs
+        outer in outer_outputs(child) for child in around.children if child is not leaf
     )
 
 

@@ -599,7 +599,7 @@ def function_reads(context: Context) -> Mapping[str, set[str]]:
         if slot.arguments is not None and slot.arguments[:1] == ("userdata",):
             names = remapping(node)
             keys = found.setdefault(path.rpartition("/")[0], set())
-            keys.update(names.get(word.text, word.text) for word in facts.reads)
+            keys.update(names[word.text] for word in facts.reads)
     return found
 
 

@@ -428,7 +428,7 @@ def _set_by_other_key(context: Context, site: ExpressionSite, fault: Fault) -> s
     reads is probably meant for it."""
     for key in fault.keys:
         if (site.types or {}).get(key) == NONE and isinstance(site.node, Leaf):
-            outer = remapping(site.node).get(key, key)
+            outer = remapping(site.node)[key]
             meant = output_for_null(context, site.path.rpartition("/")[0], outer)
             if meant is not None:
                 return meant.help

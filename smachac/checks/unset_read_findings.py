@@ -6,8 +6,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from smachac.analysis.def_use import Use
-from smachac.analysis.definite_assignment import UserdataScope
+from smachac.analysis.def_use import written_on
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
@@ -28,7 +28,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outcome_names, outer_inputs
 from smachac.ir.types import ANY, Type
 
 MOST_RELATED = 3
@@ -82,14 +82,14 @@ class Guesses:
 
 
 def unset_read(
+    flow: DataFlow,
     missing: Missing,
     witness: Witness,
-    users: list[Use],
     guesses: Guesses | None,
     types: Types,
 ) -> Finding:
-    """SM301 for a key where a state reads it. `users` are the uses of the key in its container.
-    Without `guesses` no key is searched that can be meant."""
+    """SM301 for a key where a state reads it. Without `guesses` no key is searched that can be
+    meant."""
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
     value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
@@ -98,13 +98,13 @@ def unset_read(
         f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
     )
     help += f" `{name}`: {value}"
-    is_counter = missing.cause == "unset" and counts(users)
+    is_counter = missing.cause == "unset" and counts(missing)
     if is_counter:
         help = f"give `{missing.key}` an initial value in `{name}`: {value}"
     related: tuple[Related, ...] = ()
     if not (is_counter or witness.always) and len(witness.path) > 2 and witness.path[-2].is_outcome:
         before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
-        if any(use.path == before.node for use in users if use.kind not in ("reads", "copies in")):
+        if any(use.path == before.node for use in scope.uses.writers(missing.key)):
             help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
@@ -118,7 +118,7 @@ def unset_read(
         help=help,
         related=(
             *_readers(missing, witness),
-            *_writers(users),
+            *_writers(flow, missing),
             *related,
             *calls(reader.node, reader.span),
         ),
@@ -143,9 +143,7 @@ def _meant_key(
     loop = scope.container
     if isinstance(loop, nodes.Iterator) and guess == loop.items_key:
         guess = None  # what its state reads is the item, not the list
-    names = remapping(node)
-    own = {names.get(key.name, key.name) for key in node.inputs}
-    if node is not scope.container and guess in own:
+    if node is not scope.container and guess in outer_inputs(node):
         guess = guesses.of(scope).sure(missing.key)  # the state reads that key too
     wanted, inside = types.inputs.get((reader.path, reader.key), ANY), witness.inner
     if inside is not None and is_open(wanted):
@@ -226,14 +224,13 @@ def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
         yield from other_place(reader.span, f"{reader.words} as well")
 
 
-def _writers(users: list[Use]) -> Iterator[Related]:
+def _writers(flow: DataFlow, missing: Missing) -> Iterator[Related]:
     """The states that set the key, on other paths or on some outcomes only."""
-    writers = [use for use in users if use.kind not in ("reads", "copies in")]
-    for use in writers[:MOST_RELATED]:
-        name = use.path.rpartition("/")[2]
+    for use in missing.scope.uses.writers(missing.key)[:MOST_RELATED]:
+        name, outcomes = use.node.name, written_on(flow, missing.scope, use)
         text = f"`{name}` sets it here"
-        if not use.always and use.outcomes:
-            text = f"`{name}` sets it only on {listed(use.outcomes)}"
-        elif not use.always:
+        if outcomes != outcome_names(use.node):
             text = f"`{name}` can set it, but no outcome guarantees that it does"
+            if outcomes:
+                text = f"`{name}` sets it only on {listed(outcomes)}"
         yield from other_place(use.span, text)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cache
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of, uses_by_key
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
@@ -113,12 +112,11 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     flow = context.corrected_flow
     searches = Searches(flow)
     guesses = Guesses()
-    used = cache(lambda path: uses_by_key(flow, path))
     presets, misled = meant_keys(context), misled_failures(context)
     misnamed = misnamed_keys(context)
     moved = {each.path for each in context.misplaced}
     causes = _with_their_own_cause(context)
-    for lacking in missing_together(causes, used) if not moved else ():
+    for lacking in missing_together(causes) if not moved else ():
         if lacking[0].scope.path in presets:
             continue
         yield together_finding(context, lacking)
@@ -139,9 +137,8 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             misplaced = node.misplaced_keys if isinstance(node, nodes.Leaf) else ()
             if witness.reader.key in misplaced and not witness.also:
                 continue  # SM003 reports the cause
-            users = used(missing.scope.path).get(missing.key, [])
             guess = guesses if is_searched else None
-            finding = unset_read(missing, witness, users, guess, context.types)
+            finding = unset_read(flow, missing, witness, guess, context.types)
             if wrong is not None:
                 help = f"did you mean `{wrong.word.text}`?"
                 finding = _with_unread(finding, help, wrong.word)
@@ -622,15 +619,16 @@ def lost_output(context: Context) -> Iterator[Finding]:
     """
     shown: set[tuple[Span, str]] = set()
     for lost in context.lost_outputs:
-        keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
+        keeper, written = lost.keeper.container, lost.written.span
+        own = lost.written.outer
         called = bool(keeper.via) and written.source is not keeper.span.source
-        if called and (written, lost.own) in shown:
+        if called and (written, own) in shown:
             continue  # another call of the same sub-script
-        shown.add((written, lost.own))
-        inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
+        shown.add((written, own))
+        inner = f"`{own}`" + (f" (`{lost.key}` outside)" * (own != lost.key))
         gets = "an unset key" if lost.is_missing else "an older value"
         wrong, reader = lost.misspelt, name_in_script(lost.reader.node)
-        writer = name_in_script(lost.writer)
+        writer = name_in_script(lost.written.node)
         itself = reader == keeper.name
         happens = "it is lost at the end of each run" if itself else f"`{reader}` reads {gets}"
         effect = f"`{reader}` works with a value that was set before"
@@ -642,12 +640,12 @@ def lost_output(context: Context) -> Iterator[Finding]:
         place = written if called else keeper.span
         if called and listed_here:
             place = listed_here[-1].span
-        fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
+        fix = f"write `{own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
             span=wrong.span if wrong is not None else place,
             message=f"{inner}, set by `{writer}`, is not an output of `{keeper.name}`: {happens}",
-            arguments=(lost.own,),
-            help=fix or _output_help(lost.own, keeper, written if called else None),
+            arguments=(own,),
+            help=fix or _output_help(own, keeper, written if called else None),
             related=(
                 *(other_place(written, f"`{writer}` sets it here") if place != written else ()),
                 *other_place(lost.reader.span, lost.reader.words),
@@ -659,7 +657,7 @@ def lost_output(context: Context) -> Iterator[Finding]:
             node=lost.keeper.path,
             edits=()
             if called or wrong is not None or not lost.is_missing
-            else with_output(keeper, lost.own),
+            else with_output(keeper, own),
         )
 
 
