@@ -10,7 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.def_use import (
     Status,
     around,
-    key_status,
+    key_statuses,
     path_without,
     same_key,
     written_on,
@@ -110,7 +110,7 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
     preset = next((each for each in container.userdata if each.key == key), None)
     found = scope.uses.of(key)
     read = [use for use in found if use.reads and use.path != path]
-    followed = frozenset(use.path for use in read[:MOST_READERS])
+    followed = key_statuses(flow, path, key, [use.path for use in read[:MOST_READERS]])
     paths = context.script_paths
     return KeyPart(
         container=paths.get(path, path),
@@ -119,7 +119,7 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
         value=_value(context, path, preset) if preset else "",
         given=outer is None and key in scope.inputs,
         inside=inside,
-        uses=tuple(_use_status(context, scope, use, followed) for use in found),
+        uses=tuple(_use_status(context, scope, use, followed.get(use.path)) for use in found),
         span=container.span,
     )
 
@@ -131,17 +131,16 @@ def _value(context: Context, path: str, preset: Preset) -> str:
 
 
 def _use_status(
-    context: Context, scope: UserdataScope, use: Use, followed: frozenset[str]
+    context: Context, scope: UserdataScope, use: Use, status: Status | None
 ) -> UseStatus:
-    """A use of a key, with the path of its state in the script."""
+    """A use of a key, with the path of its state in the script. `status`: that of a reader."""
     flow, shown = context.flow, context.script_paths.get(use.path, use.path)
     if use.writes:
         outcomes = written_on(flow, scope, use)
         always = outcomes == outcome_names(use.node)
         return UseStatus(use=use, path=shown, outcomes=outcomes, always=always)
-    if use.path not in followed or not use.reads:
+    if status is None or not use.reads:
         return UseStatus(use=use, path=shown)
-    status = key_status(flow, use.path, use.outer)
     without: tuple[str, ...] = ()
     if status in ("sometimes", "never"):
         without = path_without(flow, use.path, use.outer, context.plain_paths)
