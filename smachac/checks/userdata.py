@@ -19,6 +19,7 @@ from smachac.analysis.unset_reads import (
 )
 from smachac.checks.candidate_keys import (
     MOST_FITTING,
+    keys_of,
     keys_of_type,
     may_be,
     meant_by_remap,
@@ -40,7 +41,7 @@ from smachac.checks.races import raced_keys
 from smachac.checks.reachability import keys_of_hidden_states
 from smachac.checks.remap_slips import lacking_finding, swapped_remap
 from smachac.checks.rule import rule
-from smachac.checks.unset_read_findings import Guesses, name_help, unset_read
+from smachac.checks.unset_read_findings import name_help, unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
@@ -111,7 +112,6 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     """
     flow = context.corrected_flow
     searches = Searches(flow)
-    guesses = Guesses()
     presets, misled = meant_keys(context), misled_failures(context)
     misnamed = misnamed_keys(context)
     moved = {each.path for each in context.misplaced}
@@ -137,8 +137,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             misplaced = node.misplaced_keys if isinstance(node, nodes.Leaf) else ()
             if witness.reader.key in misplaced and not witness.also:
                 continue  # SM003 reports the cause
-            guess = guesses if is_searched else None
-            finding = unset_read(flow, missing, witness, guess, context.types)
+            finding = unset_read(flow, missing, witness, context.types, is_searched=is_searched)
             if wrong is not None:
                 help = f"did you mean `{wrong.word.text}`?"
                 finding = _with_unread(finding, help, wrong.word)
@@ -307,9 +306,8 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: held}
     """
     yield from context.at_containers(_unknown_remaps, context.machine.definitions)
-    guesses = Guesses()
     for missing in context.missing_keys("remapped"):
-        yield from _remapped(context.types, missing, guesses)
+        yield from _remapped(context.types, missing)
     yield from empty_remap_findings(context)
 
 
@@ -369,15 +367,15 @@ def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[
         )
 
 
-def _remapped(types: Types, missing: Missing, guesses: Guesses) -> Iterator[Finding]:
+def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
     """The remaps to a key that nothing sets."""
     scope, key = missing.scope, missing.key
-    around = scope.container.name
+    around, guess = scope.container.name, guesser(sorted(keys_of(scope)))
     for child in scope.container.children:
         for remap in child.remaps:
             if remap.to != key or child.name not in missing.vertices:
                 continue
-            meant = meant_by_remap(types, scope, child, remap, guesses.of(scope))
+            meant = meant_by_remap(types, scope, child, remap, guess)
             unread = unread_output(scope, key) if meant is None else None
             wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
             fits = unread is not None and may_be(types, scope, unread.key, wanted)
