@@ -5,21 +5,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from itertools import chain, islice
+from itertools import chain
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, misfit, widened
-from smachac.analysis.unset_reads import Missing, Reader, Witness, reader_at
+from smachac.analysis.unset_reads import Missing
 from smachac.checks.messages import added_remapping
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, words_of
+from smachac.diagnostics.spelling import Guesser, guesser, words_of
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Node, Remap
-from smachac.ir.script_paths import sugared_child
-from smachac.ir.traversal import outer_inputs, outer_outputs, outputs_to, remapping
+from smachac.ir.traversal import outer_outputs, outputs_to, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -90,42 +89,8 @@ def unread_outputs(scope: UserdataScope, missing: str) -> Iterator[UnreadOutput]
             yield UnreadOutput(outer, place, help, child.name)
 
 
-def unread_before(
-    types: Types, scope: UserdataScope, missing: str, witness: Witness, wanted: Type
-) -> UnreadOutput | None:
-    """The only output in a container that nothing reads, if a state on the path to the reader of a
-    missing key sets it and the reader can have its type."""
-    before = {each.label for each in witness.path[:-1] if not each.is_outcome}
-    found = [*unread_outputs(scope, missing)] if before else []
-    if len(found) != 1 or found[0].setter not in before:
-        return None
-    return found[0] if may_be(types, scope, found[0].key, wanted) else None
-
-
 MOST_FITTING = 3
 """More keys of one type are no help."""
-
-
-def fitting_keys(types: Types, scope: UserdataScope, reader: Reader, wanted: Type) -> list[str]:
-    """The keys in the container of a state that have the type of one of its inputs, `wanted`, and
-    that the state does not read, first those that nothing reads, and those that a state sets before
-    the initial values; none where the type of the input is not known, or if there are too many."""
-    names = remapping(reader.node)
-    if is_open(wanted) or reader.key in names or reader.node is scope.container:
-        return []
-    own = {*outer_inputs(reader.node)}
-    keys = {key: type_ for (path, key), type_ in types.keys.items() if path == scope.path}
-    found = [
-        key
-        for key, type_ in keys.items()
-        if key not in own and not is_open(type_) and widened(type_) != ANY and fits(type_, wanted)
-    ]
-    read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
-    found.sort(key=lambda key: (key in read, key in scope.held))
-    unread = [key for key in found if key not in read]
-    if len(unread) == 1:
-        return unread
-    return found if len(found) <= MOST_FITTING else []
 
 
 def may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:
@@ -258,26 +223,3 @@ def written_place(scope: UserdataScope, key: str) -> Span | None:
         if preset.key == key:
             return preset.span
     return next((use.span for use in scope.uses.writers(key)), None)
-
-
-def _input_type(types: Types, reader: Reader) -> Type:
-    """The type of the input of a state; also of one around which sugar makes containers."""
-    node, path = reader.node, reader.path
-    while not isinstance(node, nodes.Leaf) and (child := sugared_child(node)) is not None:
-        node, path = child, f"{path}/{child.name}"
-    return types.inputs.get((path, reader.key), ANY)
-
-
-def meant_by_types(context: Context) -> set[tuple[str, str]]:
-    """The keys that nothing reads and that SM301 names as the only ones of the type that a state
-    reads from a key that nothing sets, each with the path of its container."""
-    found: set[tuple[str, str]] = set()
-    for missing in islice(context.missing_keys("nowhere"), MOST_EXPLAINED):
-        scope = missing.scope
-        reader = reader_at(scope, missing.vertices[0], missing.key)
-        wanted = _input_type(context.types, reader)
-        known = sorted({*scope.held, *scope.inputs} - {missing.key})
-        if unread_output(scope, missing.key) is None and guesser(known)(missing.key) is None:
-            keys = fitting_keys(context.types, scope, reader, wanted)
-            found.update((scope.path, key) for key in keys if len(keys) == 1)
-    return found

@@ -17,7 +17,7 @@ from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
 from smachac.analysis.uses import place_of
-from smachac.checks.candidate_keys import meant_by_remaps, meant_by_types, outer_value
+from smachac.checks.candidate_keys import meant_by_remaps, outer_value
 from smachac.checks.code_slots import function_reads
 from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.empty_remaps import meant_by_empty_remaps
@@ -227,7 +227,6 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
     found |= {place for place in unset if place is not None}  # SM301
     found |= _swapped_lists(context)
-    found |= meant_by_types(context)  # SM301
     found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302
     return found | keys_of_misplaced(context.misplaced)  # SM101
 

@@ -9,13 +9,9 @@ from collections.abc import Iterator
 from smachac.analysis.def_use import written_on
 from smachac.analysis.definite_assignment import DataFlow
 from smachac.analysis.type_inference import Types
-from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
 from smachac.checks.candidate_keys import (
-    fitting_keys,
-    may_be,
     unread_output,
-    written_place,
 )
 from smachac.checks.initial_presets import counts, initial_value
 from smachac.checks.messages import added_remapping, calls, did_you_mean, other_place
@@ -25,7 +21,6 @@ from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
 from smachac.ir.traversal import outcome_names
-from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -50,7 +45,7 @@ def unset_read(
     *,
     is_searched: bool,
 ) -> Finding:
-    """SM301 for a key where a state reads it. `is_searched`: keys that can be meant are searched in
+    """SM301 for a key where a state reads it. `is_searched`: an output that nothing reads is searched in
     the whole container."""
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
@@ -70,10 +65,14 @@ def unset_read(
             help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
-        if is_searched:
-            proposed, related = _proposed(missing, witness, types)
-            help = proposed or help
-            related += _item_place(scope.container, reader.node)
+        unread = unread_output(scope, missing.key) if is_searched else None
+        if isinstance(reader.node, nodes.Iterator) and isinstance(
+            python_tree(missing.key), ast.Lambda
+        ):
+            help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
+        elif unread is not None:
+            help, related = unread.help, other_place(unread.place, f"nothing reads `{unread.key}`")
+        related += _item_place(scope.container, reader.node)
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",
@@ -89,34 +88,6 @@ def unset_read(
         severity=None if witness.always else Severity.WARNING,
         node=reader.path,
     )
-
-
-def _proposed(
-    missing: Missing, witness: Witness, types: Types
-) -> tuple[str | None, tuple[Related, ...]]:
-    """The help for a key that nothing sets, and the place of the key that it names: the only output
-    that nothing reads and that has a word of the missing key, or the keys that have the type of the
-    reader."""
-    scope, reader = missing.scope, witness.reader
-    if isinstance(reader.node, nodes.Iterator) and isinstance(python_tree(missing.key), ast.Lambda):
-        return f"quotes make it the name of a key: write code as '`{missing.key}`'", ()
-    wanted, inside = types.inputs.get((reader.path, reader.key), ANY), witness.inner
-    if inside is not None and is_open(wanted):
-        wanted = types.inputs.get((inside.path, inside.key), ANY)
-    unread = unread_output(scope, missing.key)
-    if unread is not None and may_be(types, scope, unread.key, wanted):
-        return unread.help, other_place(unread.place, f"nothing reads `{unread.key}`")
-    fitting = fitting_keys(types, scope, reader, wanted)
-    if not fitting or (len(fitting) > 1 and reader.key != missing.key):
-        return None, ()
-    if len(fitting) > 1:
-        ways = " or ".join(f"`remapping: {{{reader.key}: {key}}}`" for key in fitting)
-        return f"write {ways} in `{reader.node.name}`: these keys have its type", ()
-    place = written_place(scope, fitting[0])
-    help = f"{added_remapping(reader.node, reader.key, fitting[0])}, if it must read"
-    return f"{help} `{fitting[0]}`", other_place(
-        place, f"nothing reads `{fitting[0]}`"
-    ) if place else ()
 
 
 def name_help(node: Node, own: str, outer: str, meant: str) -> str:
