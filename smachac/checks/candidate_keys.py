@@ -4,7 +4,6 @@ that is read (SM301)."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from collections.abc import Set as AbstractSet
 from itertools import chain
 from typing import NamedTuple
 
@@ -30,14 +29,6 @@ def keys_around(container: Container) -> set[str]:
     for child in container.children:
         found.update(outer_outputs(child))
     return found
-
-
-def meant_input(key: str, guess: Guesser, used: AbstractSet[str], around: Container) -> str | None:
-    """The input of a state that is probably meant by a key that its code reads and that it does not
-    declare: the one with the nearest name. None if the container `around` the state has a key of
-    exactly this name, and the code reads the nearest one too (`used`)."""
-    near = guess(key)
-    return None if near in used and key in keys_around(around) else near
 
 
 def outer_value(missing: Missing, scopes: Mapping[str, UserdataScope]) -> tuple[str, str] | None:

@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks.candidate_keys import meant_input
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.renamed_names import renamed_in_interface
 from smachac.checks.rule import rule
@@ -372,7 +371,6 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             above, container = containers[above]
             levels.append(container)
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
-        used = {word.text for word in facts.reads}
         old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
@@ -380,8 +378,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
                 " key of its interface"
             )
-            near = meant_input(word.text, guesser(inputs), used, around)
-            help = did_you_mean(near) or (
+            help = did_you_mean(guesser(inputs)(word.text)) or (
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )

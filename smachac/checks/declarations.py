@@ -36,7 +36,7 @@ from smachac.checks.outcomes import meant_default
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
 from smachac.checks.remap_slips import keys_of_swapped
 from smachac.checks.rule import rule
-from smachac.checks.undeclared_keys import leaves_with_code, lone_input
+from smachac.checks.undeclared_keys import leaves_with_code
 from smachac.checks.unsent_keys import unsent_keys
 from smachac.checks.unwritten_keys import (
     read_unwritten,
@@ -576,10 +576,10 @@ def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:
     for inner, leaf in leaves_with_code(path, container):
-        yield from _unused_by_code(inner, leaf, container)
+        yield from _unused_by_code(inner, leaf)
 
 
-def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Finding]:
+def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     """The declared keys and outcomes of a leaf that its code in the script does not use."""
     callbacks, conditions = functions(leaf, "callbacks"), functions(leaf, "conditions")
     chooses = variable_of(leaf, "conditions") is not None
@@ -597,7 +597,6 @@ def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Fin
         used = {key for each in fields for key in (*each.read, *each.tested)}
         undeclared = [key for key, _ in undeclared_reads(leaf)]
         used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
-        used |= {(lone_input(leaf, container) if undeclared else None) or ""}  # SM310
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         if any(key.name not in used for key in arguments):
             used |= {name.id for code in called for name in free_in(code.text)}  # SM019

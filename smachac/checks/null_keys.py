@@ -10,7 +10,7 @@ from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.expression_errors import function_faults
 from smachac.analysis.null_guards import excludes_null
 from smachac.analysis.type_lattice import NONE, mapping, present
-from smachac.checks.candidate_keys import UnreadOutput, may_be, unread_output
+from smachac.checks.candidate_keys import may_be, unread_output
 from smachac.checks.meant_keys import sees_everything
 from smachac.checks.messages import other_place
 from smachac.checks.value_places import place_of_fault
@@ -92,10 +92,3 @@ def _is_always_null(scope: UserdataScope, key: str) -> bool:
     if key in scope.inputs or sees_everything(scope):
         return False
     return key not in scope.uses.written and not _is_compared(scope.container, key)
-
-
-def output_for_null(context: Context, path: str, key: str) -> UnreadOutput | None:
-    """The output that nothing reads and that is probably meant for a key which the container at
-    `path` sets to nothing but null."""
-    scope = context.corrected_flow.scopes.get(path)
-    return unread_output(scope, key) if scope is not None and _is_always_null(scope, key) else None

@@ -8,18 +8,23 @@ from typing import Literal
 from smachac.analysis.accesses import (
     callback_names,
     scripted_steps,
-    userdata_fields,
 )
 from smachac.analysis.code_slots import undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
 from smachac.checks.candidate_keys import keys_around
-from smachac.checks.class_code import dropped_writes, unknown_reads
+from smachac.checks.class_code import (
+    DICTIONARY_METHODS,
+    dropped_writes,
+    first_of_each,
+    leaves_by_type,
+    unknown_reads,
+    used_here,
+)
 from smachac.checks.code_slots import unknown_function_reads
 from smachac.checks.edits import listing, with_key_list, with_output
-from smachac.checks.messages import calls
+from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
-from smachac.checks.unlisted_keys import unlisted_reads, unlisted_writes
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
@@ -65,7 +70,7 @@ def lossy_write(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_lossy_writes)
     yield from dropped_writes(context)
-    yield from unlisted_writes(context)
+    yield from _unlisted(context, "output")
 
 
 def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
@@ -188,24 +193,8 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
     yield from unknown_reads(context)
-    yield from unlisted_reads(context)
+    yield from _unlisted(context, "input")
     yield from unknown_function_reads(context)
-
-
-def lone_input(leaf: Leaf, container: Container) -> str | None:
-    """The only input key of a leaf that its code does not read, if the code reads exactly one key
-    that is not declared and is no misspelt one; otherwise None."""
-    item = container.item_key if isinstance(container, nodes.Iterator) else None
-    wrong = [key for key, _ in undeclared_reads(leaf) if key != item]
-    called = [*(functions(leaf, "callbacks") or {}).values(),
-              *(functions(leaf, "conditions") or {}).values()]  # fmt: skip
-    fields = [userdata_fields(code.text) for code in called] if len(wrong) == 1 else []
-    if not fields or guesser(each.name for each in leaf.inputs)(wrong[0]) is not None:
-        return None
-    used = {key for each in fields if each is not None for key in (*each.read, *each.tested)}
-    left = [key for key in leaf.inputs if key.name not in used]
-    sure = None not in fields and len(left) == 1 and left[0].role == "argument"
-    return left[0].name if sure else None
 
 
 def _undeclared_accesses(
@@ -237,4 +226,27 @@ def _undeclared_accesses(
                 related=calls(leaf, code.span),
                 node=inner,
                 edits=respelt(Word(key, span), guess.sure(key)),
+            )
+
+
+def _unlisted(context: Context, role: Literal["input", "output"]) -> Iterator[Finding]:
+    """The keys that the class of a template without an interface uses, although its constructor,
+    whose lists are constants, does not pass them to `smach.State`."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        is_read = role == "input"
+        names = [key.name for key in (leaf.inputs if is_read else leaf.outputs)]
+        words = facts.unlisted_reads if is_read else facts.unlisted_writes
+        known = DICTIONARY_METHODS if is_read else {word.text for word in facts.unlisted_reads}
+        for word in first_of_each(words, known):
+            near = guesser(names)(word.text) if word.text not in names else None
+            verb, lost = ("reads", "") if is_read else ("sets", ": the value is discarded")
+            yield Finding(
+                span=word.span,
+                message=f"the code of `{leaf.type}` {verb} `{word.text}`, which its `__init__` does"
+                f" not pass to `smach.State` as an {role} key{lost}",
+                arguments=(word.text,),
+                help=did_you_mean(near)
+                or f"add `{word.text}` to the `{role}_keys` of `smach.State.__init__`",
+                related=used_here(leaf),
+                node=path,
             )

@@ -14,7 +14,7 @@ from smachac.checks.candidate_keys import (
     unread_output,
 )
 from smachac.checks.initial_presets import counts, initial_value
-from smachac.checks.messages import added_remapping, calls, did_you_mean, other_place
+from smachac.checks.messages import calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
@@ -45,8 +45,8 @@ def unset_read(
     *,
     is_searched: bool,
 ) -> Finding:
-    """SM301 for a key where a state reads it. `is_searched`: an output that nothing reads is searched in
-    the whole container."""
+    """SM301 for a key where a state reads it. `is_searched`: an output that nothing reads is
+    searched in the whole container."""
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
     value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
@@ -88,16 +88,6 @@ def unset_read(
         severity=None if witness.always else Severity.WARNING,
         node=reader.path,
     )
-
-
-def name_help(node: Node, own: str, outer: str, meant: str) -> str:
-    """The help for a state that reads the key `own`, which is `outer` in its container, where the
-    key `meant` of the container is the right one: the remapping that the state lacks, if the name
-    is that of an interface; else the name itself."""
-    key = next((each for each in node.inputs if each.name == own), None)
-    if own != outer or key is None or key.span.source is node.span.source:
-        return did_you_mean(meant) or ""
-    return added_remapping(node, own, meant)
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:

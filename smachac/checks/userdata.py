@@ -41,7 +41,7 @@ from smachac.checks.races import raced_keys
 from smachac.checks.reachability import keys_of_hidden_states
 from smachac.checks.remap_slips import lacking_finding, swapped_remap
 from smachac.checks.rule import rule
-from smachac.checks.unset_read_findings import name_help, unset_read
+from smachac.checks.unset_read_findings import unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
@@ -52,7 +52,6 @@ from smachac.ir import nodes
 from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
-from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY
 
 MOST_RELATED = 3
@@ -477,13 +476,6 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
             help = f"write `{key}` in place of `{loop.item_key}` in the `input_keys` of"
             help += f" {listed(between)}: the `for_each` of `{loop.name}` sets `{loop.item_key}`;"
             help += f" or move the `for_each` to {listed(between)}"
-        inner = _inner_name(scope, missing.other, key)
-        if inner is not None:
-            help = name_help(reader.node, reader.key, key, inner)
-            if remapping(reader.node).get(reader.key) == key:
-                help = f"write `{reader.key}: {inner}`"
-            help = f"{help.rstrip('?')}: the remapping of `{scope.container.name}` gives `{key}`"
-            help += " this name"
         if isinstance(holder, nodes.Iterator) and holder.item_key == key:
             why = f"which the loop `{held}` provides, but which is not an input of"
             why += " its state" if list(between) == [held] else f" {listed(between)}"
@@ -505,18 +497,8 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
                 *calls(reader.node, reader.span),
             ),
             node=reader.path,
-            edits=_taken_in(flow, scope.path, missing.other, key) if inner is None else (),
+            edits=_taken_in(flow, scope.path, missing.other, key),
         )
-
-
-def _inner_name(scope: UserdataScope, holder: str, key: str) -> str | None:
-    """The input of a container that its remapping gives the value of a key of the container around
-    it, if there is exactly one."""
-    if scope.path.rpartition("/")[0] != holder:
-        return None
-    inputs = {each.name for each in scope.container.inputs}
-    found = [each.key for each in scope.container.remaps if each.to == key and each.key in inputs]
-    return found[0] if len(found) == 1 else None
 
 
 def _list_of(container: Container, keys: Sequence[Key], field: str) -> tuple[Related, ...]:
