@@ -13,7 +13,7 @@ from smachac.diagnostics.source import NOWHERE
 from smachac.diagnostics.spelling import words_of
 from smachac.diagnostics.wording import both
 from smachac.ir.nodes import Container, Node, Remap
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import inputs_from, outer_inputs, outer_outputs
 
 
 def swapped_remap(missing: Missing, child: Node, remap: Remap) -> Remap | None:
@@ -28,9 +28,8 @@ def swapped_remap(missing: Missing, child: Node, remap: Remap) -> Remap | None:
     read = {*scope.outputs}
     for each in scope.container.children:
         if each is not child:
-            names = remapping(each)
-            set_ |= {names.get(key.name, key.name) for key in each.outputs}
-            read |= {names.get(key.name, key.name) for key in each.inputs}
+            set_.update(outer_outputs(each))
+            read.update(outer_inputs(each))
     found = [
         each
         for each in child.remaps
@@ -64,12 +63,7 @@ def lacking_finding(path: str, node: Container, keys: Sequence[str]) -> Finding:
     owner = f"`{node.name}`" if source is first.span.source else f"the state of `{file}`"
     inputs = [key.name for key in node.inputs if key.span.source is not NOWHERE.source]
     names = ", ".join([*inputs, *keys])
-    readers = [
-        (child, key)
-        for child in node.children
-        for key in child.inputs
-        if remapping(child).get(key.name, key.name) == first.key
-    ]
+    readers = [(child, key) for child in node.children for key in inputs_from(child, first.key)]
     return Finding(
         span=first.span,
         message=f"`{node.name}` lacks the input key{'s' if len(keys) > 1 else ''} {both(keys)},"

@@ -14,7 +14,7 @@ from smachac.checks.candidate_keys import keys_of_type
 from smachac.checks.messages import calls
 from smachac.diagnostics.diagnostic import Finding
 from smachac.ir.nodes import Container, Leaf, Remap
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs
 from smachac.ir.types import Type
 
 
@@ -56,8 +56,7 @@ def _readers(container: Container) -> Counter[str]:
     """How many states of a container read each key."""
     found: Counter[str] = Counter()
     for child in container.children:
-        names = remapping(child)
-        found.update({names.get(each.name, each.name) for each in child.inputs})
+        found.update({*outer_inputs(child)})
     return found
 
 

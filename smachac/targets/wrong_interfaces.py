@@ -18,7 +18,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import Parameter
 from smachac.ir.nodes import Container, Leaf, Machine, Remap, StateType
 from smachac.ir.script_paths import plain_paths
-from smachac.ir.traversal import enclosing, remapping, walk
+from smachac.ir.traversal import enclosing, outer_inputs, outer_outputs, walk
 from smachac.targets.errors import Difference, interfaces_differ
 from smachac.targets.interface_check import Load
 
@@ -192,8 +192,7 @@ def _read(used: Sequence[_Use]) -> set[str]:
     for around in {id(one.around): one.around for one in used}.values():
         for child in around.children:
             if child.name not in leaves:
-                names = remapping(child)
-                found.update(names.get(each.name, each.name) for each in child.inputs)
+                found.update(outer_inputs(child))
     return found
 
 
@@ -206,8 +205,7 @@ def _keys(container: Container) -> Iterator[str]:
     yield from (each.key for each in container.userdata)
     yield from (each.name for each in container.inputs)
     for child in container.children:
-        names = remapping(child)
-        yield from (names.get(each.name, each.name) for each in child.outputs)
+        yield from outer_outputs(child)
 
 
 def _unset(type_: StateType, report: Report) -> set[str]:
