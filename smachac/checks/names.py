@@ -44,6 +44,10 @@ EXCEPTIONS = "error"
 """The name by which a script refers to the exceptions of a state (docs/language.md)."""
 
 
+OF_SMACH = frozenset(["succeeded", "aborted", PREEMPTED])
+"""The outcomes of SMACH: a name that is like one of them is rather the misspelt one."""
+
+
 class _Targets:
     """The targets in a container, for its transitions with an unknown one."""
 
@@ -246,7 +250,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
     elif above:
         help = _through_outcome(fault, above)
         sure = None
-    if sure is not None and not _same_case(step.target, sure):
+    if sure is not None and (not _same_case(step.target, sure) or step.target in OF_SMACH):
         sure = None
     return Finding(
         span=step.target_span,
