@@ -18,6 +18,7 @@ from smachac.checks.class_values import (
     wrong_operations,
     wrong_parts,
 )
+from smachac.checks.edits import adding_outcome
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.null_keys import null_keys, output_for_null
 from smachac.checks.rule import rule
@@ -208,6 +209,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
     for word, what, effect in _endings(leaf):
         if word.text not in outcomes:
             meant = did_you_mean(guesser(outcomes)(word.text)) or _only_left(leaf, word.text)
+            is_used = any(step.outcome == word.text for step in leaf.transitions)
             yield Finding(
                 span=word.span,
                 message=f"{what} `{word.text}`, which is not one of its outcomes",
@@ -218,6 +220,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
                 effect=effect,
                 related=calls(leaf, word.span),
                 node=path,
+                repairs=adding_outcome(leaf, word.text) if is_used else (),
             )
 
 

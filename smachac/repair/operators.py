@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -21,6 +21,7 @@ from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
+from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import walk
 from smachac.ir.types import WORDS as TYPE_WORDS
 
@@ -62,7 +63,7 @@ def candidate(cost: float, operator: str, *edits: Edit) -> Candidate:
 class Text(NamedTuple):
     """A source with what operators read of it: its tree, its names with how often each is, and the
     names that can be meant: those of the source, of the machine and of its state types. `uses` is
-    how often each name is in the source, among the fields and in the state types, `by_slip` are the
+    how often each name is in the source, in the language and in the state types, `by_slip` are the
     names by what they have in common with a name that is one slip away (`slips`)."""
 
     source: Source
@@ -93,8 +94,8 @@ def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Te
 
 
 def _given_names(machine: Machine) -> Iterator[str]:
-    """The names of fields, and those in the interfaces of the state types of a machine."""
-    yield from schema.VARIABLES
+    """The names of the language, and those in the interfaces of the state types of a machine."""
+    yield from (*schema.VARIABLES, *OF_SMACH)
     for name, type_ in machine.state_types.items():
         yield name
         yield from type_.variables
@@ -142,6 +143,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
         interface = around.interface(_type_of(path))
         if interface is not None:
             found += _names_of_interface(item, text, around.read(interface))
+            found += _other_classes(_type_of(path), around.read(interface), around.types)
         found += _turned_pairs(path)
         found += _exchanged_values(path)
         found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
@@ -210,13 +212,28 @@ def _words_of(item: Diagnostic) -> Iterable[str]:
 
 def _names_of_interface(item: Diagnostic, text: Text, interface: Text) -> Iterator[Candidate]:
     """As `_declared_names`, in the interface of the state; and a name of the finding there, in
-    place of which a name that it is like is meant."""
-    yield from _declared_names(item, interface, 0.6)
+    place of which a name that it is like is meant. Not in `code`: without a class less is known;
+    no name of a state, which is in upper case."""
+    found = [*_declared_names(item, interface, 0.6)]
     for word in _words_of(item):
         if interface.counts[word] == 1:
             for cost, name in _near(word, text):
                 for span in _places(word, interface.whole):
-                    yield candidate(cost + 0.7, RENAME, Edit(span=span, text=name))
+                    found.append(candidate(cost + 0.7, RENAME, Edit(span=span, text=name)))
+    code = interface.tree.get("code") if isinstance(interface.tree, Map) else None
+    for made in found:
+        (edit,) = made.repair.edits
+        is_in_code = code is not None and _start(code) <= edit.span.start < _end(code)
+        if not is_in_code and edit.text.isupper() == edit.span.text.isupper():
+            yield made
+
+
+def _other_classes(type_: str, interface: Text, types: Collection[str]) -> Iterator[Candidate]:
+    """The name of the state type, in its interface, in place of that of another one."""
+    for name in interface.counts:
+        if name in types and name != type_:
+            for span in _places(name, interface.whole):
+                yield candidate(1.5, RENAME, Edit(span=span, text=type_))
 
 
 def _unused_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
@@ -319,7 +336,8 @@ def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
 def _type_of(path: list[Tree | Entry]) -> str:
     """The state type of the innermost state; empty if there is none."""
     for part in reversed(path):
-        entry = part.get("template") if isinstance(part, Map) else None
+        fields = part.value if isinstance(part, Entry) else part
+        entry = fields.get("template") if isinstance(fields, Map) else None
         if entry is not None:
             return entry.value.span.text
     return ""
