@@ -150,26 +150,31 @@ def source_of(flow: DataFlow, path: str, key: str) -> list[tuple[str, str]]:
 
 def key_status(flow: DataFlow, path: str, key: str) -> Status:
     """Whether a key of its container is set when the state at a path is entered."""
-    status = _status(_states(_searches(flow, path, key), path))
-    if (
-        status == "always"
-        and _status(_states(_searches(flow, path, key, caller=False), path)) != "always"
-    ):
-        return "given"
-    return status
+    return key_statuses(flow, around(flow, path), key, [path])[path]
+
+
+def key_statuses(
+    flow: DataFlow, container: str | None, key: str, paths: Iterable[str]
+) -> dict[str, Status]:
+    """`key_status` of states of one container, by path. One search serves all of them."""
+    found = _searches(flow, container, key)
+    without_caller = _searches(flow, container, key, caller=False)
+    statuses: dict[str, Status] = {}
+    for path in paths:
+        status = _status(_states(found, path)) if path in flow.entered else "unreachable"
+        given = status == "always" and _status(_states(without_caller, path)) != "always"
+        statuses[path] = "given" if given else status
+    return statuses
 
 
 def _searches(
-    flow: DataFlow, path: str, key: str, *, caller: bool = True
+    flow: DataFlow, container: str | None, key: str, *, caller: bool = True
 ) -> list[tuple[str, Search]]:
-    """The search in each container that the key is passed in through, outermost first.
-    `caller`: the caller of the machine sets its input keys."""
-    outer = around(flow, path)
-    if outer is None or path not in flow.entered:
-        return []
+    """The search in each container that a key is passed in through, outermost first, down to its
+    container. `caller`: the caller of the machine sets its input keys."""
     found: list[tuple[str, Search]] = []
     states: set[KeyState] = {"unset"}
-    for where, name in source_of(flow, outer, key):
+    for where, name in source_of(flow, container, key) if container is not None else ():
         scope = flow.scopes[where]
         if found:
             states = _states(found, where)
@@ -184,7 +189,9 @@ def _states(searches: list[tuple[str, Search]], path: str) -> set[KeyState]:
     if not searches:
         return set()
     where, found = searches[-1]
-    return {here.state for here in found if here.vertex == place_in(where, path)}
+    vertex = place_in(where, path)
+    states: tuple[KeyState, ...] = ("unset", "reported", "set")
+    return {state for state in states if Reached(vertex, state) in found}
 
 
 def _status(states: set[KeyState]) -> Status:
@@ -203,7 +210,7 @@ def path_without(
     Names of states in the script as they are entered, in brackets the outcomes between them.
     `plain` are the plain paths.
     """
-    searches = _searches(flow, path, key)
+    searches = _searches(flow, around(flow, path), key) if path in flow.entered else []
     whole: list[PathStep] = []
     targets = [*(where for where, _ in searches[1:]), path]
     for (where, found), target in zip(searches, targets, strict=True) if searches else ():

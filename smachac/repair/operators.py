@@ -19,6 +19,7 @@ from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
+from smachac.frontend.fields import PRESET_FIELDS
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
@@ -35,6 +36,9 @@ MOST_WORDS = 20
 """The most names of a finding, and of the other findings, that are compared with others."""
 
 RENAME = "write another name"
+
+KNOWN_FIELDS = {*schema.VARIABLES, *schema.LONG, *schema.VALUE_FACTS, *PRESET_FIELDS}
+"""The names of the fields of states, of states' other forms, of values and of keys."""
 
 LONGEST_NAME = 100
 """In characters: a comparison of two names takes quadratic time."""
@@ -85,7 +89,7 @@ def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Te
     given = [*_given_names(machine)] if machine is not None else []
     own = _names_in(machine) if machine is not None else ()
     known = dict.fromkeys([*counts, *TYPE_WORDS, *types, *given, *own])
-    names = [name for name in known if len(name) <= LONGEST_NAME]
+    names = [name for name in known if len(name) <= LONGEST_NAME and " " not in name]
     by_slip: dict[str, list[str]] = {}
     for name in names:
         for slip in dict.fromkeys(slips(name)):
@@ -132,9 +136,10 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     places = [span for span in places if span.source is not NOWHERE.source]
     if not places or places[0] is not item.span:
         return []
-    found = [*_mentioned_names(item, around.others)]
     text = around.read(item.span.source)
-    found += _near_names(item, text)
+    found = [*_near_names(item, text)]
+    if not _is_field(item.span, text.tree):
+        found += _mentioned_names(item, around.others)
     found += _unused_names(item, text)
     found += _without_brackets(item, text)
     for span in dict.fromkeys(places[:MOST_PLACES]):
@@ -273,6 +278,16 @@ def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candid
                 yield candidate(cost, RENAME, Edit(span=item.span, text=name))
 
 
+def _is_field(span: Span, tree: Tree | None) -> bool:
+    """Whether a range is the name of a field that its mapping has once: that name is right."""
+    path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
+    for around, part in pairwise(path):
+        if isinstance(around, Map) and isinstance(part, Entry) and part.key.span == span:
+            same = [entry for entry in around.entries if entry.key.value == part.key.value]
+            return part.key.value in KNOWN_FIELDS and len(same) == 1
+    return False
+
+
 def _places(word: str, span: Span) -> Iterator[Span]:
     """The places of a name in a range."""
     for found in re.finditer(rf"(?<!\w){re.escape(word)}(?!\w)", span.text):
@@ -310,10 +325,13 @@ def _near(word: str, text: Text) -> list[tuple[float, str]]:
 
 
 def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
-    """The innermost entry with two plain words, turned round."""
+    """The innermost entry with two plain words, turned round; not if it begins with the name of a
+    field and would not do so then."""
     for part in reversed(path):
         if isinstance(part, Entry) and isinstance(part.value, Scalar) and part.value.span.text:
             key, value = part.key.span, part.value.span
+            if key.text in KNOWN_FIELDS and value.text not in KNOWN_FIELDS:
+                return
             edits = (Edit(span=key, text=value.text), Edit(span=value, text=key.text))
             yield candidate(1.5, "exchange name and value", *edits)
             return

@@ -125,7 +125,9 @@ def clusters(
         return []
     if any(item.code == "SM704" for item in analysis.report):
         return []  # a property that takes all of its limit takes it again in each trial
-    trials = MOST_CHECKED // _size(analysis.source, analysis.machine)
+    texts = {analysis.source, *(item.span.source for item in serious[:MOST_CLUSTERS])}
+    # To read the texts for the operators takes about as long as one trial.
+    trials = MOST_CHECKED // _size(texts, analysis.machine) - 1
     proven: list[Proof] = []
     for item in sorted(serious, key=_is_no_error)[:MOST_CLUSTERS]:
         if trials <= 0:
@@ -149,14 +151,14 @@ def clusters(
     return [found[id(item)] for item in serious if id(item) in found]
 
 
-def _size(source: Source, machine: Machine | None) -> int:
+def _size(texts: Iterable[Source], machine: Machine | None) -> int:
     """What a check of a script costs: the states, outcomes, transitions and keys of its machine, or
-    the length of its text where that is more."""
+    the length of the texts where that is more."""
     parts = 0 if machine is None else sum(
         1 + sum(map(len, (node.outcomes, node.transitions, node.inputs, node.outputs)))
         for _, node in walk(machine.root)
     )  # fmt: skip
-    return max(1, parts, len(source.text) // CHARACTERS)
+    return max(1, parts, sum(len(source.text) for source in texts) // CHARACTERS)
 
 
 MOST_TYPES = 200

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import Status, Use, around, key_status, path_without, same_key, uses
+from smachac.analysis.def_use import Status, Use, around, key_statuses, path_without, same_key, uses
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
@@ -100,7 +100,7 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
     preset = next((each for each in container.userdata if each.key == key), None)
     found = list(uses(flow, path, key))
     read = [use for use in found if use.kind in ("reads", "copies in") and use.path != path]
-    followed = frozenset(use.path for use in read[:MOST_READERS])
+    followed = key_statuses(flow, path, key, [use.path for use in read[:MOST_READERS]])
     paths = context.script_paths
     return KeyPart(
         container=paths.get(path, path),
@@ -109,7 +109,7 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
         value=_value(context, path, preset) if preset else "",
         given=outer is None and key in scope.inputs,
         inside=inside,
-        uses=tuple(_use_status(context, use, key, followed) for use in found),
+        uses=tuple(_use_status(context, use, key, followed.get(use.path)) for use in found),
         span=container.span,
     )
 
@@ -120,12 +120,11 @@ def _value(context: Context, path: str, preset: Preset) -> str:
     return SECRET if secret else print_data(preset.value.data)
 
 
-def _use_status(context: Context, use: Use, key: str, followed: frozenset[str]) -> UseStatus:
-    """A use of a key, with the path of its state in the script."""
+def _use_status(context: Context, use: Use, key: str, status: Status | None) -> UseStatus:
+    """A use of a key, with the path of its state in the script. `status`: that of a reader."""
     flow, shown = context.flow, replace(use, path=context.script_paths.get(use.path, use.path))
-    if use.path not in followed or use.kind not in ("reads", "copies in"):
+    if status is None or use.kind not in ("reads", "copies in"):
         return UseStatus(use=shown)
-    status = key_status(flow, use.path, key)
     without: tuple[str, ...] = ()
     if status in ("sometimes", "never"):
         without = path_without(flow, use.path, key, context.plain_paths)
