@@ -459,7 +459,7 @@ def requests(file: Path) -> bytes:
     return b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(text), text) for text in texts)
 
 
-def stopped(_: float) -> None:
+def stopped(_: object) -> None:
     """What a command does in place of waiting for an hour that never comes: it is interrupted."""
     raise KeyboardInterrupt
 
