@@ -29,8 +29,7 @@ test: ## Run the tests that a change is likely to break; ARGS="-k trace" selects
 test-all: ## Run the tests that decide about a change: also slow ones, those with live ROS and those in a browser
 	@scripts/setup.sh dev
 	$(RUN) pytest -n auto --maxprocesses 8 --dist worksteal -m "not nightly and not ros and not ros2 and not browser" $(ARGS)
-	@$(MAKE) --no-print-directory -j 2 --output-sync test-ros test-ros2
-	@$(MAKE) --no-print-directory test-browser
+	@$(MAKE) --no-print-directory -j 2 --output-sync test-browser test-ros test-ros2
 
 test-nightly: ## Run every test: also those with more machines, seeds, compilers and sanitizers; a release needs it
 	@scripts/setup.sh dev

@@ -14,8 +14,11 @@ fail() {
   exit 1
 }
 
-# Installs Debian packages where that is allowed; otherwise prints the line to run, and fails.
-install_packages() {
+# Installs Debian packages where that is allowed; otherwise prints the line to run, and fails. One
+# set-up at a time: two cannot read the lists of packages.
+install_packages() (
+  exec 8<Makefile
+  ! command -v flock >/dev/null || flock 8
   local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
   ((EUID == 0)) || apt=(sudo -n "${apt[@]}")
   if command -v apt-get >/dev/null && { ((EUID == 0)) || sudo -n true 2>/dev/null; }; then
@@ -26,7 +29,7 @@ install_packages() {
   fi
   say "missing: $*. Run: sudo apt-get update && sudo apt-get install -y $*"
   return 1
-}
+)
 
 # Prints `path version` of an interpreter, a shim or a virtual environment followed to its origin.
 # Fails where it does not run, is older than 3.10, or cannot import the modules named after it.

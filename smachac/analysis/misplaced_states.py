@@ -123,7 +123,7 @@ def keys_of_misplaced(misplaced: Iterable[Misplaced]) -> set[tuple[str, str]]:
     """The keys that misplaced states would read in the container that was meant, each with the path
     of the container."""
     return {
-        (each.meant_path, remapping(each.child).get(key.name, key.name))
+        (each.meant_path, remapping(each.child)[key.name])
         for each in misplaced
         for key in each.child.inputs
     }

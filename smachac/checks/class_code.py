@@ -7,26 +7,25 @@ of a class is reported once, with the first state of its type as a related place
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks.candidate_keys import meant_input
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.renamed_names import renamed_in_interface
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.class_facts import ANY, ClassFacts, Ending, renamed_name
 from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
-from smachac.ir.nodes import Leaf, StateType
+from smachac.ir.nodes import Key, Leaf, Outcome, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
-from smachac.ir.traversal import enclosing, outcome_names, remapping
+from smachac.ir.traversal import enclosing, outcome_names, outer_outputs, remapping
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
@@ -88,6 +87,13 @@ def _own_names(leaf: Leaf) -> TypeNames:
 def used_here(leaf: Leaf) -> tuple[Related, ...]:
     """The first state of a type, as a related place."""
     return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
+
+
+def declared_here(leaf: Leaf, names: Sequence[Outcome | Key]) -> tuple[Related, ...]:
+    """The place of the first of some names of a state in its interface, or of its outcomes."""
+    spans = [each.span for each in (*names, *leaf.outcomes)]
+    span = next((span for span in spans if span.source is not leaf.span.source), NOWHERE)
+    return other_place(span, f"the interface of `{leaf.type}`")
 
 
 @rule(
@@ -180,9 +186,9 @@ def _wrong_returns(
                 text = f'"{alone}"' if ending.defined else f'return "{alone}"'
                 near = f"write `{text}`, as no path returns `{alone}`"
                 near += "" if ending.possible else _or_declare(ending, leaf)
-            places: tuple[Related, ...] = ()
+            places = declared_here(leaf, leaf.outcomes)
             if renamed is not None and word.text == renamed.old:
-                near, places = renamed.help, renamed.places
+                near, places = renamed.help, (*renamed.places, *places)
             returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
                 span=ending.defined or word.span,
@@ -372,7 +378,6 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             above, container = containers[above]
             levels.append(container)
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
-        used = {word.text for word in facts.reads}
         old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
@@ -380,8 +385,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
                 " key of its interface"
             )
-            near = meant_input(word.text, guesser(inputs), used, around)
-            help = did_you_mean(near) or (
+            help = did_you_mean(guesser(inputs)(word.text)) or (
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )
@@ -408,9 +412,9 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 )
                 help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
                 effect = f"the userdata has no method `{word.text}`: AttributeError"
-            places: tuple[Related, ...] = ()
+            places = declared_here(leaf, leaf.inputs)
             if old is not None and word.text == old.old and word.text not in outputs:
-                help, places = old.help, old.places
+                help, places = old.help, (*old.places, *places)
             yield Finding(
                 span=word.span,
                 message=message,
@@ -430,13 +434,10 @@ def _sets_first(facts: ClassFacts, word: Word) -> bool:
 
 def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
     """Whether a key of a leaf can have a value before the leaf sets it."""
-    outer = remapping(leaf).get(key, key)
+    outer = remapping(leaf)[key]
     known = {each.key for each in around.userdata} | {each.name for each in around.inputs}
     return outer in known or any(
-        remapping(child).get(each.name, each.name) == outer
-        for child in around.children
-        if child is not leaf
-        for each in child.outputs
+        outer in outer_outputs(child) for child in around.children if child is not leaf
     )
 
 
@@ -480,9 +481,9 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 near = lone[1]
                 guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
             never = f", and `{near}` is never set" if near in unset and facts.closed else ""
-            places: tuple[Related, ...] = ()
+            places = declared_here(leaf, leaf.outputs)
             if old is not None and word.text == old.old and not only:
-                guess, places = old.help, old.places
+                guess, places = old.help, (*old.places, *places)
             yield Finding(
                 span=word.span,
                 message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"

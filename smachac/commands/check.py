@@ -8,7 +8,6 @@ import os
 import sys
 import time
 from argparse import Namespace
-from collections import Counter
 
 from smachac.commands.arguments import (
     FORMAT,
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from typing import TextIO
 
     from smachac.batch import Batch
+    from smachac.diagnostics.baseline import Baseline
     from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
     from smachac.driver import MachineCheck, Previous
@@ -203,9 +203,12 @@ def _select(
     report = select_findings(found.report, _codes_of(arguments.select), _codes_of(arguments.ignore))
     notes = []
     if arguments.baseline is not None and not arguments.write_baseline:
-        report, known, gone = baseline.compare(report, _read_baseline(arguments.baseline))
+        old = _read_baseline(arguments.baseline)
+        report, known, gone = baseline.compare(report, old)
         notes += [f"{known} in the baseline"] if known else []
         notes += [f"{gone} of the baseline no longer found"] if gone else []
+        if old.version < baseline.VERSION:
+            notes += ["the baseline is of an older version: write it again with --write-baseline"]
     return found.only(report), notes
 
 
@@ -317,8 +320,8 @@ def _notices(arguments: Namespace) -> TextIO:
     return sys.stdout if arguments.format == "text" else sys.stderr
 
 
-def _read_baseline(path: Path) -> Counter[str]:
-    """The fingerprints in a baseline with their numbers. Raises BaselineError."""
+def _read_baseline(path: Path) -> Baseline:
+    """The known findings of a baseline. Raises BaselineError."""
     from smachac.diagnostics import baseline
     from smachac.frontend.files import read_source
 

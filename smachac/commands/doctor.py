@@ -95,11 +95,11 @@ def doctor_command(arguments: Namespace) -> int:
         names = ", ".join(str(row["name"]) for row in missing)
         print(f"\nsmachac cannot work without {names}", file=sys.stderr)
     if len(ros2) > 1:
-        print(f"\n{_mixture(ros2)}", file=sys.stderr)
+        print(f"\n{mixture(ros2)}", file=sys.stderr)
     return code
 
 
-def _mixture(ros2: dict[str, list[str]]) -> str:
+def mixture(ros2: dict[str, list[str]]) -> str:
     """The sentences on packages of several distributions of ROS 2."""
     parts = [f"{name} ({', '.join(packages)})" for name, packages in ros2.items()]
     last = parts.pop()

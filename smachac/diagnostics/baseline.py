@@ -4,13 +4,31 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import PurePath
+from typing import TypeAlias
 
-from smachac.diagnostics.diagnostic import Report, fingerprint
+from smachac.diagnostics.diagnostic import Diagnostic, Report, fingerprint
 from smachac.diagnostics.severities import is_firm
 
-VERSION = 2
-"""The version of the fingerprints: it increases when they are computed in another way."""
+VERSION, OLDEST = 3, 2
+"""The version of the fingerprints, which increases when they are computed in another way or from
+other arguments, and the oldest version that is read."""
+
+
+FIELDS = ("file", "code", "fingerprint")
+
+Entry: TypeAlias = "tuple[str, ...]"
+"""The name of a file, a code, and a fingerprint: all equal findings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Baseline:
+    """The known findings with their numbers, and the version of the file that has them."""
+
+    entries: Counter[Entry]
+    version: int = VERSION
 
 
 class BaselineError(Exception):
@@ -24,18 +42,13 @@ def acceptable(report: Report) -> Report:
 
 def render(report: Report) -> str:
     """A report as a baseline: sorted, one finding a line, so that it merges well."""
-    counts = Counter(fingerprint(item) for item in report)
+    counts = Counter(map(_entry_of, report))
     lines = {}
     for item in report:
-        mark = fingerprint(item)
-        entry = {
-            "file": PurePath(item.span.source.name).name,
-            "code": item.code,
-            "fingerprint": mark,
-            "count": counts[mark],
-            "message": item.finding.message,
-        }
-        lines[mark] = json.dumps(entry, ensure_ascii=True)
+        entry = _entry_of(item)
+        row: dict[str, object] = dict(zip(FIELDS, entry, strict=True))
+        row |= {"count": counts[entry], "message": item.finding.message}
+        lines[entry] = json.dumps(row, ensure_ascii=True)
     body = ",\n    ".join(sorted(lines.values()))
     findings = f"[\n    {body}\n  ]" if body else "[]"
     return f'{{\n  "version": {VERSION},\n  "findings": {findings}\n}}\n'
@@ -50,33 +63,59 @@ def is_baseline(text: str) -> bool:
     return isinstance(data, dict) and isinstance(data.get("version"), int) and "findings" in data
 
 
-def read(text: str) -> Counter[str]:
-    """The number of findings by fingerprint in a baseline. Raises BaselineError."""
+def read(text: str) -> Baseline:
+    """The known findings of a baseline. Raises BaselineError."""
     try:
         data = json.loads(text)
-        if data["version"] != VERSION:
+        version = data["version"]
+        if version not in range(OLDEST, VERSION + 1):
             raise BaselineError(
-                f"the baseline has version {data['version']!r}, but version {VERSION} is required;"
-                " run `smachac check` with `--write-baseline` to write it again"
+                f"the baseline has version {version!r}, but versions {OLDEST} to {VERSION} are"
+                " read; run `smachac check` with `--write-baseline` to write it again"
             )
-        return Counter({str(each["fingerprint"]): int(each["count"]) for each in data["findings"]})
+        entries = {
+            tuple(str(row[field]) for field in FIELDS): int(row["count"])
+            for row in data["findings"]
+        }
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise BaselineError("the file was not written by --write-baseline") from error
+    return Baseline(Counter(entries), version)
 
 
-def compare(report: Report, known: Counter[str]) -> tuple[Report, int, int]:
+def compare(report: Report, known: Baseline) -> tuple[Report, int, int]:
     """The findings that are not in a baseline, the number that are, and the number of its entries
     that no longer occur.
 
-    Of several equal findings the first ones count as known. A firm error is always new.
+    Of several equal findings the first ones count as known. A finding may have another fingerprint
+    than in a baseline of an older version: there, an entry that would no longer occur stands for a
+    finding with its code in its file. A firm error is always new.
     """
-    left = Counter(known)
+    left = Counter(known.entries)
+    new = _without(report, left, _entry_of)
+    if known.version < VERSION:
+        by_code = Counter[Entry]()
+        for entry, count in left.items():
+            by_code[entry[:2]] += count
+        left = by_code
+        new = _without(new, left, lambda item: _entry_of(item)[:2])
+    unknown = {id(item) for item in new}
+    found = [item for item in report if id(item) in unknown or is_firm(item)]
+    return found, len(report) - len(found), left.total()
+
+
+def _without(
+    report: Report, left: Counter[Entry], entry_of: Callable[[Diagnostic], Entry]
+) -> Report:
+    """The findings that have no entry left; each of the others takes one."""
     new = []
     for item in report:
-        mark = fingerprint(item)
-        is_known = left[mark] > 0
-        if is_known:
-            left[mark] -= 1
-        if not is_known or is_firm(item):
+        entry = entry_of(item)
+        if left[entry] > 0:
+            left[entry] -= 1
+        else:
             new.append(item)
-    return new, len(report) - len(new), sum(left.values())
+    return new
+
+
+def _entry_of(item: Diagnostic) -> Entry:
+    return PurePath(item.span.source.name).name, item.code, fingerprint(item)

@@ -238,10 +238,10 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
         path = _found(name, leaves)
         if path is None:
             unknown += 1
-            found: tuple[str, str | None] = (f"there is no state `{name}`", None)
             if unknown <= MOST_EXPLAINED:
-                found = _not_found(name, machine, leaves)
-            problems.append(ScenarioProblem(*found, name))
+                problems.append(ScenarioProblem(*_not_found(name, machine, leaves), name))
+            else:
+                problems.append(ScenarioProblem(f"there is no state `{name}`", None, name))
             continue
         if path in names:
             message = f"`{names[path]}` and `{name}` are the same state"

@@ -117,20 +117,24 @@ def clusters(
     repairs that correct the same finding, the first one by `_rank` is taken."""
     if analysis.source is None or analysis.library is None:
         return []
-    types = _interfaces(analysis.library)
+    types, own_template = _interfaces(analysis.library), analysis.library.own_template
     read = cache(lambda source: text_of(source, analysis.machine, types))
+    interface = cache(lambda name: own_template(f"{name}.yml") if name else None)
     serious = [item for item in shown if item.severity is not Severity.INFO]
     if len(serious) > MOST_FINDINGS:
         return []
     if any(item.code == "SM704" for item in analysis.report):
         return []  # a property that takes all of its limit takes it again in each trial
-    trials = MOST_CHECKED // _size(analysis.source, analysis.machine)
+    texts = {analysis.source, *(item.span.source for item in serious[:MOST_CLUSTERS])}
+    # To read the texts for the operators takes about as long as one trial.
+    trials = MOST_CHECKED // _size(texts, analysis.machine) - 1
     proven: list[Proof] = []
-    for item in serious[:MOST_CLUSTERS]:
+    for item in sorted(serious, key=_is_no_error)[:MOST_CLUSTERS]:
         if trials <= 0:
             break
         named = (other.finding.arguments for other in serious if other is not item)
-        proposed = _proposals(item, Around(read, [*chain.from_iterable(named)], types))
+        around = Around(read, [*chain.from_iterable(named)], types, interface)
+        proposed = _proposals(item, around)
         proof = _proof(item, analysis, analysed, proposed[:trials])
         trials -= len(proposed)
         if proof is not None:
@@ -147,14 +151,14 @@ def clusters(
     return [found[id(item)] for item in serious if id(item) in found]
 
 
-def _size(source: Source, machine: Machine | None) -> int:
+def _size(texts: Iterable[Source], machine: Machine | None) -> int:
     """What a check of a script costs: the states, outcomes, transitions and keys of its machine, or
-    the length of its text where that is more."""
+    the length of the texts where that is more."""
     parts = 0 if machine is None else sum(
         1 + sum(map(len, (node.outcomes, node.transitions, node.inputs, node.outputs)))
         for _, node in walk(machine.root)
     )  # fmt: skip
-    return max(1, parts, len(source.text) // CHARACTERS)
+    return max(1, parts, sum(len(source.text) for source in texts) // CHARACTERS)
 
 
 MOST_TYPES = 200
@@ -184,7 +188,11 @@ def _rank(proof: Proof) -> tuple[int, bool, bool]:
     item = proof.item
     place = proof.candidate.repair.edits[0].span
     is_there = place.source is item.span.source and place.line == item.span.line
-    return (proof.left.total(), item.severity is not Severity.ERROR, not is_there)
+    return (proof.left.total(), _is_no_error(item), not is_there)
+
+
+def _is_no_error(item: Diagnostic) -> bool:
+    return item.severity is not Severity.ERROR
 
 
 def _proof(

@@ -207,10 +207,32 @@ def test_an_old_baseline_is_refused_with_the_remedy(
     (folder / "b.json").write_text('{"version": 1, "findings": []}')
     assert main(["check", "main.yml", "--baseline", "b.json"]) == 2
     error = capsys.readouterr().err
-    assert "has version 1, but version 2 is required" in error
+    assert "has version 1, but versions 2 to 3 are read" in error
     assert "run `smachac check` with `--write-baseline`" in error
     assert main(["check", "main.yml", "--baseline", "b.json", "--write-baseline"]) == 0
     assert main(["check", "main.yml", "--baseline", "b.json"]) == 0
+
+
+def test_a_baseline_of_the_last_version_is_read(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Version 2 knew other arguments for some findings: there, the code and the file count."""
+    assert main(["check", "main.yml", "--baseline", "b.json", "--write-baseline"]) == 0
+    data = json.loads((folder / "b.json").read_text())
+    data |= {"version": 2}
+    data["findings"][0] |= {"fingerprint": "0123456789abcdef"}
+    (folder / "b.json").write_text(json.dumps(data))
+    capsys.readouterr()
+    assert main(["check", "main.yml", "--baseline", "b.json"]) == 0
+    words = "the baseline is of an older version: write it again with --write-baseline"
+    assert capsys.readouterr().out == f"no findings (1 in the baseline, {words})\n"
+    lost = "      - LOST2: {template: ScriptedState, outcomes: [ok], transitions: {ok: ok}}\n"
+    write(folder, {"pick.yml": SUB + lost})
+    assert main(["check", "main.yml", "--baseline", "b.json"]) == 1
+    assert len(lines(capsys.readouterr().out)) == 1
+    (folder / "b.json").write_text(json.dumps(data | {"version": 3}))
+    assert main(["check", "main.yml", "--baseline", "b.json"]) == 1
+    assert len(lines(capsys.readouterr().out)) == 2
 
 
 def git(*words: str) -> None:

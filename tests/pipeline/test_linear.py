@@ -68,7 +68,7 @@ def lines(arguments: list[str]) -> int:
     return count
 
 
-@pytest.mark.parametrize("name", every(5, INPUTS))
+@pytest.mark.parametrize("name", every(8, INPUTS))
 def test_twice_the_input_takes_about_twice_the_lines(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

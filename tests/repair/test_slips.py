@@ -154,6 +154,55 @@ states:
 """
 }
 
+SIDES = {
+    MAIN: """\
+name: sm
+outcomes: [done]
+userdata: {left_home: 1.5, right_home: 2.5}
+states:
+  - LEFT:
+      template: ScriptedState
+      input_keys: [home]
+      outcomes: [ok]
+      remapping: {home: left_home}
+      transitions: {ok: RIGHT}
+  - RIGHT:
+      template: ScriptedState
+      input_keys: [home]
+      outcomes: [ok]
+      remapping: {home: right_home}
+      transitions: {ok: done}
+"""
+}
+
+GLUE = {
+    MAIN: """\
+name: sm
+outcomes: [done]
+states:
+  - SEAM_A:
+      template: Measure
+      remapping: {seam: seam_a, volume: volume_a}
+      transitions: {ok: GLUE_A}
+  - GLUE_A:
+      template: Glue
+      remapping: {seam: seam_a, volume: volume_a}
+      transitions: {ok: done}
+""",
+    "templates/Measure.yml": """\
+name: Measure
+output_keys: {seam: str, volume: float}
+outcomes: [ok]
+code: {cpp: {header: measure.hpp, class: Measure}}
+""",
+    "templates/Glue.yml": """\
+name: Glue
+input_keys: {seam: str, volume: float}
+outcomes: [ok]
+code: {cpp: {header: glue.hpp, class: Glue}}
+""",
+}
+
 ROWS = [
     (TRIES, MAIN, "{on: [slipped], max: 3}", "{on: 3, max: [slipped]}"),
     (
@@ -168,6 +217,8 @@ ROWS = [
         "failed\n      outcome_map: {done: {LEFT: ok}}",
         "{done: {LEFT: ok}}\n      outcome_map: failed",
     ),
+    (SIDES, MAIN, "home: right_home", "home: left_home"),
+    (GLUE, MAIN, "seam: seam_a, volume: volume_a", "seam: volume_a, volume: seam_a"),
     (WATCH, MAIN, "template: MonitorState", "template: WaitForMsgState"),
     (RULES, MAIN, "POLISH: done", "done: POLISH"),
     (RULES, MAIN, "DOOR: invalid", "invalid: DOOR"),

@@ -13,9 +13,7 @@ from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.diagnostics.repair import Repair, edited_texts
-from smachac.diagnostics.source import Source
 from smachac.driver import Analysis
-from smachac.frontend.yaml_tree import parse
 from smachac.repair.search import again, clusters
 from smachac.report.text import with_cluster
 from tests.trust.kept_mutations import KEPT_MUTATIONS
@@ -42,8 +40,7 @@ class JudgedRepair:
 
     def after(self, repair: Repair) -> tuple[Diagnostic, ...]:
         """The findings after a repair."""
-        new = {source.name: text for source, text in edited_texts(repair.edits).items()}
-        return shown(analysed({**self.files, **new}))[0]
+        return shown(analysed(self._files_after(repair)))[0]
 
     @property
     def named(self) -> bool:
@@ -57,10 +54,15 @@ class JudgedRepair:
 
     @property
     def wrong(self) -> bool:
-        """Whether a text has another meaning than the original one after the repair."""
-        return any(
-            parse(Source("", old), []) != parse(Source("", new), []) for old, new in self._repaired
-        )
+        """Whether there is a repair after which the script is another machine than the original."""
+        if self.repair is None or self.restored:
+            return False
+        after = analysed(self._files_after(self.repair)).machine
+        return after != analysed(self.original).machine
+
+    def _files_after(self, repair: Repair) -> Files:
+        new = {source.name: text for source, text in edited_texts(repair.edits).items()}
+        return {**self.files, **new}
 
     @property
     def _repaired(self) -> list[tuple[str, str]]:

@@ -14,7 +14,10 @@ from tests.trust.judged_repairs import JudgedRepair, judged
 from tests.trust.text_mutations import TEXT_MUTATIONS
 from tests.trust.unusual_projects import unusual_projects
 
-EACH = 40
+QUICK, ALL = 10, 40
+"""The mutants of a kind in `make test`, and in all tests."""
+
+COUNTS = [QUICK, pytest.param(ALL, marks=pytest.mark.slow)]
 
 LEAST_SINGLE, LEAST_NAMED = 0.80, 0.80
 """The parts of the mutants with a finding that have exactly one, and whose first finding names what
@@ -30,9 +33,10 @@ def found(kind: str, count: int) -> list[JudgedRepair]:
     return [repair for repair in made if repair is not None]
 
 
+@pytest.mark.parametrize("count", COUNTS)
 @pytest.mark.parametrize("kind", TEXT_MUTATIONS)
-def test_damage_to_a_text_gives_findings_that_can_be_read(kind: str) -> None:
-    for repair in found(kind, EACH):
+def test_damage_to_a_text_gives_findings_that_can_be_read(kind: str, count: int) -> None:
+    for repair in found(kind, count):
         for item in repair.findings:
             assert item.message
             assert item.help, (repair.mutant, item.message)
@@ -49,10 +53,11 @@ def test_most_damage_gives_one_finding_that_names_what_was_lost() -> None:
     assert named >= LEAST_NAMED * len(reported)
 
 
+@pytest.mark.parametrize("count", COUNTS)
 @pytest.mark.parametrize("kind", TEXT_MUTATIONS)
-def test_a_repair_removes_its_finding_and_adds_no_error(kind: str) -> None:
+def test_a_repair_removes_its_finding_and_adds_no_error(kind: str, count: int) -> None:
     """The best repair of each finding; those of syntax errors may uncover other faults."""
-    for judged_repair in found(kind, EACH):
+    for judged_repair in found(kind, count):
         for item in judged_repair.findings:
             for repair in item.finding.all_repairs[:1]:
                 after = judged_repair.after(repair)
