@@ -128,12 +128,13 @@ def test_no_stub_is_made_for_an_interface_with_errors(
     assert files(project) == before
 
 
+OPEN = 'outcomes: {"*": {}}\n'
 DOCS = ['say """ and \\ end', "two\nlines", "*/ ends\\", '"', "\u2028\u202e", "   "]
 
 
 @pytest.mark.parametrize("doc", DOCS)
 def test_a_stub_holds_any_doc(project: Path, doc: str) -> None:
-    Path("templates/Odd.yml").write_text(f"name: Odd\ndoc: {json.dumps(doc)}\n")
+    Path("templates/Odd.yml").write_text(f"name: Odd\ndoc: {json.dumps(doc)}\n{OPEN}")
     for language in ("python", "cpp"):
         assert main(["new", "state", "Odd", "--target", language]) == 0
     compile(Path("robot_states/odd.py").read_text(), "odd.py", "exec")
