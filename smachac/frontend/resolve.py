@@ -30,11 +30,6 @@ from smachac.frontend.message_definitions import (
     missing_definitions_of,
     other_types_of,
 )
-from smachac.frontend.misplaced_fields import (
-    with_inner_rules,
-    with_outer_fields,
-    with_outer_variables,
-)
 from smachac.frontend.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -274,7 +269,6 @@ class _Resolver:
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
-        entries = with_outer_variables(name, entries, owner, type_, self.report)
         if type_.variables:
             entries |= self.lists(own, scope, type_)
         if scope:
@@ -492,7 +486,6 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
-        own = with_inner_rules(with_outer_fields(name, own, self.report), self.report)
         own = with_meant_call(name, own, self.report)
         called: list[tuple[Word, tuple[Entry, ...]]] = []
         beside: dict[str, Span] = {}

@@ -153,6 +153,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
         found += _exchanged_values(path)
         found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
         found += _other_types(path, around.types)
+        found += _moved_out(path, span.source)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
     return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
 
@@ -229,7 +230,7 @@ def _names_of_interface(item: Diagnostic, text: Text, interface: Text) -> Iterat
     for made in found:
         (edit,) = made.repair.edits
         is_in_code = code is not None and _start(code) <= edit.span.start < _end(code)
-        if not is_in_code and edit.text.isupper() == edit.span.text.isupper():
+        if not is_in_code and edit.text.isupper() <= edit.span.text.isupper():
             yield made
 
 
@@ -381,6 +382,33 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
         return
 
 
+def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
+    """The lines of the innermost entry, moved out of the one or the two entries that it is in:
+    behind that one, with its indentation."""
+    *outside, inner = [None, *(part for part in path if isinstance(part, Entry))]
+    text = source.text
+    if inner is None:
+        return
+    start, end = _lines_of(inner, text)
+    if text[start : _start(inner)].strip():
+        return  # in braces
+    for outer in [part for part in outside if part is not None][:-3:-1]:
+        first, last = _lines_of(outer, text)
+        columns = inner.key.span.column - outer.key.span.column
+        moved = re.sub(rf"(?m)^ {{{columns}}}", "", text[start:end])
+        rest = text[end:last]
+        whole = Span(source, start, last)
+        if columns > 0 and first < start:
+            operator = f"move them {columns} columns to the left"
+            yield candidate(1.3, operator, Edit(span=whole, text=rest + moved))
+
+
+def _lines_of(part: Tree | Entry, text: str) -> tuple[int, int]:
+    """The range of the whole lines of a part of a tree."""
+    end = text.find("\n", _end(part)) + 1
+    return text.rfind("\n", 0, _start(part)) + 1, end or len(text)
+
+
 def _repeated_parts(path: list[Tree | Entry], source: Source, cost: float) -> Iterator[Candidate]:
     """The lines of an entry or an item that is in its mapping or list twice, deleted."""
     for around, part in reversed([*pairwise(path)]):
@@ -390,7 +418,6 @@ def _repeated_parts(path: list[Tree | Entry], source: Source, cost: float) -> It
         elif isinstance(around, Seq):
             others = [*around.items]
         if sum(other == part for other in others) > 1:
-            start = source.text.rfind("\n", 0, _start(part)) + 1
-            end = source.text.find("\n", _end(part)) + 1 or len(source.text)
-            yield candidate(cost, "delete a copy", Edit(span=Span(source, start, end), text=""))
+            span = Span(source, *_lines_of(part, source.text))
+            yield candidate(cost, "delete a copy", Edit(span=span, text=""))
             return

@@ -207,33 +207,6 @@ def test_a_rule_of_an_outcome_map(rules: str, found: tuple[str, str, str]) -> No
     assert reported({"main.yml": MAP.replace("RULES", rules)}) == [found]
 
 
-BRANCH = """\
-name: sm
-template: Base
-outcomes: [both, failed]
-states:
-  - G:
-      template: Concurrence
-      outcomes: [both, failed]
-      default_outcome: failed
-      transitions: {both: both, failed: failed}
-      states:
-        - LEFT:
-            template: ScriptedState
-            outcomes: [done, slipped]
-        - RIGHT:
-            template: ScriptedState
-            outcomes: [done, slipped]
-            outcome_map:
-              both: {LEFT: done, RIGHT: done}
-"""
-
-
-def test_an_outcome_map_in_a_branch() -> None:
-    help = "write `outcome_map` 6 columns further left, beside its `states`"
-    assert reported({"main.yml": BRANCH}) == [("SM004", "outcome_map", help)]
-
-
 RACK = """\
 name: rack_round
 template: Base
