@@ -45,6 +45,8 @@ def adding_outcome(node: Node, outcome: str) -> tuple[Repair, ...]:
     """The repair that adds an outcome to those that a state lists, where its place is certain."""
     here = [each.span for each in node.outcomes if each.span.source is node.span.source]
     after = sorted({span for span in here if span.start > node.span.start})
+    while after and after[0].source.text[: after[0].start].rstrip()[-1:] not in ("[", "-"):
+        del after[0]  # the name is not the first one of a list
     count = sum(1 for _ in takewhile(_are_in_one_list, pairwise(after)))
     edits = _listed(after[count], outcome) if after and is_plain(outcome) else ()
     repair = Repair(edits=edits, certainty=Certainty.LIKELY, operator="add the outcome")

@@ -177,9 +177,6 @@ def _lost(path: str, container: Linear) -> Iterator[_Lost]:
             meant = near.get(step.target)
             name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
             sure = guess.sure(step.target) if meant is not None else None
-            uses = targets.places
-            if sure is not None and sure not in uses and len(uses[step.target]) > 1:
-                sure = None  # the declared name is rather the misspelt one
             yield _Lost(path, container, targets, child, step, name, sure, paired)
 
 
@@ -252,6 +249,8 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
         sure = None
     if step.target in OF_SMACH or (sure is not None and not _same_case(step.target, sure)):
         sure = None  # a name that is like an outcome of SMACH is rather the misspelt one
+    if sure not in targets.places and len(targets.places[step.target]) > 1:
+        sure = None  # a name with several uses is rather right, and the known name misspelt
     return Finding(
         span=step.target_span,
         message=whole,
@@ -457,7 +456,7 @@ def _unknown_steps(
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=()
-            if default is not None
+            if default is not None or step.outcome in OF_SMACH
             else respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
         )
 
