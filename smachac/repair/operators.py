@@ -141,7 +141,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     if not _is_field(item.span, text.tree):
         found += _mentioned_names(item, around.others)
     found += _unused_names(item, text)
-    found += _without_brackets(item, text)
+    found += _other_forms(item, text)
     for span in dict.fromkeys(places[:MOST_PLACES]):
         tree = around.read(span.source).tree
         path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
@@ -154,6 +154,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
         found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
         found += _other_types(path, around.types)
         found += _moved_out(path, span.source)
+        found += _moved_states(path, span.source)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
     return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
 
@@ -257,12 +258,17 @@ def _unused_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
                     yield candidate(1.6, RENAME, Edit(span=span, text=word))
 
 
-def _without_brackets(item: Diagnostic, text: Text) -> Iterator[Candidate]:
-    """A name of the finding without the brackets of a list of this one name."""
+def _other_forms(item: Diagnostic, text: Text) -> Iterator[Candidate]:
+    """A name of the finding without the brackets of a list of this one name; and as a look-up of a
+    param in place of a value that is its name."""
     for word in _words_of(item):
         for found in re.finditer(rf"\[\s*{word}\s*\]", text.source.text):
             span = Span(text.source, *found.span())
             yield candidate(1.4, "remove the brackets", Edit(span=span, text=word))
+        for found in re.finditer(rf"(?<=: ){word}(?=[,}}\s])", text.source.text):
+            span = Span(text.source, *found.span())
+            if "params" in text.counts:
+                yield candidate(1.5, "look the param up", Edit(span=span, text=f"[params, {word}]"))
 
 
 def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candidate]:
@@ -401,6 +407,39 @@ def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
         if columns > 0 and first < start:
             operator = f"move them {columns} columns to the left"
             yield candidate(1.3, operator, Edit(span=whole, text=rest + moved))
+
+
+def _moved_states(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
+    """The lines of the innermost state with another indentation: that of the states around its
+    container if it is the last one in that, and that of the states of the container before it."""
+    lists = [
+        pair for pair in pairwise(path) if isinstance(pair[0], Seq) and pair[1] in pair[0].items
+    ]
+    if not lists:
+        return
+    items, state = lists[-1]
+    assert isinstance(items, Seq)
+    at = next(number for number, each in enumerate(items.items) if each is state)
+    others = [lists[-2][1]] if at + 1 == len(items.items) and len(lists) > 1 else []
+    before = items.items[at - 1] if at > 0 else None
+    fields = before.entries[0].value if isinstance(before, Map) and before.entries else None
+    inner = fields.get("states") if isinstance(fields, Map) else None
+    if inner is not None and isinstance(inner.value, Seq) and inner.value.items:
+        others.append(inner.value.items[-1])
+    start, end = _lines_of(state, source.text)
+    lines = source.text[start:end].splitlines(keepends=True)
+    for other in others:
+        columns = _dash(other, source.text) - _dash(state, source.text)
+        moved = (" " * columns + line if columns > 0 else line[-columns:] for line in lines)
+        text, way = "".join(moved), "right" if columns > 0 else "left"
+        operator = f"move them {abs(columns)} columns to the {way}"
+        yield candidate(1.3, operator, Edit(span=Span(source, start, end), text=text))
+
+
+def _dash(part: Tree | Entry, text: str) -> int:
+    """The column of the `-` before an item of a list."""
+    line, _ = _lines_of(part, text)
+    return text.find("-", line) - line
 
 
 def _lines_of(part: Tree | Entry, text: str) -> tuple[int, int]:

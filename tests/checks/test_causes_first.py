@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from smachac.diagnostics.diagnostic import Severity
+from tests.trust.judged_repairs import shown
 from tests.trust.project_text import analysed
 
 FIND = "outcomes: {found: {}, nothing: {}, preempted: {}}\n"
@@ -624,8 +625,8 @@ states:
   - SAY: {template: Say, text: greeting, transitions: {said: done}}
 """
     interface = "variables: {text: str}\noutcomes: {said: {}}\n"
-    report = analysed({"main.yml": script, "templates/Say.yml": interface}).report
-    found = [(each.code, each.span.text, each.help) for each in report]
-    help = "write `[params, greeting]` for the value of the param"
-    assert found == [("SM306", "greeting", help)]
-    assert report[0].span.start == script.index("greeting, ")
+    items, repair = shown(analysed({"main.yml": script, "templates/Say.yml": interface}))
+    assert [(item.code, item.span.text) for item in items] == [("SM306", "greeting")]
+    assert repair is not None
+    assert [edit.text for edit in repair.edits] == ["[params, greeting]"]
+    assert repair.edits[0].span.start == script.index("greeting, ")
