@@ -11,16 +11,21 @@ from smachac.analysis.definite_assignment import DataFlow
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
 from smachac.checks.candidate_keys import (
+    may_be,
     unread_output,
 )
+from smachac.checks.edits import with_remapping
 from smachac.checks.initial_presets import counts, initial_value
 from smachac.checks.messages import calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.repair import Certainty, Repair
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
 from smachac.ir.traversal import outcome_names
+from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -59,6 +64,7 @@ def unset_read(
     if is_counter:
         help = f"give `{missing.key}` an initial value in `{name}`: {value}"
     related: tuple[Related, ...] = ()
+    repairs: list[Repair] = []
     if not (is_counter or witness.always) and len(witness.path) > 2 and witness.path[-2].is_outcome:
         before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
         if any(use.path == before.node for use in scope.uses.writers(missing.key)):
@@ -66,6 +72,7 @@ def unset_read(
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
         unread = unread_output(scope, missing.key) if is_searched else None
+        repairs = [*_remappings(missing, witness, types)] if is_searched else []
         if isinstance(reader.node, nodes.Iterator) and isinstance(
             python_tree(missing.key), ast.Lambda
         ):
@@ -87,7 +94,30 @@ def unset_read(
         path=witness.path if len(witness.path) > 1 else (),
         severity=None if witness.always else Severity.WARNING,
         node=reader.path,
+        repairs=(*repairs,),
     )
+
+
+MOST_PROPOSED = 3
+"""Of more keys that can be read in place of one, none is proposed."""
+
+
+def _remappings(missing: Missing, witness: Witness, types: Types) -> Iterator[Repair]:
+    """The remappings of a state that reads a key of its interface which nothing sets, to the keys
+    that nothing reads and that can have the type of the reader. The search itself proposes near
+    names."""
+    scope, reader = missing.scope, witness.reader
+    declared = next((key for key in reader.node.inputs if key.name == missing.key), None)
+    if declared is None or declared.span.source is reader.node.span.source:
+        return
+    near = guesser([missing.key])
+    wanted = types.inputs.get((reader.path, reader.key), ANY)
+    unread = sorted(scope.uses.provided - scope.uses.read - scope.outputs.keys())
+    found = [key for key in unread if near(key) is None and may_be(types, scope, key, wanted)]
+    for key in found if len(found) <= MOST_PROPOSED else ():
+        edits = with_remapping(reader.node, reader.key, key)
+        if edits:
+            yield Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="remap a key")
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
