@@ -47,8 +47,6 @@ from smachac.targets.interface_check import (
 from smachac.targets.runtime_files import runtime_files
 from smachac.targets.template_imports import template_imports
 from smachac.targets.undefined_names import undefined_names
-from smachac.targets.wrong_classes import with_wrong_classes
-from smachac.targets.wrong_interfaces import with_wrong_interfaces
 
 Folders: TypeAlias = "Sequence[str | PathLike[str]]"
 
@@ -172,8 +170,6 @@ def _analysis(
         if machine is not None and context is not None:
             report.extend(check_machine(machine, context=context))
             report.extend(code_faults(machine, library, load_target))
-            report[:] = with_wrong_interfaces(report, machine, library, load_target)
-            report[:] = with_wrong_classes(report, machine, library)
             report.extend(template_imports(machine, library))
             report.extend(undefined_names(context, library))
             report.extend(extra(machine) if extra is not None else ())

@@ -188,7 +188,8 @@ def _states(searches: list[tuple[str, Search]], path: str) -> set[KeyState]:
     if not searches:
         return set()
     where, found = searches[-1]
-    vertex, states = place_in(where, path), ("unset", "reported", "set")
+    vertex = place_in(where, path)
+    states: tuple[KeyState, ...] = ("unset", "reported", "set")
     return {state for state in states if Reached(vertex, state) in found}
 
 

@@ -7,7 +7,7 @@ of a class is reported once, with the first state of its type as a related place
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
@@ -16,14 +16,14 @@ from smachac.checks.renamed_names import renamed_in_interface
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.class_facts import ANY, ClassFacts, Ending, renamed_name
 from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
-from smachac.ir.nodes import Leaf, StateType
+from smachac.ir.nodes import Key, Leaf, Outcome, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
 from smachac.ir.traversal import enclosing, outcome_names, outer_outputs, remapping
 
@@ -87,6 +87,13 @@ def _own_names(leaf: Leaf) -> TypeNames:
 def used_here(leaf: Leaf) -> tuple[Related, ...]:
     """The first state of a type, as a related place."""
     return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
+
+
+def declared_here(leaf: Leaf, names: Sequence[Outcome | Key]) -> tuple[Related, ...]:
+    """The place of the first of some names of a state in its interface, or of its outcomes."""
+    spans = [each.span for each in (*names, *leaf.outcomes)]
+    span = next((span for span in spans if span.source is not leaf.span.source), NOWHERE)
+    return other_place(span, f"the interface of `{leaf.type}`")
 
 
 @rule(
@@ -179,9 +186,9 @@ def _wrong_returns(
                 text = f'"{alone}"' if ending.defined else f'return "{alone}"'
                 near = f"write `{text}`, as no path returns `{alone}`"
                 near += "" if ending.possible else _or_declare(ending, leaf)
-            places: tuple[Related, ...] = ()
+            places = declared_here(leaf, leaf.outcomes)
             if renamed is not None and word.text == renamed.old:
-                near, places = renamed.help, renamed.places
+                near, places = renamed.help, (*renamed.places, *places)
             returned = other_place(word.span, f"`{leaf.type}` returns it here")
             yield Finding(
                 span=ending.defined or word.span,
@@ -405,9 +412,9 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 )
                 help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
                 effect = f"the userdata has no method `{word.text}`: AttributeError"
-            places: tuple[Related, ...] = ()
+            places = declared_here(leaf, leaf.inputs)
             if old is not None and word.text == old.old and word.text not in outputs:
-                help, places = old.help, old.places
+                help, places = old.help, (*old.places, *places)
             yield Finding(
                 span=word.span,
                 message=message,
@@ -474,9 +481,9 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 near = lone[1]
                 guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
             never = f", and `{near}` is never set" if near in unset and facts.closed else ""
-            places: tuple[Related, ...] = ()
+            places = declared_here(leaf, leaf.outputs)
             if old is not None and word.text == old.old and not only:
-                guess, places = old.help, old.places
+                guess, places = old.help, (*old.places, *places)
             yield Finding(
                 span=word.span,
                 message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"

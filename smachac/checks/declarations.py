@@ -19,7 +19,6 @@ from smachac.analysis.unset_reads import Missing, container_name
 from smachac.analysis.uses import place_of
 from smachac.checks.candidate_keys import meant_by_remaps, outer_value
 from smachac.checks.code_slots import function_reads
-from smachac.checks.copied_remaps import copied_finding, copied_remap
 from smachac.checks.empty_remaps import meant_by_empty_remaps
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.meant_keys import (
@@ -34,7 +33,6 @@ from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_mea
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes import meant_default
 from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
-from smachac.checks.remap_slips import keys_of_swapped
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code
 from smachac.checks.unsent_keys import unsent_keys
@@ -156,10 +154,6 @@ def dead_key(context: Context) -> Iterator[Finding]:
             if loop is not None:
                 yield word_as_list(f"{scope.path}/{loop.name}", loop, key)
                 continue
-            copied = copied_remap(container, key)
-            if copied is not None:
-                yield copied_finding(scope.path, copied, key)
-                continue
             back = _turned_preset(scope, key, read) if node is container else None
             finding = _unread_key(scope, key, node, span, back)
             is_result = container is flow.machine.root and node is not container
@@ -227,7 +221,6 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
     found |= {place for place in unset if place is not None}  # SM301
     found |= _swapped_lists(context)
-    found |= keys_of_swapped(context.missing_keys("remapped"))  # SM302
     return found | keys_of_misplaced(context.misplaced)  # SM101
 
 
@@ -431,10 +424,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             if wrong is not None and wrong.declared:
                 yield misnamed_finding(wrong, scope.path, container_name(scope, key.span))
                 continue
-            copied = copied_remap(container, key.name)
-            if copied is not None:
-                yield copied_finding(scope.path, copied, key.name)
-            elif not isinstance(container, nodes.Iterator) or not is_over_the_word(
+            if not isinstance(container, nodes.Iterator) or not is_over_the_word(
                 container, key.name
             ):
                 yield _unused(scope.path, container, key, "input")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from itertools import pairwise, takewhile
 from typing import Literal
 
-from smachac.diagnostics.repair import Edit
+from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import is_plain
 from smachac.diagnostics.wording import listed
@@ -51,6 +52,21 @@ def with_remapping(node: Node, key: str, to: str) -> tuple[Edit, ...]:
     is_flow = "{" in source.text[source.text.rfind("\n", 0, last.start) + 1 : last.start]
     end = Span(source, last.end, last.end)
     return (Edit(span=end, text=f", {key}: {to}"),) if is_flow else ()
+
+
+def adding_outcome(node: Node, outcome: str) -> tuple[Repair, ...]:
+    """The repair that adds an outcome to those that a state lists, where its place is certain."""
+    here = [each.span for each in node.outcomes if each.span.source is node.span.source]
+    after = sorted({span for span in here if span.start > node.span.start})
+    count = sum(1 for _ in takewhile(_are_in_one_list, pairwise(after)))
+    edits = _listed(after[count], outcome) if after and is_plain(outcome) else ()
+    repair = Repair(edits=edits, certainty=Certainty.LIKELY, operator="add the outcome")
+    return (repair,) if edits else ()
+
+
+def _are_in_one_list(pair: tuple[Span, Span]) -> bool:
+    first, second = pair
+    return not first.source.text[first.end : second.start].strip(" \t\r\n,-")
 
 
 def listing(nodes: Iterable[Node], part: KeyList, key: str) -> str:

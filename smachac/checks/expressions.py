@@ -17,6 +17,7 @@ from smachac.checks.class_values import (
     wrong_operations,
     wrong_parts,
 )
+from smachac.checks.edits import adding_outcome
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.null_keys import null_keys
 from smachac.checks.rule import rule
@@ -207,6 +208,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
     for word, what, effect in _endings(leaf):
         if word.text not in outcomes:
             meant = did_you_mean(guesser(outcomes)(word.text)) or _only_left(leaf, word.text)
+            is_used = any(step.outcome == word.text for step in leaf.transitions)
             yield Finding(
                 span=word.span,
                 message=f"{what} `{word.text}`, which is not one of its outcomes",
@@ -217,6 +219,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
                 effect=effect,
                 related=calls(leaf, word.span),
                 node=path,
+                repairs=adding_outcome(leaf, word.text) if is_used else (),
             )
 
 

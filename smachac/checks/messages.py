@@ -9,14 +9,11 @@ from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.leaf import variable_of
 from smachac.ir.nodes import Leaf, Node, VariableRole
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import outcome_names
 
 ROS_KINDS: Mapping[VariableRole, str] = {"action_type": "an action", "service_type": "a service"}
 """The kinds of states that call a server, by the role of the variable with its type."""
-
-ROS_ENDS = frozenset(["succeeded", "aborted", PREEMPTED])
-"""The outcomes of these states."""
 
 CALLED_HERE = "in the sub-script called here"
 
@@ -29,7 +26,7 @@ def did_you_mean(name: str | None) -> str | None:
 def ends_of(node: Node) -> str | None:
     """The help for an outcome that a state of an action or a service of ROS does not have, if the
     state has those of SMACH only."""
-    if not isinstance(node, Leaf) or {*outcome_names(node)} != ROS_ENDS:
+    if not isinstance(node, Leaf) or {*outcome_names(node)} != {*OF_SMACH}:
         return None
     kinds = [kind for role, kind in ROS_KINDS.items() if variable_of(node, role) is not None]
     ends = "ends with `succeeded`, `aborted` or `preempted`"

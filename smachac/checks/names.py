@@ -23,22 +23,24 @@ from smachac.analysis.control_flow import (
     unknown_outcomes,
 )
 from smachac.analysis.misplaced_states import stray_transitions
+from smachac.checks.edits import adding_outcome
 from smachac.checks.expressions import unknown_endings
 from smachac.checks.loop_targets import WORDS as LOOP_WORDS
 from smachac.checks.loop_targets import loop_target
 from smachac.checks.meant_keys import meant_keys
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
-from smachac.checks.misdeclared import misdeclared
 from smachac.checks.misplaced_states import misplaced_finding
 from smachac.checks.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.repair import Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, respelt, words_of
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
-from smachac.ir.traversal import PREEMPTED, outcome_names
+from smachac.ir.outcome_names import OF_SMACH, PREEMPTED
+from smachac.ir.traversal import outcome_names
 
 EXCEPTIONS = "error"
 """The name by which a script refers to the exceptions of a state (docs/language.md)."""
@@ -135,7 +137,6 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: stacked}
     """
-    yield from misdeclared(context, "container", "child")
     lost = [each for path, container in context.misnamed for each in _lost(path, container)]
     misplaced = [each for each in context.misplaced if not isinstance(each.meant, Concurrence)] \
         if lost else []  # fmt: skip
@@ -176,6 +177,9 @@ def _lost(path: str, container: Linear) -> Iterator[_Lost]:
             meant = near.get(step.target)
             name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
             sure = guess.sure(step.target) if meant is not None else None
+            uses = targets.places
+            if sure is not None and sure not in uses and len(uses[step.target]) > 1:
+                sure = None  # the declared name is rather the misspelt one
             yield _Lost(path, container, targets, child, step, name, sure, paired)
 
 
@@ -246,8 +250,8 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
     elif above:
         help = _through_outcome(fault, above)
         sure = None
-    if sure is not None and not _same_case(step.target, sure):
-        sure = None
+    if step.target in OF_SMACH or (sure is not None and not _same_case(step.target, sure)):
+        sure = None  # a name that is like an outcome of SMACH is rather the misspelt one
     return Finding(
         span=step.target_span,
         message=whole,
@@ -261,7 +265,18 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
         related=(*_unentered(fault), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
+        repairs=_as_outcome(fault),
     )
+
+
+def _as_outcome(fault: _Lost) -> tuple[Repair, ...]:
+    """The repair that adds an unknown target of several transitions, or one that the transitions of
+    the container name, to the outcomes of the container."""
+    container, target = fault.container, fault.step.target
+    is_used = len(fault.targets.places.get(target, ())) > 1
+    if target.isupper() or not (is_used or any(s.outcome == target for s in container.transitions)):
+        return ()
+    return adding_outcome(container, target)
 
 
 def _unentered(fault: _Lost) -> Iterator[Related]:
@@ -381,7 +396,6 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped]
               transitions: {done: picked, slipped: lost}
     """
-    yield from misdeclared(context, "interface", "state")
     misnamed = frozenset([path for path, _ in context.misnamed])
     found = context.at_containers(_unknown_outcomes, misnamed)
     loops: set[str] = set()

@@ -46,7 +46,6 @@ from smachac.checks.record_fields import (
 from smachac.checks.rule import rule
 from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.value_places import part_at, place_of_part, steps_to_misfit, type_at
-from smachac.checks.wrong_remaps import wrong_remap_finding, wrong_remaps
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.source import NOWHERE, Span
@@ -111,10 +110,6 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     clashes = [each for each in context.clashes["type"] if not _is_function(each)]
-    remapped = list(wrong_remaps(context, clashes))
-    yield from map(wrong_remap_finding, remapped)
-    done = {found.clash.cell for found in remapped}
-    clashes = [each for each in clashes if each.cell not in done]
     params = {span: name for name, span in params_as_text(context).items()} if clashes else {}
     for found in clash_findings(clashes, context.machine.aliases):
         name = params.get(found.span)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from pathlib import PurePath
 
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
@@ -39,19 +40,19 @@ from smachac.checks.messages import added_remapping, calls, did_you_mean, other_
 from smachac.checks.misled_failures import Misled, misled_failures
 from smachac.checks.races import raced_keys
 from smachac.checks.reachability import keys_of_hidden_states
-from smachac.checks.remap_slips import lacking_finding, swapped_remap
 from smachac.checks.rule import rule
 from smachac.checks.unset_read_findings import unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
-from smachac.diagnostics.wording import either, listed
+from smachac.diagnostics.wording import both, either, listed
 from smachac.ir import nodes
 from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Key, Node
 from smachac.ir.script_paths import name_in_script
+from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY
 
 MOST_RELATED = 3
@@ -335,8 +336,37 @@ def _unknown_remaps(path: str, container: Container, definitions: Definitions) -
         if keys and not isinstance(node, nodes.Leaf):
             place = node.children[0].span, keys
             if place not in lacking:  # else another call of the same sub-script
-                yield lacking_finding(f"{path}/{node.name}", node, keys)
+                yield _lacking(f"{path}/{node.name}", node, keys)
             lacking.add(place)
+
+
+def _lacking(path: str, node: Container, keys: Sequence[str]) -> Finding:
+    """SM302 for keys in the remapping of a container that it lacks as inputs."""
+    first = next(each for each in node.remaps if each.key in keys)
+    source = node.children[0].span.source
+    file = PurePath(source.name).name
+    owner = f"`{node.name}`" if source is first.span.source else f"the state of `{file}`"
+    inputs = [key.name for key in node.inputs if key.span.source is not NOWHERE.source]
+    names = ", ".join([*inputs, *keys])
+    readers = [
+        (child, key)
+        for child in node.children
+        for key in child.inputs
+        if remapping(child)[key.name] == first.key
+    ]
+    return Finding(
+        span=first.span,
+        message=f"`{node.name}` lacks the input key{'s' if len(keys) > 1 else ''} {both(keys)},"
+        " which its states read",
+        arguments=(first.key, first.to),
+        help=f"write `input_keys: [{names}]` in {owner}",
+        effect="a container gets only the keys that it declares: its states find the others unset",
+        related=(
+            *other_place(readers[0][0].span, f"`{readers[0][0].name}` reads `{first.key}`"),
+            *calls(node, first.span),
+        ),
+        node=path,
+    )
 
 
 def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[Finding]:
@@ -386,11 +416,6 @@ def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
                 help = f"write `{remap.key}: {meant.key}`"
                 help += f", which `{meant.setter}` sets" if meant.setter else ""
                 related = other_place(meant.place, f"nothing reads `{meant.key}`")
-            other = swapped_remap(missing, child, remap)
-            if other is not None:
-                related = ()
-                help = f"the keys of `{remap.key}` and `{other.key}` have changed places: write"
-                help += f" `{remap.key}: {other.to}, {other.key}: {remap.to}`"
             own = {each.to for each in child.remaps}
             fitting = [each for each in keys_of_type(types, scope, wanted) if each not in own] \
                 if help is None else []  # fmt: skip

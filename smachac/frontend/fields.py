@@ -495,6 +495,10 @@ def _preset(entry: Entry, report: Report) -> Preset:
         named = parts.get("type")
         if isinstance(named, Scalar) and isinstance(named.value, str):
             type_ = parse_type(named.value) or ANY
+        elif named is not None and not isinstance(named, Map):
+            whole = f"{entry.key.span.text}: {{value: {value.span.text}}}"
+            help = "write it as `float`, `list[Pose]` or `{x: float, y: float}`"
+            wrong(named, "type", report, f"{help}; data with these fields is `{whole}`")
         value = parts["value"]
         secret = "secret" in parts and as_flag(parts["secret"], report)
     key = entry.key

@@ -78,7 +78,6 @@ def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
         other_types=script.other_types,
         functions=script.functions,
         unused=script.unused,
-        misdeclared=script.misdeclared,
         properties=script.properties,
         params=script.params,
         fixed_params=script.fixed_params,

@@ -23,9 +23,9 @@ from smachac.frontend.errors.references import (
 )
 from smachac.frontend.errors.script import too_big, wrong_shape
 from smachac.frontend.fields import as_name, expanded, kind_of, name_of, pairs_of, wrong
+from smachac.frontend.file_kinds import OTHER_FILES, kind_of_tree
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
-from smachac.frontend.meant_declarations import with_meant_declarations
 from smachac.frontend.message_definitions import (
     definitions_of,
     missing_definitions_of,
@@ -160,6 +160,13 @@ def resolve(
             help = "check or build the script that calls it"
         report.append(wrong_shape(span, message, help, arguments=("script", kind_of(tree))))
         return None
+    kind = kind_of_tree(tree)
+    if kind in OTHER_FILES:
+        what, help = OTHER_FILES[kind]
+        help = help.replace("FILE", PurePath(source.name).name)
+        message = f"a script is expected; this is {what}"
+        report.append(wrong_shape(tree.entries[0].key.span, message, help, arguments=(kind,)))
+        return None
     resolver = _Resolver(library, report, kept)
     script = resolver.script(source, tree)
     if kept is not None:
@@ -220,7 +227,7 @@ class _Resolver:
         classes = [each.class_facts for each in known if each.class_facts is not None]
         library = replace(self.library, definition_names=cache(self.library.definition_names))
         definitions = definitions_of(base, classes, library)
-        script = Script(
+        return Script(
             base=base,
             sources=tuple(self.sources),
             robot=robot,
@@ -235,7 +242,6 @@ class _Resolver:
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
             aliases=self.aliases,
         )
-        return with_meant_declarations(script, self.library, self.report)
 
     def has_too_many_keys(self) -> bool:
         """Whether the script has too much userdata, which is reported where most of it is."""
@@ -316,8 +322,6 @@ class _Resolver:
         self.uses.params(params, begin, self.report, via)
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
-        if "outcomes" in entries:
-            fields["outcomes_place"] = entries["outcomes"].value.span
         return State(owner=owner, type=type_, via=via, states=children, **fields)
 
     def fill(self, key: str, entry: Entry, scope: Scope, *, flat: bool) -> Entry:

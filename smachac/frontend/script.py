@@ -15,7 +15,6 @@ from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.message_types import Definitions, MissingDefinitions, OtherTypes
 from smachac.ir.nodes import (
     FixedParam,
-    Misdeclared,
     Outcome,
     Param,
     Preset,
@@ -101,10 +100,9 @@ class State(NamedTuple):
     `owner` selects the fields of the schema: "base", a container type or "state". `via`: the calls
     of sub-scripts that lead to it, outermost first. `variables` are those of the state type,
     `written` all fields as a template of SMACHA's kind needs them, `misplaced_keys` the input keys
-    that are written as variables, `outcomes_place` the place of the list of outcomes. The other
-    fields have the names of the schema; None and empty values mean that the script has no such
-    field, or a wrong one, which was reported. A tuple, because a frozen dataclass of so many fields
-    is slow to make.
+    that are written as variables. The other fields have the names of the schema; None and empty
+    values mean that the script has no such field, or a wrong one, which was reported. A tuple,
+    because a frozen dataclass of so many fields is slow to make.
     """
 
     name: Word
@@ -141,7 +139,6 @@ class State(NamedTuple):
     scene: Word | None = None
     frames: tuple[Word, ...] = ()
     misplaced_keys: tuple[str, ...] = ()
-    outcomes_place: Span | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,7 +156,6 @@ class Script:
     missing_definitions: MissingDefinitions = field(default_factory=dict)
     other_types: OtherTypes = field(default_factory=dict)
     unused: tuple[Unused, ...] = ()
-    misdeclared: tuple[Misdeclared, ...] = ()
     properties: tuple[Property, ...] = ()
     params: tuple[Param, ...] = ()
     fixed_params: tuple[FixedParam, ...] = ()

@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser_of
 from smachac.frontend import smacha_meta
 from smachac.frontend.class_reader import PARAMETERS
-from smachac.frontend.errors.script import wrong_shape
+from smachac.frontend.errors.script import Owner, missing_variable, wrong_shape
 from smachac.frontend.fields import as_flag, as_map, as_name, as_names, as_outcome, as_text
 from smachac.frontend.interface_code import (
     Section,
@@ -128,6 +128,12 @@ def _read_interface(
     given = frozenset(part for part in parts if _is_starred(sections[part]))
     optional = _optional_outcomes(sections["outcomes"])
     claims = as_names(fields["claims"], report) if "claims" in fields else ()
+    is_state = not built_in and _kind(fields.get("kind"), []) == "state"
+    if is_state and not unclear and "outcomes" not in fields:
+        unclear = True  # no state can end without an outcome
+        sections["outcomes"] = tuple(Entry(e.key, Map((), e.key.span)) for e in sections["writes"])
+        if all(item.span.source is not source for item in report):
+            report.append(_without_outcomes(name, tree, sections["outcomes"]))
     facts = None
     if not built_in and not unclear:
         all_given = given | ({"optional"} if optional else set())
@@ -173,6 +179,13 @@ def _outcomes(section: Section, report: Report) -> tuple[Outcome, ...]:
     """The outcomes that an interface declares."""
     words = _outcome_words(section, report)
     return tuple(as_outcome(word, value, report, "optional", "needs") for word, value in words)
+
+
+def _without_outcomes(name: str, tree: Map, used: Section) -> Diagnostic:
+    """SM005 for an interface without outcomes. `used` are those in its `writes`."""
+    owner = Owner(name, f"the interface `{name}`")
+    example = f"[{', '.join(str(each.key.value) for each in used)}]" if used else ""
+    return missing_variable(tree.entries[0].key.span, "outcomes", owner, example=example)
 
 
 def _outcomes_place(tree: Map, fields: Mapping[str, Tree]) -> Span | None:

@@ -143,7 +143,17 @@ def stopped_at(text: str, error: Any) -> list[int]:
     stop = _stop(text, error)
     above = [start for start, _ in _lines_above(stop, 1)]
     first = [] if stop.first is None else [stop.first]
-    return list(dict.fromkeys([stop.at, *above, *first]))
+    opened = _opened_above(stop)
+    return list(dict.fromkeys([stop.at, *above, *first, *([] if opened is None else [opened])]))
+
+
+def _opened_above(stop: _Stop) -> int | None:
+    """The quote in a line above that a quote before this place closes; None without one."""
+    quote = stop.before.rstrip()[-1:]
+    if quote not in ("'", '"'):
+        return None
+    opened = stop.text.rfind(quote, 0, stop.at - len(stop.before))
+    return opened if opened >= 0 else None
 
 
 def _stop(text: str, error: Any) -> _Stop:

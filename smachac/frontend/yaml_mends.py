@@ -360,7 +360,8 @@ def _cost_of_scalar(tree: Scalar) -> float:
     if not isinstance(text, str):
         return 0.0
     if not tree.plain:
-        return 0.5 * (_ENTRY_INSIDE.search(text) is not None) + 0.3 * (not _is_even(text))
+        flag = 0.2 * (text in ("true", "false"))
+        return flag + 0.5 * (_ENTRY_INSIDE.search(text) is not None) + 0.3 * (not _is_even(text))
     return float(not _is_even(text)) + 0.3 * (_INNER_BRACKET.search(text) is not None)
 
 

@@ -388,33 +388,6 @@ class Unused(NamedTuple):
     kept: Mapping[str, Span] = {}
 
 
-DeclarationKind = Literal["interface", "state", "container", "child"]
-"""What declares a name: the interface of a state type, a state or a container its outcomes; a
-container the names of its children."""
-
-
-class Misdeclared(NamedTuple):
-    """A declaration that misspells a name which several places use, or lacks such names.
-
-    `owner` is the name of the state type, state or container. `word` is the misspelt name, or the
-    place of the list that lacks names, with an empty text. `meant` are the names that are used, by
-    `users`, in the places `uses`. `text` is the complete list; empty for a misspelt name. `path` is
-    that of the state, or of the first one of the type; `renamed` are the misspelt names of one
-    list with those that are meant.
-    """
-
-    kind: DeclarationKind
-    owner: str
-    word: Word
-    meant: tuple[str, ...]
-    users: tuple[str, ...]
-    uses: tuple[Word, ...]
-    text: str
-    path: str
-    via: tuple[Span, ...] = ()
-    renamed: tuple[tuple[str, str], ...] = ()
-
-
 class FixedParam(NamedTuple):
     """A look-up in a field that a program has no parameter for: the field, the name of the param,
     and the place of the param's value."""
@@ -547,7 +520,7 @@ class Machine:
     `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
-    `misdeclared`, `properties`, `definitions`, those of messages of ROS, `missing_definitions` and
+    `properties`, `definitions`, those of messages of ROS, `missing_definitions` and
     `other_types` are for rules; of the targets only `dot` uses properties. `params` are those of
     the main script,
     `fixed_params` the look-ups of params in time limits and retries. `functions` are those of the
@@ -562,7 +535,6 @@ class Machine:
     digest: str = field(default="", compare=False)
     robot: Robot | None = field(default=None, compare=False, repr=False)
     unused: tuple[Unused, ...] = field(default=(), compare=False, repr=False)
-    misdeclared: tuple[Misdeclared, ...] = field(default=(), compare=False, repr=False)
     properties: tuple[Property, ...] = field(default=(), compare=False, repr=False)
     definitions: Definitions = field(default_factory=dict, compare=False, repr=False)
     missing_definitions: MissingDefinitions = field(default_factory=dict, compare=False, repr=False)

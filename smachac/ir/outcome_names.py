@@ -36,6 +36,9 @@ GOOD = frozenset(
 PREEMPTED = "preempted"
 """The outcome of a preempted state; without a request to stop it does not occur."""
 
+OF_SMACH = ("succeeded", "aborted", PREEMPTED)
+"""The outcomes of SMACH's own states."""
+
 STOPS = frozenset(
     [PREEMPTED, "cancel", "canceled", "cancelled", "halted", "interrupted", "stopped"]
 )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -17,11 +17,12 @@ from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.negation import are_unlike
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Source, Span
-from smachac.diagnostics.spelling import slips
+from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
 from smachac.frontend.fields import PRESET_FIELDS
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
+from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import walk
 from smachac.ir.types import WORDS as TYPE_WORDS
 
@@ -65,36 +66,49 @@ def candidate(cost: float, operator: str, *edits: Edit) -> Candidate:
 
 class Text(NamedTuple):
     """A source with what operators read of it: its tree, its names with how often each is, and the
-    names that can be meant: those of the source, of the machine and of its state types. `by_slip`
-    are the names by what they have in common with a name that is one slip away (`slips`)."""
+    names that can be meant: those of the source, of the machine and of its state types. `uses` is
+    how often each name is in the source, in the language and in the state types, `by_slip` are the
+    names by what they have in common with a name that is one slip away (`slips`)."""
 
     source: Source
     tree: Tree | None
     counts: Counter[str]
+    uses: Counter[str]
     names: tuple[str, ...]
     by_slip: Mapping[str, list[str]]
+
+    @property
+    def whole(self) -> Span:
+        """The range of the source."""
+        return Span(self.source, 0, len(self.source.text))
 
 
 def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Text:
     """A source, read for operators. `types` are the names of all state types."""
     counts = Counter(_NAME.findall(source.text))
-    known = [*counts, *TYPE_WORDS, *types, *(_names_in(machine) if machine is not None else ())]
-    names = [name for name in dict.fromkeys(known) if len(name) <= LONGEST_NAME and " " not in name]
+    given = [*_given_names(machine)] if machine is not None else []
+    own = _names_in(machine) if machine is not None else ()
+    known = dict.fromkeys([*counts, *TYPE_WORDS, *types, *given, *own])
+    names = [name for name in known if len(name) <= LONGEST_NAME and " " not in name]
     by_slip: dict[str, list[str]] = {}
     for name in names:
         for slip in dict.fromkeys(slips(name)):
             by_slip.setdefault(slip, []).append(name)
-    return Text(source, parse(source, []), counts, (*names,), by_slip)
+    return Text(source, parse(source, []), counts, counts + Counter(given), (*names,), by_slip)
 
 
-def _names_in(machine: Machine) -> Iterator[str]:
-    """The names that scripts with the states of a machine can have."""
-    yield from schema.VARIABLES
+def _given_names(machine: Machine) -> Iterator[str]:
+    """The names of the language, and those in the interfaces of the state types of a machine."""
+    yield from (*schema.VARIABLES, *OF_SMACH)
     for name, type_ in machine.state_types.items():
         yield name
         yield from type_.variables
         yield from (key.name for key in (*type_.input_keys, *type_.output_keys))
         yield from (outcome.name for outcome in type_.outcomes)
+
+
+def _names_in(machine: Machine) -> Iterator[str]:
+    """The names in the states of a machine."""
     for _, node in walk(machine.root):
         yield node.name
         yield from (key.name for key in (*node.inputs, *node.outputs))
@@ -107,11 +121,13 @@ MOST_PLACES = 4
 
 class Around(NamedTuple):
     """What operators know beside a finding: `read` returns what they read of a source, `others` are
-    the names that the other findings are about, `types` the texts of interfaces by state type."""
+    the names that the other findings are about, `types` the texts of interfaces by state type,
+    `interface` returns the user's interface of a state type."""
 
     read: Callable[[Source], Text]
     others: Sequence[str]
     types: Mapping[str, str]
+    interface: Callable[[str], Source | None]
 
 
 def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
@@ -120,13 +136,19 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     places = [span for span in places if span.source is not NOWHERE.source]
     if not places or places[0] is not item.span:
         return []
-    own = around.read(item.span.source)
-    found = [*_near_names(item, own)]
-    if not _is_field(item.span, own.tree):
+    text = around.read(item.span.source)
+    found = [*_near_names(item, text)]
+    if not _is_field(item.span, text.tree):
         found += _mentioned_names(item, around.others)
+    found += _unused_names(item, text)
+    found += _without_brackets(item, text)
     for span in dict.fromkeys(places[:MOST_PLACES]):
         tree = around.read(span.source).tree
         path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
+        interface = around.interface(_type_of(path))
+        if interface is not None:
+            found += _names_of_interface(item, text, around.read(interface))
+            found += _other_classes(_type_of(path), around.read(interface), around.types)
         found += _turned_pairs(path)
         found += _exchanged_values(path)
         found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
@@ -171,16 +193,77 @@ def _near_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
     words = dict.fromkeys(_NAME.findall(item.span.text)[:MOST_NEAR])
     for word in words:
         for cost, name in _near(word, text):
-            cost += text.counts[name] < text.counts[word]
+            cost += text.uses[name] < text.uses[word]
             for span in _places(word, item.span):
                 yield candidate(cost, RENAME, Edit(span=span, text=name))
-    for word in dict.fromkeys((*words, *item.finding.arguments[:MOST_WORDS])):
-        if not _NAME.fullmatch(word):
-            continue
+    yield from _declared_names(item, text, 0.5)
+
+
+def _declared_names(item: Diagnostic, text: Text, more: float) -> Iterator[Candidate]:
+    """A name that the finding is about in place of one that is like it, and that is in a text only
+    once: there it is declared, or misspelt."""
+    for word in _words_of(item):
         for cost, name in _near(word, text):
             if text.counts[name] == 1:
-                for span in _places(name, Span(text.source, 0, len(text.source.text))):
-                    yield candidate(cost + 0.5, RENAME, Edit(span=span, text=word))
+                for span in _places(name, text.whole):
+                    yield candidate(cost + more, RENAME, Edit(span=span, text=word))
+
+
+def _words_of(item: Diagnostic) -> Iterable[str]:
+    """The names at the place of a finding, and those that it is about."""
+    words = (*_NAME.findall(item.span.text)[:MOST_NEAR], *item.finding.arguments[:MOST_WORDS])
+    return dict.fromkeys(word for word in words if _NAME.fullmatch(word))
+
+
+def _names_of_interface(item: Diagnostic, text: Text, interface: Text) -> Iterator[Candidate]:
+    """As `_declared_names`, in the interface of the state; and a name of the finding there, in
+    place of which a name that it is like is meant. Not in `code`: without a class less is known;
+    no name of a state, which is in upper case."""
+    found = [*_declared_names(item, interface, 0.6)]
+    for word in _words_of(item):
+        if interface.counts[word] == 1:
+            for cost, name in _near(word, text):
+                for span in _places(word, interface.whole):
+                    found.append(candidate(cost + 0.7, RENAME, Edit(span=span, text=name)))
+    code = interface.tree.get("code") if isinstance(interface.tree, Map) else None
+    for made in found:
+        (edit,) = made.repair.edits
+        is_in_code = code is not None and _start(code) <= edit.span.start < _end(code)
+        if not is_in_code and edit.text.isupper() == edit.span.text.isupper():
+            yield made
+
+
+def _other_classes(type_: str, interface: Text, types: Collection[str]) -> Iterator[Candidate]:
+    """The name of the state type, in its interface, in place of that of another one."""
+    for name in interface.counts:
+        if name in types and name != type_:
+            for span in _places(name, interface.whole):
+                yield candidate(1.5, RENAME, Edit(span=span, text=type_))
+
+
+def _unused_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
+    """A name of the finding that is in a text only once, so that nothing uses it: in place of a
+    name with a word in common, in a state whose name has its other word."""
+    if text.tree is None:
+        return
+    for word in _words_of(item):
+        words = words_of(word) if text.counts[word] == 1 else set()
+        for name in text.counts if words and len(text.counts) <= MOST_COMPARED else ():
+            if name == word or words.isdisjoint(words_of(name)):
+                continue
+            for span in _places(name, text.whole):
+                path = _path_to(text.tree, span.start, span.end)
+                keys = [str(part.key.value) for part in path if isinstance(part, Entry)]
+                if words_of(*keys) & (words - words_of(name)):
+                    yield candidate(1.6, RENAME, Edit(span=span, text=word))
+
+
+def _without_brackets(item: Diagnostic, text: Text) -> Iterator[Candidate]:
+    """A name of the finding without the brackets of a list of this one name."""
+    for word in _words_of(item):
+        for found in re.finditer(rf"\[\s*{word}\s*\]", text.source.text):
+            span = Span(text.source, *found.span())
+            yield candidate(1.4, "remove the brackets", Edit(span=span, text=word))
 
 
 def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candidate]:
@@ -257,17 +340,36 @@ def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
 
 
 def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
-    """The single value of the innermost entry, exchanged with the others of its mapping."""
+    """The value of the innermost entry, exchanged with the others of its mapping. Lists and
+    mappings too: a slip puts them where a word must be. What is not on one line stays."""
     for around, entry in reversed([*pairwise(path)]):
         if not isinstance(around, Map) or not isinstance(entry, Entry):
             continue
         own = entry.value.span
-        for other in around.entries if isinstance(entry.value, Scalar) and own.text else ():
+        for other in around.entries if _fits_anywhere(entry.value) else ():
             value = other.value.span
-            if isinstance(other.value, Scalar) and value.text and value.text != own.text:
+            if _fits_anywhere(other.value) and value.text != own.text:
                 edits = (Edit(span=own, text=value.text), Edit(span=value, text=own.text))
-                yield candidate(1.8, "exchange two values", *edits)
+                names = f"`{entry.key.value}` and `{other.key.value}`"
+                yield candidate(1.8, f"exchange the values of {names}", *edits)
         return
+
+
+def _fits_anywhere(value: Tree) -> bool:
+    """Whether a value can stand in the place of every other one: it has text, on one line, and a
+    list or a mapping has brackets."""
+    text = value.span.text
+    return bool(text) and "\n" not in text and (isinstance(value, Scalar) or text[0] in "[{")
+
+
+def _type_of(path: list[Tree | Entry]) -> str:
+    """The state type of the innermost state; empty if there is none."""
+    for part in reversed(path):
+        fields = part.value if isinstance(part, Entry) else part
+        entry = fields.get("template") if isinstance(fields, Map) else None
+        if entry is not None:
+            return entry.value.span.text
+    return ""
 
 
 def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator[Candidate]:

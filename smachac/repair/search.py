@@ -117,8 +117,9 @@ def clusters(
     repairs that correct the same finding, the first one by `_rank` is taken."""
     if analysis.source is None or analysis.library is None:
         return []
-    types = _interfaces(analysis.library)
+    types, own_template = _interfaces(analysis.library), analysis.library.own_template
     read = cache(lambda source: text_of(source, analysis.machine, types))
+    interface = cache(lambda name: own_template(f"{name}.yml") if name else None)
     serious = [item for item in shown if item.severity is not Severity.INFO]
     if len(serious) > MOST_FINDINGS:
         return []
@@ -128,11 +129,12 @@ def clusters(
     # To read the texts for the operators takes about as long as one trial.
     trials = MOST_CHECKED // _size(texts, analysis.machine) - 1
     proven: list[Proof] = []
-    for item in serious[:MOST_CLUSTERS]:
+    for item in sorted(serious, key=_is_no_error)[:MOST_CLUSTERS]:
         if trials <= 0:
             break
         named = (other.finding.arguments for other in serious if other is not item)
-        proposed = _proposals(item, Around(read, [*chain.from_iterable(named)], types))
+        around = Around(read, [*chain.from_iterable(named)], types, interface)
+        proposed = _proposals(item, around)
         proof = _proof(item, analysis, analysed, proposed[:trials])
         trials -= len(proposed)
         if proof is not None:
@@ -186,7 +188,11 @@ def _rank(proof: Proof) -> tuple[int, bool, bool]:
     item = proof.item
     place = proof.candidate.repair.edits[0].span
     is_there = place.source is item.span.source and place.line == item.span.line
-    return (proof.left.total(), item.severity is not Severity.ERROR, not is_there)
+    return (proof.left.total(), _is_no_error(item), not is_there)
+
+
+def _is_no_error(item: Diagnostic) -> bool:
+    return item.severity is not Severity.ERROR
 
 
 def _proof(

@@ -21,7 +21,7 @@ def in_words(repair: Repair, finding: Span) -> str:
     start = _start_of_entry(source.text, min(edit.span.start for edit in repair.edits))
     end = max(edit.span.end for edit in repair.edits)
     changed = Span(source, start, end)
-    lines = _lines(changed)
+    lines = _lines(changed, finding)
     if all(not edit.text for edit in repair.edits) and "\n" in changed.text:
         return f"delete {lines}"
     piece = text[start : end + len(text) - len(source.text)]
@@ -44,10 +44,11 @@ def _here(one: Span, other: Span) -> bool:
 
 def _instead(span: Span, finding: Span) -> str:
     """The place of a word that is not on the line of the finding."""
-    return "" if _here(span, finding) else f" in place of `{span.text}` in {_lines(span)}"
+    return "" if _here(span, finding) else f" in place of `{span.text}` in {_lines(span, finding)}"
 
 
-def _lines(span: Span) -> str:
-    """`line 3`, or `lines 3 to 5`."""
+def _lines(span: Span, finding: Span) -> str:
+    """`line 3`, or `lines 3 to 5`; with the file, if it is not that of the finding."""
     last = span.source.position(max(span.start, span.end - 1))[0]
-    return f"line {span.line}" if last == span.line else f"lines {span.line} to {last}"
+    lines = f"line {span.line}" if last == span.line else f"lines {span.line} to {last}"
+    return lines if span.source is finding.source else f"{lines} of {span.source.name}"

@@ -88,6 +88,7 @@ def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
         help = own
     else:
         help = f"{words}\nor {own}" if own and not repairs else words
+    edited = cluster.repair.edits[0].span
     notes = [
         Related(span=NOWHERE, message=f"this also corrects {other.span}: {other.message}")
         for other in cluster.explained[:MOST_EXPLAINED]
@@ -95,6 +96,8 @@ def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
     more = len(cluster.explained) - len(notes)
     if more:
         notes.append(Related(span=NOWHERE, message=f"and {more} findings more"))
+    if (edited.source, edited.line) != (item.span.source, item.span.line):
+        notes.insert(0, Related(span=edited, message="the place of the change"))
     finding = replace(item.finding, help=help, related=(*item.related, *notes))
     return replace(item, finding=finding)
 

@@ -106,7 +106,11 @@ class Difference(NamedTuple):
     effect="the robot runs the class, not the interface: SMACH can stop the machine with an error",
 )
 def interfaces_differ(
-    used: Related, target: str, state_type: str, name: str, differences: Sequence[Difference]
+    used: Sequence[Related],
+    target: str,
+    state_type: str,
+    name: str,
+    differences: Sequence[Difference],
 ) -> Finding:
     """The class of a state type and its interface have different outcomes or keys.
 
@@ -116,8 +120,7 @@ def interfaces_differ(
     Exactly: a class is read and never run: in Python the lists that `__init__` passes to
     `smach.State`, itself or through the constructor of a base class of the project, in C++ the
     names in `Outcome`, `In` and `Out`. A part that cannot be read does not count. `check` reports a
-    warning; a build for the language of the class fails. An interface that names the class of
-    another one, where there is a class with its own name, is one finding at the name in `code`.
+    warning; a build for the language of the class fails.
 
     Wrong:
         name: sm
@@ -165,7 +168,7 @@ def interfaces_differ(
         span=first.span,
         message=f"the class `{name}` does not match `{state_type}.yml`: {first.text}{others}",
         arguments=(target, state_type, name),
-        related=(*_places(differences[1:]), used),
+        related=(*_places(differences[1:]), *used),
         help=differences[0].help,
         effect="the program does not compile"
         if target in ("cpp", "C++")

@@ -282,20 +282,14 @@ def type_faults(
             ),
         )
     differences = [*_differences(type_, found)]
-    if (
-        machine is not None
-        and found.stale is not None
-        and not differences
-        and any(
-            each.kind == "interface" and each.owner == type_.name for each in machine.misdeclared
-        )
-    ):
-        return  # SM102: the interface is another one once its outcomes are corrected
     if found.stale is not None:
         yield stale_code(leaf.span, type_.name, found.name, found.stale, differences)
     elif differences:
+        field = "" if target.name == "python" else "class"
+        place = type_.class_spans.get((target.name, field))
+        named = [] if place is None else [Related(span=place, message="the class is named here")]
         here = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`")
-        yield interfaces_differ(here, target.name, type_.name, found.name, differences)
+        yield interfaces_differ((*named, here), target.name, type_.name, found.name, differences)
 
 
 def _reader(machine: Machine, type_: StateType, fault: ClassFault) -> Related | None:

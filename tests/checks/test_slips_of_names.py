@@ -293,33 +293,6 @@ states:
     assert ("SM015", "times", "did you mean `time`?") in reported(read)
 
 
-SIDES = """\
-name: sm
-outcomes: [done]
-userdata: {left_home: 1.5, right_home: 2.5}
-states:
-  - LEFT:
-      template: ScriptedState
-      input_keys: [home]
-      outcomes: [ok]
-      remapping: {home: left_home}
-      transitions: {ok: RIGHT}
-  - RIGHT:
-      template: ScriptedState
-      input_keys: [home]
-      outcomes: [ok]
-      remapping: {home: left_home}
-      transitions: {ok: done}
-"""
-
-
-def test_a_copied_remapping() -> None:
-    help = "write `home: right_home`, or remove `right_home` if this is intended"
-    assert reported({"main.yml": SIDES}) == [("SM305", "left_home", help)]
-    other = SIDES.replace("right_home: 2.5", "grip_force: 2.5")
-    assert [each[1] for each in reported({"main.yml": other})] == ["grip_force"]
-
-
 ORDER = """\
 name: sm
 outcomes: [done]

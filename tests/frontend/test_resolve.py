@@ -96,6 +96,17 @@ def test_what_cannot_be_read_is_reported_once() -> None:
     assert faults == [(5, "SM004"), (6, "SM004"), (14, "SM002"), (17, "SM003")]
 
 
+@pytest.mark.parametrize("type_", ["0.0", "3", "true", "[float]", "null"])
+def test_the_type_of_an_initial_value_is_a_text(type_: str) -> None:
+    """Without the finding, data with these fields would lose them in silence."""
+    data = f"{{type: {type_}, value: 1}}"
+    _, report = resolved(SCRIPT.replace("{type: Pose, value: home}", data))
+    (item,) = [item for item in report if item.code == "SM004"]
+    assert item.span.text == type_
+    assert item.finding.help is not None
+    assert f"`pose: {{value: {data}}}`" in item.finding.help
+
+
 def test_readers_return_what_states_hold() -> None:
     held = typing.get_type_hints(State)
     assert held.pop("name") == Word  # a script without a name has a default one

@@ -41,6 +41,9 @@ def mended(text: str) -> tuple[object, Report]:
         ("i: {a: {b: c}\nd: e", 12, "a `}` is missing at the end", "`i: {a: {b: c}}`"),
         ("o: [a, b\nd: e", 7, "a `]` is missing at the end", "`o: [a, b]`"),
         ('c: {python: "a:B}\nd: e', 13, 'a `"` is missing after `a:B`', '`python: "a:B"`'),
+        ('t: "Base\nu: {a: "x"}', 7, 'a `"` is missing at the end', '`t: "Base"`'),
+        ("t: 'Base\nd: e\nu: {a: 'x y'}", 7, "a `'` is missing at the end", "`t: 'Base'`"),
+        ('t: a\nb: "true', 8, 'this `"` is one too many', "`b: true`"),
     ],
 )
 def test_the_sign_is_named_with_the_repaired_text(
