@@ -20,7 +20,7 @@ from smachac.frontend.loader import Library
 from smachac.frontend.suppressions import Suppression
 from smachac.frontend.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs, outer_outputs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,12 +158,8 @@ def analyse_alone(
         caller = _caller(name, (), (), ())
     else:
         state = machine.root.children[0]
-        outer = remapping(state)
-        keys = (
-            [outer.get(key.name, key.name) for key in part]
-            for part in (state.inputs, state.outputs)
-        )
-        caller = _caller(name, [outcome.name for outcome in state.outcomes], *keys)
+        outcomes = [outcome.name for outcome in state.outcomes]
+        caller = _caller(name, outcomes, outer_inputs(state), outer_outputs(state))
     found = analyse(caller, own, report, previous=previous)
     left = list(_without(caller, found.report))
     return replace(found, source=source, library=library, report=left, checked=None, alone=True)

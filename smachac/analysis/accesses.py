@@ -364,5 +364,5 @@ def _renamed(node: Node, keys: Keys) -> Keys:
     names = remapping(node)
     found: Keys = {}
     for key, origin in keys.items():
-        found.setdefault(names.get(key, key), origin)
+        found.setdefault(names[key], origin)
     return found

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import ast
 import operator
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from typing import Literal, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.accesses import function_body
 from smachac.analysis.def_use import around
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.ir.leaf import functions, variable
-from smachac.ir.nodes import Leaf, Node, is_number
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.nodes import Key, Leaf, Node, is_number
+from smachac.ir.traversal import inputs_from, outcome_names, outputs_to, remapping
 
 DEFAULT = "default"
 """The outcome of a state with conditions if none is true, unless it has another default."""
@@ -30,43 +30,23 @@ class Test(NamedTuple):
     limits: tuple[Number, ...]
 
 
-class Users(NamedTuple):
-    """The children of a container that read a key, and those that may set it, by name."""
-
-    readers: dict[str, Node]
-    writers: dict[str, Node]
-
-
-def users_of(scope: UserdataScope, keys: Container[str]) -> dict[str, Users]:
-    """The users of some keys of a container."""
-    found: dict[str, Users] = {}
-    for child in reversed([*scope.children.values()]):
-        if child.inputs or child.outputs:
-            names = remapping(child)
-            for own, at in ((child.inputs, 0), (child.outputs, 1)):
-                for key in dict.fromkeys(names.get(each.name, each.name) for each in own):
-                    if key in keys:
-                        found.setdefault(key, Users({}, {}))[at][child.name] = child
-    return found
-
-
 class Counters:
     """The counters of a machine."""
 
     def __init__(self, flow: DataFlow) -> None:
         self._known = _Constants(flow)
 
-    def tests(
-        self, scope: UserdataScope, key: str, users: Users
-    ) -> Iterator[tuple[Leaf, Number, Test]]:
+    def tests(self, scope: UserdataScope, key: str) -> Iterator[tuple[Leaf, Number, Test]]:
         """The tests of the counter in a key of a container, each with the state that counts and
         what it adds."""
-        counters = [child for name, child in users.readers.items() if name in users.writers]
+        readers = {use.node.name: use.node for use in scope.uses.readers(key)}
+        written = {use.node.name for use in scope.uses.writers(key)}
+        counters = [child for name, child in readers.items() if name in written]
         if len(counters) != 1 or not isinstance(counters[0], Leaf):
             return
         counter = counters[0]
         added = _added(self._known, scope, counter, key)
-        for leaf in users.readers.values() if added else ():
+        for leaf in readers.values() if added else ():
             test = _test(self._known, scope, leaf, key) if leaf is not counter else None
             if test is not None:
                 yield counter, added, test
@@ -89,7 +69,7 @@ class _Constants:
             case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=value)) if is_number(value):
                 return -value
         key = _field(tree, names)
-        return None if key is None else self._initial(scope, remapping(leaf).get(key, key))
+        return None if key is None else self._initial(scope, remapping(leaf)[key])
 
     def _initial(self, scope: UserdataScope, key: str) -> Number | None:
         """The initial value of a key that no state sets; None if it has another one, or none."""
@@ -116,16 +96,13 @@ class _Constants:
         return self._written[scope.path]
 
 
-def _own_name(child: Node, key: str, which: Literal["inputs", "outputs"]) -> str | None:
-    """The name that a child has for a key of its container; None if it does not use it."""
-    names = remapping(child)
-    keys = child.inputs if which == "inputs" else child.outputs
-    return next((each.name for each in keys if names.get(each.name, each.name) == key), None)
+def _own_name(keys: Sequence[Key]) -> str | None:
+    return keys[0].name if keys else None
 
 
 def _added(known: _Constants, scope: UserdataScope, leaf: Leaf, key: str) -> Number:
     """What a state adds to a key each time; 0 if that is not known."""
-    target, source = _own_name(leaf, key, "outputs"), _own_name(leaf, key, "inputs")
+    source, target = _own_name(inputs_from(leaf, key)), _own_name(outputs_to(leaf, key))
     code = (functions(leaf, "callbacks") or {}).get(target or "")
     body = function_body(code.text) if code is not None else None
     if body is None:
@@ -156,7 +133,7 @@ def _test(known: _Constants, scope: UserdataScope, leaf: Node, key: str) -> Test
     if not isinstance(leaf, Leaf) or leaf.open:
         return None
     conditions = functions(leaf, "conditions")
-    own, default = _own_name(leaf, key, "inputs"), variable(leaf, "default_outcome") or DEFAULT
+    own, default = _own_name(inputs_from(leaf, key)), variable(leaf, "default_outcome") or DEFAULT
     named = {each.name for each in leaf.inputs}.intersection(outcome_names(leaf))
     if not conditions or not isinstance(default, str) or not named <= conditions.keys():
         return None

@@ -1,20 +1,19 @@
-"""Definitions and uses of one userdata key, and a witness path on which it is unset."""
+"""Reaching definitions of one userdata key, and a witness path on which it is unset."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope, child_writes
 from smachac.analysis.fixpoint import KeyStep
+from smachac.analysis.uses import Use
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
-from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex
-from smachac.ir.nodes import Concurrence, Key, Leaf, Node
+from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.script_paths import steps_in_script
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.traversal import outcome_names
 
 KeyState = Literal["unset", "reported", "set"]
 """Whether the key is set on a path. `reported`: unset and already reported, because a container on
@@ -235,88 +234,16 @@ def way_to(path: str, found: Search, end: Reached) -> list[PathStep]:
     return steps[::-1]
 
 
-UseKind = Literal["presets", "items", "reads", "writes", "copies in", "copies out"]
-"""How a key is used: the container holds it before it starts; an iterator puts its items there; a
-leaf reads or writes it; a container copies it from or to the userdata around it."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Use:
-    """One use of a key of a container, with its span.
-
-    `path` is the state that uses the key, `key` the name of the key in that state. `outcomes` are
-    the outcomes of a writer with which the key is set; `always`: these are all its outcomes.
-    """
-
-    path: str
-    kind: UseKind
-    key: str
-    outcomes: tuple[str, ...] = ()
-    always: bool = True
-    span: Span = field(compare=False, repr=False)
-
-
-def uses(flow: DataFlow, path: str, key: str) -> list[Use]:
-    """The uses of one key of the container at a path, in the order of the script."""
-    return uses_by_key(flow, path).get(key, [])
-
-
-def uses_by_key(flow: DataFlow, path: str) -> dict[str, list[Use]]:
-    """The uses of the keys of the container at a path, by key, in the order of the script."""
-    scope = flow.scopes[path]
-    container = scope.container
-    found: dict[str, list[Use]] = {}
-    for preset in container.userdata:
-        use = Use(path=path, kind="presets", key=preset.key, span=preset.span)
-        found.setdefault(preset.key, []).append(use)
-    if isinstance(container, nodes.Iterator):
-        use = Use(path=path, kind="items", key=container.item_key, span=container.span)
-        found.setdefault(use.key, []).append(use)
-    for key in scope.reads.get(START, ()):
-        use = Use(path=path, kind="reads", key=key, span=container.span)
-        found.setdefault(key, []).append(use)
-    for child in container.children:
-        for key, use in _uses_of(flow, scope, child):
-            found.setdefault(key, []).append(use)
-    return found
-
-
-def _uses_of(flow: DataFlow, scope: UserdataScope, child: Node) -> Iterator[tuple[str, Use]]:
-    """The uses that a child makes of the keys of its container."""
-    raw = isinstance(scope.container, nodes.Iterator) and isinstance(child, Leaf)
-    names = remapping(child)
-    path = f"{scope.path}/{child.name}"
-    is_leaf = isinstance(child, Leaf)
-    kind: UseKind = "reads" if is_leaf else "copies in"
-    for each in child.inputs:
-        span = place_of(child, each)
-        yield (
-            names.get(each.name, each.name),
-            Use(path=path, kind=kind, key=each.name, span=span),
-        )
-    kind = "writes" if is_leaf else "copies out"
-    inner = flow.scopes.get(path)
-    known = outcome_names(child) if child.outputs else ()
-    endings = [(name, child_writes(child, inner, name, raw=raw)) for name in known]
-    for each in child.outputs:
-        key = names.get(each.name, each.name)
-        written = tuple(
-            name for name, writes in endings if writes is not None and key in writes.trusted
-        )
-        always = written == known
-        span = place_of(child, each)
-        yield (
-            key,
-            Use(path=path, kind=kind, key=each.name, outcomes=written, always=always, span=span),
-        )
-
-
-def place_of(node: Node, key: Key) -> Span:
-    """The span of a key of a state: in its list of keys, else its remap, else the state."""
-    if key.span.source is node.span.source:
-        return key.span
-    remap = next((remap for remap in node.remaps if remap.key == key.name), None)
-    return remap.span if remap is not None else node.span
+def written_on(flow: DataFlow, scope: UserdataScope, use: Use) -> tuple[str, ...]:
+    """The outcomes of the state of a use with which it has set the key."""
+    raw = isinstance(scope.container, nodes.Iterator) and isinstance(use.node, Leaf)
+    inner = flow.scopes.get(use.path)
+    endings = (
+        (name, child_writes(use.node, inner, name, raw=raw)) for name in outcome_names(use.node)
+    )
+    return tuple(
+        name for name, writes in endings if writes is not None and use.outer in writes.trusted
+    )
 
 
 def same_key(flow: DataFlow, path: str, key: str) -> tuple[tuple[str, str], ...]:

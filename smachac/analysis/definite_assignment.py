@@ -14,7 +14,6 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
-from functools import cache
 from typing import Protocol, TypeVar
 
 from smachac.analysis.accesses import (
@@ -24,7 +23,6 @@ from smachac.analysis.accesses import (
     Writes,
     leaf_reads,
     leaf_writes,
-    userdata_fields,
 )
 from smachac.analysis.fixpoint import (
     KeyStep,
@@ -35,13 +33,12 @@ from smachac.analysis.fixpoint import (
     may_be_set,
     may_be_unset,
 )
+from smachac.analysis.uses import KeyUses, items_read
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings, transitions
 from smachac.ir.nodes import (
     Concurrence,
     Container,
-    Expression,
-    Key,
     Leaf,
     Machine,
     Node,
@@ -62,8 +59,8 @@ class UserdataScope:
     needs. `unset`: those of them that can be unset if no input is set. `needed`: the inputs that
     are read inside before they are written. `endings`: for each outcome, the keys of the container
     around it that are set then. `inner`: the names of the containers inside. `again`: those of
-    them that a path can enter more than once. `inputs_at`: the inputs of the state at a vertex, by
-    the key that each reads. `filled`: it is an iterator that surely has items.
+    them that a path can enter more than once. `uses`: the uses of its keys. `filled`: it is an
+    iterator that surely has items.
     """
 
     path: str
@@ -81,7 +78,7 @@ class UserdataScope:
     endings: Mapping[str, Writes]
     inner: frozenset[str]
     again: frozenset[Vertex]
-    inputs_at: Callable[[str], Mapping[str, Key]]
+    uses: KeyUses
     filled: bool = False
 
 
@@ -166,13 +163,13 @@ def _scope(
     """The scope of a container; `inner` are those of the containers inside. `filled`: it is an
     iterator that surely has items."""
     names = remapping(container)
-    inputs = {key.name: names.get(key.name, key.name) for key in container.inputs}
+    inputs = {key.name: names[key.name] for key in container.inputs}
     held = {preset.key for preset in container.userdata}
     if container is root:
         held |= inputs.keys()
     optional = frozenset(k.name for k in container.inputs if k.type.name == "optional")
-    outputs = {key.name: names.get(key.name, key.name) for key in container.outputs}
-    reads: dict[Vertex, tuple[str, ...]] = {START: _items_read(container)}
+    outputs = {key.name: names[key.name] for key in container.outputs}
+    reads: dict[Vertex, tuple[str, ...]] = {START: items_read(container)}
     # The state of an iterator uses the userdata of the iterator itself, without a remapping.
     raw = isinstance(container, nodes.Iterator)
     # Of two states of one name (SM106) the first counts, everywhere.
@@ -216,14 +213,9 @@ def _scope(
         endings=_with_caught(container, _endings(outputs, at_end, found, steps, order)),
         inner=frozenset(scopes),
         again=looping(steps, order).intersection(scopes) if scopes else frozenset(),
-        inputs_at=cache(lambda vertex: _inputs_by_key(children[vertex])),
+        uses=KeyUses(path=path, container=container),
         filled=filled,
     )
-
-
-def _inputs_by_key(node: Node) -> dict[str, Key]:
-    names = remapping(node)
-    return {names.get(key.name, key.name): key for key in reversed(node.inputs)}
 
 
 def _endings(
@@ -273,18 +265,6 @@ def _with_caught(container: Container, found: Mapping[str, Writes]) -> Mapping[s
     return {**found, container.catches: Writes(perhaps=known.perhaps)}
 
 
-def _items_read(container: Container) -> tuple[str, ...]:
-    """The keys that an iterator reads to get its items."""
-    if not isinstance(container, nodes.Iterator):
-        return ()
-    if container.items_key:
-        return (container.items_key,)
-    if container.items is not None and isinstance(container.items.data, Expression):
-        fields = userdata_fields(container.items.data.text)
-        return tuple(key for key in fields.read if key not in fields.tested) if fields else ()
-    return ()
-
-
 def _reads(child: Node, scope: UserdataScope | None, raw: bool) -> tuple[str, ...]:
     """The keys of its container that a child needs at its entry."""
     names = remapping(child)
@@ -293,7 +273,7 @@ def _reads(child: Node, scope: UserdataScope | None, raw: bool) -> tuple[str, ..
         own = leaf_reads(child, raw=raw)
     else:
         own = tuple(key for key in scope.inputs if key in scope.needed) if scope else ()
-    return tuple(dict.fromkeys(names.get(key, key) for key in own))
+    return tuple(dict.fromkeys(names[key] for key in own))
 
 
 def child_writes(
@@ -307,7 +287,7 @@ def child_writes(
     if writes is NOTHING or not child.remaps:
         return writes
     names = remapping(child)
-    sure, trusted, perhaps = (frozenset(names.get(key, key) for key in keys) for keys in writes[:3])
+    sure, trusted, perhaps = (frozenset([names[key] for key in keys]) for keys in writes[:3])
     return Writes(sure, trusted, perhaps, writes.anything)
 
 

@@ -14,7 +14,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, StateMachine
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
 
 
@@ -67,9 +67,8 @@ def lacking_inputs(node: Node) -> tuple[str, ...]:
     for child in node.children if wrong else ():
         if is_open(child):
             return ()
-        names = remapping(child)
-        read |= {names.get(key.name, key.name) for key in child.inputs}
-        set_ |= {names.get(key.name, key.name) for key in child.outputs}
+        read.update(outer_inputs(child))
+        set_.update(outer_outputs(child))
     return tuple(key for key in wrong if key in read - set_)
 
 
@@ -85,10 +84,9 @@ def _lone_key(node: Node, remap: Remap, around: Container) -> str | None:
     for child in around.children:
         if is_open(child):
             return None
-        names = remapping(child)
-        set_ |= {names.get(key.name, key.name) for key in child.outputs}
+        set_.update(outer_outputs(child))
         if child is not node:
-            read |= {names.get(key.name, key.name) for key in child.inputs}
+            read.update(outer_inputs(child))
     if remap.to in {key.name for key in (*node.inputs, *node.outputs)}:
         return None  # the entry is turned round
     if remap.to in set_:

@@ -16,7 +16,7 @@ from smachac.ir import nodes
 from smachac.ir.expressions import Expr, Index
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Expression, Leaf, Node, StateType, Struct, VariableType
-from smachac.ir.traversal import expressions, expressions_in, outcome_names, remapping
+from smachac.ir.traversal import OuterNames, expressions, expressions_in, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -128,7 +128,7 @@ def _called(path: str, leaf: Leaf, types: Types) -> dict[str, Written]:
     written: Written = {}
     for key in sorted(callbacks):
         found[key] = dict(written)
-        written[names.get(key, key)] = types.outputs.get((path, key), ANY)
+        written[names[key]] = types.outputs.get((path, key), ANY)
     for name in outcome_names(leaf) if conditions else ():
         if name in conditions:
             found[name] = written
@@ -145,7 +145,7 @@ def _over(
 ) -> ExpressionSite:
     """The site of code that is called with userdata. `written`: the keys that were written before,
     since the state began."""
-    names = remapping(node) if isinstance(node, Leaf) else {}
+    names = remapping(node) if isinstance(node, Leaf) else OuterNames()
     cells = {
         key: types.cells[path, key]
         for key in sorted({*keys_read(expression), *item_keys(expression.text)})
@@ -154,7 +154,7 @@ def _over(
     held: dict[str, Type] = {}
     for key, cell in cells.items():
         held[key] = cell.declared if cell.declared != ANY else cell.holds or ANY
-        outer = names.get(key, key)
+        outer = names[key]
         if outer in written:
             held[key] = join(held[key], written[outer])
     return ExpressionSite(

@@ -68,7 +68,7 @@ def _lists(
         around = found.get(path.removesuffix(f"/{node.name}"), {})
         if around and inputs:
             names = remapping(node)
-            held = {key: around.get(names.get(key, key)) for key in inputs}
+            held = {key: around.get(names[key]) for key in inputs}
             own |= {key: origin for key, origin in held.items() if origin is not None}
         if own:
             written = inside(path, node, known).writes
@@ -90,7 +90,7 @@ def _changed(container: Container, lists: Mapping[str, Origin]) -> Iterator[Orig
         own = [*lists] if raw else [key.name for key in child.inputs]
         declared = {key.name for key in child.inputs}
         for key in own:
-            origin = lists.get(key if raw else names.get(key, key))
+            origin = lists.get(key if raw else names[key])
             if origin is not None and _can_empty(child, key, declared=key in declared):
                 yield origin
 

@@ -12,7 +12,7 @@ from smachac.analysis.type_lattice import is_open, item_of, misfit
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Leaf, Node
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import inputs_from, remapping
 
 
 class ItemRead(NamedTuple):
@@ -57,7 +57,7 @@ def _item_read(clash: Clash, leaf: Leaf, containers: Mapping[str, Container]) ->
     path, key = clash.cell.path, clash.cell.key
     node: Node = leaf
     while True:
-        outer = remapping(node).get(key, key)
+        outer = remapping(node)[key]
         levels.insert(0, _Level(path, node, key, outer))
         path = path.rpartition("/")[0]
         around = containers.get(path)
@@ -82,17 +82,14 @@ def _fits_item(clash: Clash) -> bool:
 def _reads(node: Container, name: str) -> bool:
     """Whether a state in a container can read a key of it."""
     for child in node.children:
-        names = remapping(child)
-        if isinstance(child, Leaf):
-            facts = child.class_facts
-            words = [each.text for each in facts.reads] if facts is not None else []
-            keys = [*(key.name for key in child.inputs), *words]
-            if child.open or any(names.get(key, key) == name for key in keys):
+        own = inputs_from(child, name)
+        if not isinstance(child, Leaf):
+            if any(_reads(child, key.name) for key in own):
                 return True
-        elif any(
-            names.get(key.name, key.name) == name and _reads(child, key.name)
-            for key in child.inputs
-        ):
+            continue
+        words = child.class_facts.reads if child.class_facts is not None else ()
+        names = remapping(child)
+        if child.open or own or any(names[word.text] == name for word in words):
             return True
     return False
 
@@ -109,10 +106,9 @@ def _at(clash: Clash, loop: nodes.Iterator, levels: list[_Level]) -> ItemRead | 
                 clash, path, node, key, found.to, item, found.to_span, tuple(lacking),
                 tuple(declared),
             )  # fmt: skip
-        names = remapping(node)
-        own = [each.name for each in node.inputs if names.get(each.name, each.name) == item]
+        own = inputs_from(node, item)
         if own:
-            item = own[0]
+            item = own[0].name
             declared.append((path, item))
         elif not isinstance(node, Leaf):
             lacking.append(node.name)

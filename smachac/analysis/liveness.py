@@ -10,7 +10,7 @@ from smachac.analysis.fixpoint import KeyStep
 from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Key, Leaf, Sequence, StateMachine
 from smachac.ir.outcome_names import fails
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_outputs
 
 MOST_VISITS = 1_000_000
 """The most visits of states in one machine; beyond them nothing more is found."""
@@ -63,17 +63,13 @@ def dead_stores(flow: DataFlow, fact_of: FactOf) -> Iterator[DeadStore]:
 
 def _candidates(scope: UserdataScope) -> dict[str, list[tuple[Leaf, Key]]]:
     """The keys that several states of a container write, with the leaves that list them."""
-    writers: dict[str, int] = {}
     found: dict[str, list[tuple[Leaf, Key]]] = {}
     for child in scope.children.values():
-        names = remapping(child) if child.outputs else {}
-        for key in child.outputs:
-            name = names.get(key.name, key.name)
-            writers[name] = writers.get(name, 0) + 1
+        for key, name in zip(child.outputs, outer_outputs(child), strict=True):
             listed = key.span.source is child.span.source
             if isinstance(child, Leaf) and not child.open and listed and child.name in scope.steps:
                 found.setdefault(name, []).append((child, key))
-    return {name: leaves for name, leaves in found.items() if writers[name] > 1}
+    return {name: leaves for name, leaves in found.items() if len(scope.uses.writers(name)) > 1}
 
 
 def _steps_back(scope: UserdataScope) -> _Back:
@@ -94,10 +90,9 @@ def _replaces(scope: UserdataScope, vertex: Vertex, step: KeyStep, name: str) ->
 def _live(scope: UserdataScope, back: _Back, name: str) -> set[Vertex]:
     """The vertices at whose entry a key is live: some path reads it before it is set again."""
     live: set[Vertex] = {vertex for vertex in back if isinstance(vertex, tuple) and vertex != START}
+    live.update(use.node.name for use in scope.uses.readers(name) if use.path != scope.path)
     for child in scope.children.values():
-        names = remapping(child)
-        is_open = isinstance(child, Leaf) and child.open
-        if is_open or any(names.get(key.name, key.name) == name for key in child.inputs):
+        if isinstance(child, Leaf) and child.open:
             live.add(child.name)
     todo = list(live)
     while todo:

@@ -11,26 +11,25 @@ from smachac.analysis.accesses import fields_of, function_body
 from smachac.analysis.def_use import around, place_in
 from smachac.analysis.definite_assignment import DataFlow, FactOf, UserdataScope
 from smachac.analysis.unset_reads import MOST_LEVELS, MOST_STEPS, Missing, Reader, reader_at
+from smachac.analysis.uses import Use
 from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.graph import Vertex
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Concurrence, Key, Leaf, Node, Sequence, StateMachine
 from smachac.ir.script_paths import sugared_child
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs, outer_outputs, remapping
 
 
 class Lost(NamedTuple):
     """A key that is written inside the container `keeper` and is no output, but `reader` reads it.
 
-    `own` is what the keeper calls it. `is_missing`: the reader finds nothing else. `misspelt` is an
-    output key of the keeper that nothing in it sets and that is probably meant for it.
+    `written` is the use that writes it. `is_missing`: the reader finds nothing else. `misspelt` is
+    an output key of the keeper that nothing in it sets and that is probably meant for it.
     """
 
     keeper: UserdataScope
-    own: str
-    writer: Node
-    written: Key
+    written: Use
     reader: Reader
     key: str
     is_missing: bool
@@ -47,7 +46,7 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
     reported: set[tuple[str, str]] = set()
     for missing in lost_keys:
         lost = _missed(flow, missing)
-        reported.add((lost.keeper.path, lost.own))
+        reported.add((lost.keeper.path, lost.written.outer))
         yield lost
     left = MOST_STEPS
     for scope in flow.scopes.values():
@@ -55,7 +54,8 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
         if outer is None or scope.path not in flow.entered or scope.container.sugar:
             continue
         kept: tuple[_Kept, ...] = fact_of(_kept, scope.path, scope)
-        for writer, written, own, is_named in kept:
+        for written, is_named in kept:
+            own, writer = written.outer, written.node
             if left <= 0 or (scope.path, own) in reported:
                 continue
             levels = [
@@ -74,18 +74,16 @@ def _lost(flow: DataFlow, lost_keys: Iterable[Missing], fact_of: FactOf) -> Iter
                     continue  # a container can count on its own
                 reader = reader_at(level.scope, vertex, level.key)
                 reported.add((scope.path, own))
-                yield Lost(scope, own, writer, written, reader, level.key, False)
+                yield Lost(scope, written, reader, level.key, False)
                 break
 
 
 class _Kept(NamedTuple):
-    """A key that a state of a container writes, and the name of the key in the container, of which
-    it is no output. `is_named`: the script lists or renames it; if not, it is an input of the
-    container, or the state is one, and only the interface of the state type lists it."""
+    """A key that a state of a container writes and that is no output of the container. `is_named`:
+    the script lists or renames it; if not, it is an input of the container, or the state is one,
+    and only the interface of the state type lists it."""
 
-    writer: Node
-    written: Key
-    own: str
+    written: Use
     is_named: bool
 
 
@@ -96,11 +94,8 @@ def _is_for_outside(scope: UserdataScope, writer: Node, own: str) -> bool:
 
 def _accumulates(scope: UserdataScope, writer: Node, own: str) -> bool:
     """Whether a loop changes a key from item to item, and has no other state that reads it."""
-    names = remapping(writer)
-    read = {names.get(key.name, key.name) for key in writer.inputs}
-    return (
-        isinstance(scope.container, nodes.Iterator) and own in read and scope.container.sugar == ""
-    )
+    is_loop = isinstance(scope.container, nodes.Iterator) and not scope.container.sugar
+    return is_loop and own in outer_inputs(writer)
 
 
 class _Level(NamedTuple):
@@ -134,19 +129,13 @@ def _levels(flow: DataFlow, scope: UserdataScope, own: str, writer: Node) -> Ite
         if path is None:
             return
         outer = flow.scopes[path]
-        place, key = place_in(path, inner.path), remapping(inner.container).get(key, key)
+        place, key = place_in(path, inner.path), remapping(inner.container)[key]
         yield _Level(outer, place, key)
         if not outer.container.sugar:
-            is_set = any(key in _set_by(child) for child in outer.container.children)
+            is_set = key in outer.uses.written
             if key not in outer.outputs or is_set or not _is_for_outside(scope, writer, own):
                 return
         inner = outer
-
-
-def _set_by(child: Node) -> set[str]:
-    """The keys of its container that a child declares as outputs."""
-    names = remapping(child)
-    return {names.get(key.name, key.name) for key in child.outputs}
 
 
 def _is_dead(scope: UserdataScope, writer: Node, own: str) -> bool:
@@ -165,8 +154,8 @@ def _again(
     if own not in scope.inputs or not (dead or _counts_once(scope, writer, own)):
         return
     for level in levels:
-        others = (each for each in level.scope.container.children if each.name != level.place)
-        if not dead and any(level.key in _set_by(each) for each in others):
+        writers = level.scope.uses.writers(level.key)
+        if not dead and any(use.node.name != level.place for use in writers):
             return
         if _read_after(level.scope, level.place, level.key, again=True) == level.place:
             yield level, level.place
@@ -179,9 +168,8 @@ def _counts_once(scope: UserdataScope, writer: Node, own: str) -> bool:
     the container reads the key: a count that begins again in each run has no other use."""
     if not isinstance(writer, Leaf) or not isinstance(scope.container, StateMachine | Sequence):
         return False
-    names = remapping(writer)
-    counted = [key.name for key in writer.outputs if names.get(key.name, key.name) == own]
-    if not any(_counts(writer, key) for key in counted):
+    written = scope.uses.writers(own)
+    if not any(use.node is writer and _counts(writer, use.key) for use in written):
         return False
     readers = (str(vertex) for vertex, keys in scope.reads.items() if own in keys)
     decided = any(
@@ -223,22 +211,20 @@ def _is_in_a_loop(scope: UserdataScope, start: str) -> bool:
 
 def _missed(flow: DataFlow, missing: Missing) -> Lost:
     keeper = flow.scopes[missing.other]
-    for writer in keeper.container.children:
-        names = remapping(writer)
-        for written in writer.outputs:
-            own = names.get(written.name, written.name)
-            if own not in keeper.outputs and _name_at(flow, keeper, own, missing) == missing.key:
-                reader = reader_at(missing.scope, missing.vertices[0], missing.key)
-                meant = _misspelt(keeper, own)
-                return Lost(keeper, own, writer, written, reader, missing.key, True, meant)
-    raise AssertionError("a keeper writes what it keeps")
+    written, own = next(
+        (use, use.outer)
+        for use in keeper.uses.all
+        if use.writes
+        and use.outer not in keeper.outputs
+        and _name_at(flow, keeper, use.outer, missing) == missing.key
+    )
+    reader = reader_at(missing.scope, missing.vertices[0], missing.key)
+    return Lost(keeper, written, reader, missing.key, True, _misspelt(keeper, own))
 
 
 def _misspelt(keeper: UserdataScope, own: str) -> Key | None:
     """The output key of a container that no state in it sets and whose name is near to a key."""
-    children = keeper.container.children
-    set_ = {remapping(each).get(key.name, key.name) for each in children for key in each.outputs}
-    set_ |= {*keeper.inputs, *(preset.key for preset in keeper.container.userdata)}
+    set_ = keeper.uses.written | keeper.uses.given
     unset = {key.name: key for key in keeper.container.outputs if key.name not in set_}
     return unset.get(guesser(unset)(own) or "")
 
@@ -247,7 +233,7 @@ def _name_at(flow: DataFlow, scope: UserdataScope, own: str, missing: Missing) -
     """What a key would be called in the container where it is missing."""
     path: str | None = scope.path
     while path is not None and path != missing.scope.path:
-        own = remapping(flow.scopes[path].container).get(own, own)
+        own = remapping(flow.scopes[path].container)[own]
         path = around(flow, path)
     return own
 
@@ -260,31 +246,21 @@ def _read(scope: UserdataScope) -> frozenset[str]:
 def _kept(scope: UserdataScope) -> tuple[_Kept, ...]:
     """The keys that states of a container write and that are no outputs of it. A key that is also
     read in the container counts only if it is an input, because then it has one name outside."""
-    container = scope.container
-    read = {
-        names.get(key.name, key.name)
-        for child in container.children
-        if child.inputs
-        for names in [remapping(child)]
-        for key in child.inputs
-    }
+    read = {use.outer for use in scope.uses.all if use.reads and use.node is not scope.container}
     found: list[_Kept] = []
-    for child in container.children:
-        if not child.outputs:
+    for use in scope.uses.all:
+        own, child, key = use.outer, use.node, use.declared
+        if not use.writes or own in scope.outputs or (own in read and own not in scope.inputs):
             continue
-        renamed = {remap.key for remap in child.remaps} - {key.name for key in child.inputs}
-        whole = not _is_leaf(child)
-        for key in child.outputs:
-            own = remapping(child).get(key.name, key.name)
-            if own in scope.outputs or (own in read and own not in scope.inputs):
-                continue
-            is_named = key.span.source is child.span.source or key.name in renamed
-            if whole:
-                is_named = False
-                if not _is_set_in(child, key.name):
-                    continue
-            if is_named or whole or own in scope.inputs:
-                found.append(_Kept(child, key, own, is_named))
+        if not _is_leaf(child):
+            if _is_set_in(child, use.key):
+                found.append(_Kept(use, False))
+            continue
+        is_named = key is not None and key.span.source is child.span.source
+        if not is_named and all(each.name != use.key for each in child.inputs):
+            is_named = any(remap.key == use.key for remap in child.remaps)
+        if is_named or own in scope.inputs:
+            found.append(_Kept(use, is_named))
     return tuple(found)
 
 
@@ -293,9 +269,9 @@ def _is_set_in(node: Node, key: str) -> bool:
     if isinstance(node, Leaf):
         return any(each.name == key for each in node.outputs)
     return any(
-        remapping(child).get(each.name, each.name) == key and _is_set_in(child, each.name)
+        outer == key and _is_set_in(child, each.name)
         for child in node.children
-        for each in child.outputs
+        for each, outer in zip(child.outputs, outer_outputs(child), strict=True)
     )
 
 

@@ -11,7 +11,7 @@ from smachac.analysis.accesses import function_body
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.traversal import inputs_from, outcome_names
 
 Keys = frozenset[str]
 NONE: Keys = frozenset()
@@ -30,8 +30,7 @@ def excludes_null(child: Node, key: str, outcome: str) -> bool:
     it in its code."""
     if not isinstance(child, Leaf) or outcome == child.catches != "":
         return False
-    names = remapping(child)
-    own = [each for each in child.inputs if names.get(each.name, each.name) == key]
+    own = inputs_from(child, key)
     if not own or outcome == PREEMPTED:
         return False
     known = guards(child)

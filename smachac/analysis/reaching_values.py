@@ -12,7 +12,7 @@ from smachac.analysis.type_lattice import Misfit, MisfitKind
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges
 from smachac.ir.nodes import Leaf, Node, StateMachine
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outputs_to
 from smachac.ir.types import ANY
 
 MOST_VISITS = 1_000_000
@@ -207,9 +207,7 @@ def _is_nullable(clash: Clash) -> bool:
 
 def _may_write_null(child: Node, key: str) -> bool:
     """Whether an output of a state that is the key of its container is declared as nullable."""
-    names = remapping(child)
-    own = [each for each in child.outputs if names.get(each.name, each.name) == key]
-    return any(each.type.name == "optional" for each in own)
+    return any(each.type.name == "optional" for each in outputs_to(child, key))
 
 
 def _linked(flow: TypeFlow, after: tuple[TypeFlow, ...]) -> TypeFlow:
@@ -227,8 +225,7 @@ def _child(cell: Cell, other: Cell) -> str | None:
 
 def replaces(child: Node, key: str, outcome: str) -> bool:
     """Whether a state that ends with an outcome has written a key of its container."""
-    names = remapping(child)
-    own = [output.name for output in child.outputs if names.get(output.name, output.name) == key]
+    own = [output.name for output in outputs_to(child, key)]
     if outcome == child.catches and outcome:
         return False
     if not isinstance(child, Leaf):

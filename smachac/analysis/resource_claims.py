@@ -59,7 +59,7 @@ def _filled(claim: str, node: Node, keys: Mapping[str, str | None]) -> str:
 
     def value(found: re.Match[str]) -> str:
         key = found[1]
-        known = keys.get(names.get(key, key)) if key in inputs else None
+        known = keys.get(names[key]) if key in inputs else None
         return known if known is not None else found[0]
 
     return _KEY.sub(value, claim)
@@ -75,7 +75,7 @@ def _constants(
         outside = found.get(path.removesuffix(f"/{container.name}"))
         names = remapping(container)
         for key in container.inputs:
-            outer = names.get(key.name, key.name)
+            outer = names[key.name]
             if outside is None:
                 own.setdefault(key.name, None)
             elif outer in outside:

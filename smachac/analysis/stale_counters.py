@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
-from smachac.analysis.counters import Counters, Number, Test, Users, users_of
+from smachac.analysis.counters import Counters, Number, Test
 from smachac.analysis.def_use import is_exit
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.fixpoint import KeyStep
@@ -82,10 +82,10 @@ def stale_counters(flow: DataFlow, routes: Callable[[], Routes]) -> Iterator[Sta
             if is_number(preset.value.data) and preset.key not in scope.inputs
         }
         loops: _Loops | None = None
-        for key, users in users_of(scope, presets).items() if presets else ():
-            for counter, added, test in counters.tests(scope, key, users):
+        for key in presets:
+            for counter, added, test in counters.tests(scope, key):
                 loops = loops or _Loops(scope)
-                search = _Search(loops, key, counter, test, users, visits)
+                search = _Search(loops, key, counter, test, visits)
                 found = search.found(flow, presets[key], added, entries)
                 if visits.number > MOST_VISITS:
                     return
@@ -167,14 +167,12 @@ class _Search:
         key: str,
         counter: Leaf,
         test: Test,
-        users: Users,
         visits: _Visits,
     ) -> None:
         self.scope = loops.scope
         self.key = key
         self.counter = counter
         self.test = test
-        self.users = users
         self.visits = visits
         self.steps = loops.steps
         found = loops.of(counter.name, test.leaf.name)
@@ -293,7 +291,10 @@ class _Search:
 
     def _only_counts(self) -> bool:
         """Whether only the counter and its test use the key."""
-        return self.key not in self.scope.outputs and len(self.users.readers) == 2
+        return (
+            self.key not in self.scope.outputs
+            and len({use.path for use in self.scope.uses.readers(self.key)}) == 2
+        )
 
     def _again(
         self, starts: _Starts, header: Vertex, entries: _Entries

@@ -36,6 +36,7 @@ from smachac.analysis.type_lattice import (
     settled,
     widened,
 )
+from smachac.analysis.uses import place_of
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, key_names, variable_of
@@ -176,7 +177,7 @@ class _Inference:
         for key in leaf.inputs:
             cell = self.cell(path, key.name, "input", leaf, place_of(leaf, key))
             self.declare(cell, key.type, cell.span)
-            around.at(names.get(key.name, key.name)).links.append(cell)
+            around.at(names[key.name]).links.append(cell)
             inputs[key.name] = cell
         written = _written(leaf)
         received = received_types(leaf, self.definitions) if self.definitions else {}
@@ -186,7 +187,7 @@ class _Inference:
                 self.unknown(around.at(name))
         for key in leaf.outputs:
             cell = self.cell(path, key.name, "output", leaf, place_of(leaf, key))
-            cell.links.append(around.at(names.get(key.name, key.name)))
+            cell.links.append(around.at(names[key.name]))
             self.declare(cell, key.type, cell.span)
             if key.name in written:
                 for span, data in written[key.name]:
@@ -214,7 +215,7 @@ class _Inference:
             inner = scope.at(key.name, place_of(node, key))
             self.declare(inner, key.type, declaration_of(node, key))
             if around is not None:
-                around.at(names.get(key.name, key.name)).links.append(inner)
+                around.at(names[key.name]).links.append(inner)
             else:
                 self.unknown(inner)
         for preset in node.userdata:
@@ -227,7 +228,7 @@ class _Inference:
             inner = scope.at(key.name, place_of(node, key))
             self.declare(inner, key.type, declaration_of(node, key))
             if around is not None:
-                inner.links.append(around.at(names.get(key.name, key.name)))
+                inner.links.append(around.at(names[key.name]))
         if isinstance(node, nodes.Iterator):
             self.iterator(node, scope)
         return scope
@@ -586,13 +587,3 @@ class Computation:
 def declaration_of(node: Container, key: Key) -> Span:
     """The span of the declaration of a key, also in a sub-script."""
     return key.span if key.span.source is not NOWHERE.source else place_of(node, key)
-
-
-def place_of(node: Node, key: Key) -> Span:
-    """The span of a key of a state: its declaration, else its remap, else the state."""
-    if key.span.source is node.span.source and key.span.source is not NOWHERE.source:
-        return key.span
-    for remap in node.remaps:
-        if remap.key == key.name:
-            return remap.span
-    return node.span

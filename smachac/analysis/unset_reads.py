@@ -9,15 +9,16 @@ from functools import cache
 from typing import Literal, NamedTuple
 
 from smachac.analysis.accesses import NOTHING
-from smachac.analysis.def_use import Reached, Search, around, place_of, search, way_to
+from smachac.analysis.def_use import Reached, Search, around, search, way_to
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope, child_writes
+from smachac.analysis.uses import place_of
 from smachac.diagnostics.diagnostic import PathStep
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Node
 from smachac.ir.script_paths import name_in_script
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.traversal import inputs_from, outcome_names, remapping
 
 MOST_LEVELS = 50
 """The most containers outwards in which a key that is no output is searched."""
@@ -116,14 +117,7 @@ class Provided(NamedTuple):
 
 
 def provided_keys(scope: UserdataScope) -> Provided:
-    container = scope.container
-    keys = {*scope.held, *scope.inputs}
-    if isinstance(container, nodes.Iterator):
-        keys.add(container.item_key)
-    for child in container.children:
-        if child.outputs:
-            names = remapping(child)
-            keys.update(names.get(each.name, each.name) for each in child.outputs)
+    keys = {*scope.uses.provided}
     written = [
         step.writes
         for steps in scope.steps.values()
@@ -153,12 +147,9 @@ def _kept_inside(
     """For keys that are missing, the container that writes them inside and keeps them."""
     found: dict[tuple[str, str], str] = {}
     for scope in flow.scopes.values() if missing else ():
-        for child in scope.container.children:
-            names = remapping(child)
-            for each in child.outputs:
-                key = names.get(each.name, each.name)
-                if key not in scope.outputs:
-                    _climb(flow, scope, key, missing, found)
+        for use in scope.uses.all:
+            if use.writes and use.outer not in scope.outputs:
+                _climb(flow, scope, use.outer, missing, found)
     return found
 
 
@@ -175,7 +166,7 @@ def _climb(
         outer = around(flow, here)
         if outer is None:
             return
-        key = remapping(flow.scopes[here].container).get(key, key)
+        key = remapping(flow.scopes[here].container)[key]
         if (outer, key) in missing:
             found.setdefault((outer, key), scope.path)
         here = outer
@@ -288,11 +279,11 @@ def reader_at(scope: UserdataScope, vertex: Vertex, key: str) -> Reader:
         span = node.span if span.source is NOWHERE.source else span
         return Reader(scope.path, node, key, span, f"`{node.name}` iterates over `{key}`")
     node = scope.children[vertex]
-    own = scope.inputs_at(vertex).get(key)
+    own = next(iter(inputs_from(node, key)), None)
     span = node.span if own is None else place_of(node, own)
     called = f"`{key}`"
-    if own is not None and own.name != key:
-        called = f"`{own.name}` (`{key}` in {container_name(scope, span)})"
     name = key if own is None else own.name
+    if name != key:
+        called = f"`{name}` (`{key}` in {container_name(scope, span)})"
     words = f"`{name_in_script(node)}` reads {called}"
     return Reader(f"{scope.path}/{vertex}", node, name, span, words)

@@ -4,23 +4,20 @@ that is read (SM301)."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from collections.abc import Set as AbstractSet
-from itertools import chain, islice
+from itertools import chain
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import fits, is_open, misfit, widened
-from smachac.analysis.unset_reads import Missing, Reader, Witness, reader_at
+from smachac.analysis.unset_reads import Missing
 from smachac.checks.messages import added_remapping
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, words_of
+from smachac.diagnostics.spelling import Guesser, guesser, words_of
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Node, Remap
-from smachac.ir.script_paths import sugared_child
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_outputs, outputs_to, remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -30,17 +27,8 @@ def keys_around(container: Container) -> set[str]:
     if isinstance(container, nodes.Iterator):
         return found - {container.item_key}
     for child in container.children:
-        names = remapping(child)
-        found |= {names.get(key.name, key.name) for key in child.outputs}
+        found.update(outer_outputs(child))
     return found
-
-
-def meant_input(key: str, guess: Guesser, used: AbstractSet[str], around: Container) -> str | None:
-    """The input of a state that is probably meant by a key that its code reads and that it does not
-    declare: the one with the nearest name. None if the container `around` the state has a key of
-    exactly this name, and the code reads the nearest one too (`used`)."""
-    near = guess(key)
-    return None if near in used and key in keys_around(around) else near
 
 
 def outer_value(missing: Missing, scopes: Mapping[str, UserdataScope]) -> tuple[str, str] | None:
@@ -81,7 +69,7 @@ def unread_outputs(scope: UserdataScope, missing: str) -> Iterator[UnreadOutput]
     for child in scope.container.children:
         names = remapping(child)
         for key in child.outputs:
-            outer = names.get(key.name, key.name)
+            outer = names[key.name]
             if outer in read:
                 continue
             help = f"nothing reads `{outer}`, which `{child.name}` sets: did you mean it?"
@@ -92,42 +80,8 @@ def unread_outputs(scope: UserdataScope, missing: str) -> Iterator[UnreadOutput]
             yield UnreadOutput(outer, place, help, child.name)
 
 
-def unread_before(
-    types: Types, scope: UserdataScope, missing: str, witness: Witness, wanted: Type
-) -> UnreadOutput | None:
-    """The only output in a container that nothing reads, if a state on the path to the reader of a
-    missing key sets it and the reader can have its type."""
-    before = {each.label for each in witness.path[:-1] if not each.is_outcome}
-    found = [*unread_outputs(scope, missing)] if before else []
-    if len(found) != 1 or found[0].setter not in before:
-        return None
-    return found[0] if may_be(types, scope, found[0].key, wanted) else None
-
-
 MOST_FITTING = 3
 """More keys of one type are no help."""
-
-
-def fitting_keys(types: Types, scope: UserdataScope, reader: Reader, wanted: Type) -> list[str]:
-    """The keys in the container of a state that have the type of one of its inputs, `wanted`, and
-    that the state does not read, first those that nothing reads, and those that a state sets before
-    the initial values; none where the type of the input is not known, or if there are too many."""
-    names = remapping(reader.node)
-    if is_open(wanted) or reader.key in names or reader.node is scope.container:
-        return []
-    own = {names.get(each.name, each.name) for each in reader.node.inputs}
-    keys = {key: type_ for (path, key), type_ in types.keys.items() if path == scope.path}
-    found = [
-        key
-        for key, type_ in keys.items()
-        if key not in own and not is_open(type_) and widened(type_) != ANY and fits(type_, wanted)
-    ]
-    read = {*chain.from_iterable(scope.reads.values()), *scope.outputs}
-    found.sort(key=lambda key: (key in read, key in scope.held))
-    unread = [key for key in found if key not in read]
-    if len(unread) == 1:
-        return unread
-    return found if len(found) <= MOST_FITTING else []
 
 
 def may_be(types: Types, scope: UserdataScope, key: str, wanted: Type) -> bool:
@@ -177,11 +131,7 @@ def meant_by_remap(
     if key is None or place is None:
         near = near or _named_by_state(types, scope, child, wanted)
         return MeantByRemap(near) if near is not None else None
-    setters = [
-        each.name
-        for each in scope.container.children
-        if any(remapping(each).get(one.name, one.name) == key for one in each.outputs)
-    ]
+    setters = [each.name for each in scope.container.children if outputs_to(each, key)]
     return MeantByRemap(key, place, setters[0] if setters and key not in scope.held else "")
 
 
@@ -238,8 +188,7 @@ def _unread_of_type(
             widened(types.keys.get((scope.path, key), ANY)).name in SCALARS for key in held
         )
         return held if len(held) == 1 and not simple else []
-    names = remapping(child)
-    own = {names.get(each.name, each.name) for each in child.outputs}
+    own = {*outer_outputs(child)}
     found = [
         key
         for key in sorted(keys_of(scope) - read - own)
@@ -264,32 +213,4 @@ def written_place(scope: UserdataScope, key: str) -> Span | None:
     for preset in scope.container.userdata:
         if preset.key == key:
             return preset.span
-    for child in scope.container.children:
-        names = remapping(child)
-        for each in child.outputs:
-            if names.get(each.name, each.name) == key:
-                return place_of(child, each)
-    return None
-
-
-def _input_type(types: Types, reader: Reader) -> Type:
-    """The type of the input of a state; also of one around which sugar makes containers."""
-    node, path = reader.node, reader.path
-    while not isinstance(node, nodes.Leaf) and (child := sugared_child(node)) is not None:
-        node, path = child, f"{path}/{child.name}"
-    return types.inputs.get((path, reader.key), ANY)
-
-
-def meant_by_types(context: Context) -> set[tuple[str, str]]:
-    """The keys that nothing reads and that SM301 names as the only ones of the type that a state
-    reads from a key that nothing sets, each with the path of its container."""
-    found: set[tuple[str, str]] = set()
-    for missing in islice(context.missing_keys("nowhere"), MOST_EXPLAINED):
-        scope = missing.scope
-        reader = reader_at(scope, missing.vertices[0], missing.key)
-        wanted = _input_type(context.types, reader)
-        known = sorted({*scope.held, *scope.inputs} - {missing.key})
-        if unread_output(scope, missing.key) is None and guesser(known)(missing.key) is None:
-            keys = fitting_keys(context.types, scope, reader, wanted)
-            found.update((scope.path, key) for key in keys if len(keys) == 1)
-    return found
+    return next((use.span for use in scope.uses.writers(key)), None)

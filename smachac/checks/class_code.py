@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.checks.candidate_keys import meant_input
 from smachac.checks.messages import did_you_mean, other_place
 from smachac.checks.renamed_names import renamed_in_interface
 from smachac.checks.rule import rule
@@ -26,7 +25,7 @@ from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
 from smachac.ir.nodes import Key, Leaf, Outcome, StateType
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
-from smachac.ir.traversal import enclosing, outcome_names, remapping
+from smachac.ir.traversal import enclosing, outcome_names, outer_outputs, remapping
 
 
 def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
@@ -379,7 +378,6 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             above, container = containers[above]
             levels.append(container)
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
-        used = {word.text for word in facts.reads}
         old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
@@ -387,8 +385,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
                 " key of its interface"
             )
-            near = meant_input(word.text, guesser(inputs), used, around)
-            help = did_you_mean(near) or (
+            help = did_you_mean(guesser(inputs)(word.text)) or (
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )
@@ -437,13 +434,10 @@ def _sets_first(facts: ClassFacts, word: Word) -> bool:
 
 def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
     """Whether a key of a leaf can have a value before the leaf sets it."""
-    outer = remapping(leaf).get(key, key)
+    outer = remapping(leaf)[key]
     known = {each.key for each in around.userdata} | {each.name for each in around.inputs}
     return outer in known or any(
-        remapping(child).get(each.name, each.name) == outer
-        for child in around.children
-        if child is not leaf
-        for each in child.outputs
+        outer in outer_outputs(child) for child in around.children if child is not leaf
     )
 
 

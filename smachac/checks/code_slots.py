@@ -23,7 +23,6 @@ from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.type_inference import TypeFlow
-from smachac.checks.candidate_keys import meant_input
 from smachac.checks.class_values import none_writes
 from smachac.checks.edits import listing
 from smachac.checks.function_results import (
@@ -49,7 +48,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Expression, Node, VariableRole
-from smachac.ir.traversal import enclosing, remapping
+from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -599,7 +598,7 @@ def function_reads(context: Context) -> Mapping[str, set[str]]:
         if slot.arguments is not None and slot.arguments[:1] == ("userdata",):
             names = remapping(node)
             keys = found.setdefault(path.rpartition("/")[0], set())
-            keys.update(names.get(word.text, word.text) for word in facts.reads)
+            keys.update(names[word.text] for word in facts.reads)
     return found
 
 
@@ -613,12 +612,10 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
             continue
         if facts.reads and not swapped(facts.parameters, slot.arguments):  # SM317
             calls_of.setdefault(slot.code.text, []).append(call)
-    containers = enclosing(context.machine.root) if calls_of else {}
     for used in calls_of.values():
         known = {key.name for _, node, _, _ in used for key in (*node.inputs, *node.outputs)}
         path, node, slot, facts = used[0]
-        guess, read = guesser(key.name for key in node.inputs), {word.text for word in facts.reads}
-        _, around = containers[path]
+        guess = guesser(key.name for key in node.inputs)
         for word in {each.text: each for each in reversed(facts.reads)}.values():
             if word.text not in known:
                 yield Finding(
@@ -626,8 +623,7 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
                     message=f"`{facts.word.text}` reads `{word.text}`, which is not an input key of"
                     f" `{node.name}`",
                     arguments=(word.text,),
-                    help=did_you_mean(meant_input(word.text, guess, read, around))
-                    or listing([node], "input_keys", word.text),
+                    help=did_you_mean(guess(word.text)) or listing([node], "input_keys", word.text),
                     related=other_place(slot.code.span, f"`{node.name}` calls it here"),
                     node=path,
                 )

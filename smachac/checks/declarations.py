@@ -11,13 +11,13 @@ from typing import Literal
 from smachac.analysis.accesses import callback_names, unreceived_outputs, userdata_fields
 from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
-from smachac.checks.candidate_keys import meant_by_remaps, meant_by_types, outer_value
+from smachac.analysis.uses import place_of
+from smachac.checks.candidate_keys import meant_by_remaps, outer_value
 from smachac.checks.code_slots import function_reads
 from smachac.checks.empty_remaps import meant_by_empty_remaps
 from smachac.checks.expressions import unknown_endings
@@ -33,7 +33,7 @@ from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_mea
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes import meant_default
 from smachac.checks.rule import rule
-from smachac.checks.undeclared_keys import leaves_with_code, lone_input
+from smachac.checks.undeclared_keys import leaves_with_code
 from smachac.checks.unsent_keys import unsent_keys
 from smachac.checks.unwritten_keys import (
     read_unwritten,
@@ -58,7 +58,7 @@ from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
-from smachac.ir.traversal import expressions, remapping, walk
+from smachac.ir.traversal import OuterNames, expressions, remapping, walk
 
 
 @rule(
@@ -211,7 +211,7 @@ def _lost_result(scope: UserdataScope, child: Node, remap: Remap, meant: str) ->
 
 def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     """The keys about which another finding is, each with the path of its container."""
-    found = {(each.keeper.path, each.own) for each in context.lost_outputs}  # SM307
+    found = {(each.keeper.path, each.written.outer) for each in context.lost_outputs}  # SM307
     found |= {(each.other, each.key) for each in context.missing_keys("outside")}
     found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
     found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
@@ -220,7 +220,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
     found |= {place for place in unset if place is not None}  # SM301
     found |= _swapped_lists(context)
-    return found | meant_by_types(context)  # SM301
+    return found
 
 
 def swapped_loop(missing: Missing) -> nodes.Iterator | None:
@@ -234,8 +234,7 @@ def swapped_loop(missing: Missing) -> nodes.Iterator | None:
         node = scope.container if vertex == START else scope.children.get(str(vertex))
         if not isinstance(node, nodes.Iterator) or not node.item_key:
             continue
-        names = remapping(node) if vertex != START else {}
-        if names.get(node.items_key, node.items_key) != missing.key:
+        if (remapping(node) if vertex != START else OuterNames())[node.items_key] != missing.key:
             continue
         read = {key.name for child in node.children for key in child.inputs}
         for steps in scope.steps.values() if vertex != START else ():
@@ -264,14 +263,14 @@ def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
     data = next((each.value.data for each in container.userdata if each.key == key), None)
     if node is not container or data is None:
         return None
-    known = _written_in(scope)
+    known = scope.uses.provided
     given = type_of_data(data)
     last = key.removesuffix("_id").rpartition("_")[2]
     found = [
         (child.name, each.name)
         for child in container.children
         for each in (child.inputs if isinstance(child, Leaf) else ())
-        if each.type.name == "optional" and remapping(child).get(each.name, each.name) not in known
+        if each.type.name == "optional" and remapping(child)[each.name] not in known
         if misfit(given, each.type) is None and last in (each.role, each.name)
     ]
     if len(found) != 1:
@@ -297,36 +296,20 @@ def _names_in_unknown_remaps(container: Container) -> set[str | None]:
     return {name for each in unknown for name in (each.remap.key, each.meant)}
 
 
-def _written_in(scope: UserdataScope) -> set[str]:
-    """The keys that are set at the start, or that a state in a container declares as an output."""
-    container = scope.container
-    found = {*scope.inputs, *(preset.key for preset in container.userdata)}
-    if isinstance(container, nodes.Iterator):
-        found.add(container.item_key)
-    for child in container.children:
-        if child.outputs:
-            names = remapping(child)
-            found.update(names.get(key.name, key.name) for key in child.outputs)
-    return found
-
-
 def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ...]:
     """The keys of a container that the script itself sets, each once: presets and outputs that it
     lists, not those of a state type or sub-script."""
-    found: list[tuple[str, Node, Span]] = [
-        (preset.key, scope.container, preset.span) for preset in scope.container.userdata
-    ]
-    seen = {preset.key for preset in scope.container.userdata}
-    for child in scope.container.children:
-        names = remapping(child) if child.outputs else {}
-        for each in child.outputs:
-            key = names.get(each.name, each.name)
-            if each.span == child.span != NOWHERE:
-                continue  # SM308: the script does not declare it
-            if key not in seen and each.span.source is child.span.source and _sets(child, each):
-                seen.add(key)
-                found.append((key, child, place_of(child, each)))
-    return tuple(found)
+    found: dict[str, tuple[str, Node, Span]] = {}
+    for use in scope.uses.all:
+        key, node = use.declared, use.node
+        if use.kind == "presets":
+            found[use.outer] = (use.outer, node, use.span)
+        elif use.writes and isinstance(key, Key) and use.outer not in found:
+            # A key that only the code of the state has, not the script, has the place of the state.
+            is_listed = key.span != node.span or node.span == NOWHERE
+            if is_listed and key.span.source is node.span.source and _sets(node, key):
+                found[use.outer] = (use.outer, node, use.span)
+    return tuple(found.values())
 
 
 def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ...]:
@@ -344,10 +327,9 @@ def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ..
     if not remapped:
         return ()
     read: dict[str, list[Key]] = {}
-    for child in children:
-        names = remapping(child)
-        for key in child.inputs:
-            read.setdefault(names.get(key.name, key.name), []).append(key)
+    for use in scope.uses.all:
+        if use.reads and isinstance(use.declared, Key):
+            read.setdefault(use.outer, []).append(use.declared)
     guess = guesser(read)
     found: list[tuple[Node, Remap, str]] = []
     for child, remap, key in remapped:
@@ -445,7 +427,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
                 container, key.name
             ):
                 yield _unused(scope.path, container, key, "input")
-        set_ = context.of_container(_written_in, scope.path, scope)
+        set_ = scope.uses.provided
         outer = scope.path.rpartition("/")[0]
         for key in container.outputs:
             if key.name in set_ or id(key) in misspelt:
@@ -577,10 +559,10 @@ def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:
     for inner, leaf in leaves_with_code(path, container):
-        yield from _unused_by_code(inner, leaf, container)
+        yield from _unused_by_code(inner, leaf)
 
 
-def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Finding]:
+def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
     """The declared keys and outcomes of a leaf that its code in the script does not use."""
     callbacks, conditions = functions(leaf, "callbacks"), functions(leaf, "conditions")
     chooses = variable_of(leaf, "conditions") is not None
@@ -598,7 +580,6 @@ def _unused_by_code(path: str, leaf: Leaf, container: Container) -> Iterator[Fin
         used = {key for each in fields for key in (*each.read, *each.tested)}
         undeclared = [key for key, _ in undeclared_reads(leaf)]
         used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
-        used |= {(lone_input(leaf, container) if undeclared else None) or ""}  # SM310
         arguments = [key for key in leaf.inputs if key.role == "argument"]
         if any(key.name not in used for key in arguments):
             used |= {name.id for code in called for name in free_in(code.text)}  # SM019

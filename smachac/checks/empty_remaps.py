@@ -16,7 +16,6 @@ from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.unquoted import is_name
-from smachac.ir.traversal import remapping
 
 
 def empty_remap_findings(context: Context) -> Iterator[Finding]:
@@ -75,10 +74,7 @@ def _by_words(each: EmptyRemap) -> str | None:
     keys = provided_keys(each.scope).keys
     found = [name for name in keys if {*name.split("_"), *key.split("_")} == words]
     if not found:
-        read = {*each.scope.outputs}
-        for child in each.scope.container.children:
-            names = remapping(child)
-            read.update(names.get(one.name, one.name) for one in child.inputs)
+        read = each.scope.uses.read.union(each.scope.outputs)
         own = words.difference(key.split("_"))
         found = [name for name in keys if name not in read and own & set(name.split("_"))]
     return found[0] if len(found) == 1 else None

@@ -10,7 +10,6 @@ from dataclasses import replace
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault, FaultKind
 from smachac.analysis.expression_sites import ExpressionSite
-from smachac.analysis.type_lattice import NONE
 from smachac.analysis.units import conversion
 from smachac.checks.class_values import (
     missing_choices,
@@ -20,7 +19,7 @@ from smachac.checks.class_values import (
 )
 from smachac.checks.edits import adding_outcome
 from smachac.checks.messages import calls, did_you_mean, in_quotes_for, other_place
-from smachac.checks.null_keys import null_keys, output_for_null
+from smachac.checks.null_keys import null_keys
 from smachac.checks.rule import rule
 from smachac.checks.types import written
 from smachac.checks.value_places import place_of_fault, place_of_part
@@ -39,7 +38,7 @@ from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct, is_number
-from smachac.ir.traversal import expressions, outcome_names, remapping, values
+from smachac.ir.traversal import expressions, outcome_names, values
 
 
 @rule(
@@ -320,7 +319,7 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
         does = "fails" if fault.always else "can fail"
         severity = None if fault.always else Severity.WARNING
         finding = _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
-        help = _number_in_quotes(site, fault) or _set_by_other_key(context, site, fault)
+        help = _number_in_quotes(site, fault)
         yield replace(finding, help=help) if help else finding
     yield from null_keys(context)
     yield from wrong_parts(context)
@@ -423,18 +422,6 @@ def _number_in_quotes(site: ExpressionSite, fault: Fault) -> str | None:
                 if isinstance(text, str) and _NUMBER.fullmatch(text):
                     line = flow.origin.span.line
                     return f"write `{key}: {text}` without quotes in line {line}"
-    return None
-
-
-def _set_by_other_key(context: Context, site: ExpressionSite, fault: Fault) -> str | None:
-    """The help for an operation with a key that is null in every run, where an output that nothing
-    reads is probably meant for it."""
-    for key in fault.keys:
-        if (site.types or {}).get(key) == NONE and isinstance(site.node, Leaf):
-            outer = remapping(site.node).get(key, key)
-            meant = output_for_null(context, site.path.rpartition("/")[0], outer)
-            if meant is not None:
-                return meant.help
     return None
 
 

@@ -3,11 +3,10 @@ finding (SM301) with the initial values that are missing."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from itertools import groupby
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import Use
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Reader, container_name, reader_at
 from smachac.checks.messages import calls, other_place
@@ -22,12 +21,9 @@ MOST_RELATED = 5
 """Limit on the other readers in a finding."""
 
 
-def missing_together(
-    found: Iterable[Missing], used: Callable[[str], Mapping[str, list[Use]]]
-) -> Iterator[tuple[Missing, ...]]:
+def missing_together(found: Iterable[Missing]) -> Iterator[tuple[Missing, ...]]:
     """The keys of each container that has no initial values and lacks two or more. A key that is
-    set later counts only if the state that reads it first also sets it, as a counter. `used`: the
-    uses of the keys of a container by its path."""
+    set later counts only if the state that reads it first also sets it, as a counter."""
     for _, group in groupby(found, lambda each: each.scope.path):
         every = [each for each in group if not each.scope.container.userdata]
         scope = every[0].scope if every else None
@@ -40,7 +36,7 @@ def missing_together(
             each
             for each in every
             if (each.cause == "nowhere" and guess.sure(each.key) is None)
-            or (each.cause == "unset" and counts(used(each.scope.path).get(each.key, ())))
+            or (each.cause == "unset" and counts(each))
         )
         if len(lacking) > 1:
             yield lacking
@@ -50,16 +46,11 @@ def _first(missing: Missing) -> Reader:
     return reader_at(missing.scope, missing.vertices[0], missing.key)
 
 
-def counts(users: Iterable[Use]) -> bool:
+def counts(missing: Missing) -> bool:
     """Whether only states that read a key set it, as that of a counter."""
-    users = list(users)
-    readers = {each.path for each in users if each.kind in READS}
-    writers = {each.path for each in users if each.kind not in READS}
-    return bool(writers) and writers <= readers
-
-
-READS = ("reads", "copies in")
-"""The kinds of uses that read a key."""
+    uses = missing.scope.uses
+    writers = {use.path for use in uses.writers(missing.key)}
+    return bool(writers) and writers <= {use.path for use in uses.readers(missing.key)}
 
 
 def together_finding(context: Context, lacking: tuple[Missing, ...]) -> Finding:

@@ -34,7 +34,7 @@ from smachac.ir.graph import can_end, reachable
 from smachac.ir.leaf import functions, variable_of
 from smachac.ir.nodes import Expression, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
-from smachac.ir.traversal import leads_to_child, outcome_names, remapping, walk
+from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs, walk
 
 PURE = frozenset(["abs", "bool", "float", "int", "len", "max", "min", "round", "str"])
 """Functions whose result depends on their arguments only."""
@@ -539,8 +539,7 @@ def _unchanging(
         return
     fixed: list[tuple[Leaf, set[str], set[str]]] = []
     for child in deciding:
-        outer = remapping(child)
-        keys = {outer.get(key.name, key.name) for key in child.inputs}
+        keys = {*outer_inputs(child)}
         types = {
             context.types.inputs[f"{path}/{child.name}", key.name].name for key in child.inputs
         }
@@ -572,7 +571,7 @@ def _written_in(region: Iterable[Node]) -> frozenset[str] | None:
             if isinstance(node, Leaf) and node.open:
                 return None
             found.update(key.name for key in node.outputs)
-            found.update(remapping(node).get(key.name, "") for key in node.outputs)
+            found.update(outer_outputs(node))
             if isinstance(node, Leaf):  # SM308
                 found.update(undeclared_writes(node))
             if isinstance(node, Leaf) and node.class_facts is not None:

@@ -16,7 +16,7 @@ from smachac.diagnostics.spelling import guesser, respelt
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.nodes import Data, Leaf
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs, remapping
 from smachac.ir.types import ANY, Type
 
 SHORTEST_WORD = 3
@@ -151,11 +151,11 @@ def _unset_input(context: Context, missing: Missing, read: set[str]) -> list[Wor
     around = flow.scopes.get(scope.path.rpartition("/")[0])
     if around is None or len(lacking) != 1 or scope.container.sugar or around.container.sugar:
         return []
-    given, names = provided_keys(around), remapping(scope.container)
+    given = provided_keys(around)
     return [
         Word(key.name, key.span)
         for key in scope.container.inputs
-        if key.name not in read and not given.has(names.get(key.name, key.name))
+        if key.name not in read and not given.has(scope.inputs[key.name])
     ]
 
 
@@ -170,7 +170,7 @@ def loop_in_a_body(missing: Missing) -> nodes.Iterator | None:
         if not isinstance(node, nodes.Iterator) or node.sugar != "for_each":
             continue
         others = (each for each in scope.container.children if each is not node)
-        read = {remapping(each).get(key.name, key.name) for each in others for key in each.inputs}
+        read = {key for each in others for key in outer_inputs(each)}
         if node.item_key in inputs - read and missing.key not in inputs:
             return node
     return None
@@ -224,11 +224,8 @@ def sees_everything(scope: UserdataScope) -> bool:
 def used_in(scope: UserdataScope) -> set[str]:
     """The keys that a state in a container declares as inputs, that its class reads, or over which
     it iterates, and the outputs of the container."""
-    found = {*scope.reads.get(START, ()), *scope.outputs}
+    found = {*scope.uses.read, *scope.outputs}
     for child in scope.container.children:
-        if child.inputs:
-            names = remapping(child)
-            found.update(names.get(key.name, key.name) for key in child.inputs)
         if isinstance(child, Leaf) and child.class_facts is not None:
-            found.update(word.text for word in child.class_facts.reads)  # SM310
+            found.update(word.text for word in child.class_facts.reads)
     return found

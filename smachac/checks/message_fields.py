@@ -78,7 +78,7 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs, outer_outputs
 from smachac.ir.types import Type
 
 TYPE_KEY = "msg_type"
@@ -281,13 +281,8 @@ def type_key_meant(container: Node | None) -> str | None:
     ]
     if not held:
         return None
-    outside = {remapping(container).get(key.name, key.name) for key in container.outputs}
-    read = {
-        remapping(child).get(key.name, key.name)
-        for child in container.children
-        for key in child.inputs
-    }
-    unread = [key for key in held if key not in read | outside]
+    read = {key for child in container.children for key in outer_inputs(child)}
+    unread = [key for key in held if key not in read.union(outer_outputs(container))]
     return unread[0] if len(unread) == 1 else None
 
 

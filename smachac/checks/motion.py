@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of
 from smachac.analysis.reaching_values import Read, last_writers
+from smachac.analysis.uses import place_of
 from smachac.checks.messages import calls, other_place
 from smachac.checks.robot import as_float, at, frame_of, role_of
 from smachac.checks.rule import rule
@@ -15,7 +15,7 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.ir.graph import START
 from smachac.ir.nodes import Key, Leaf, Node, is_number
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs, outputs_to
 
 
 @rule(
@@ -131,11 +131,9 @@ def wrong_frame(context: Context) -> Iterator[Finding]:
     for path, container in context.linear:
         for child in container.children:
             if isinstance(child, Leaf) and any(key.frame for key in child.inputs):
-                names = remapping(child)
-                for key in child.inputs:
+                for key, outer in zip(child.inputs, outer_inputs(child), strict=True):
                     if key.frame:
-                        read = Read(path, container, names.get(key.name, key.name), child.name)
-                        framed[read] = child, key
+                        framed[Read(path, container, outer, child.name)] = child, key
     for read, sources in last_writers(framed):
         child, key = framed[read]
         writers = {each.name: each for each in read.container.children}
@@ -171,9 +169,8 @@ def _preset(read: Read) -> tuple[str, Span] | None:
 
 def _output(node: Node, key: str) -> tuple[str, Span] | None:
     """The frame of the poses that a state writes to a key of its container, and its place."""
-    names = remapping(node)
-    for each in node.outputs if isinstance(node, Leaf) else ():
-        if each.frame and names.get(each.name, each.name) == key:
+    for each in outputs_to(node, key) if isinstance(node, Leaf) else ():
+        if each.frame:
             return each.frame, node.span
     return None
 

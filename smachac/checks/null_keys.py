@@ -10,14 +10,14 @@ from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.expression_errors import function_faults
 from smachac.analysis.null_guards import excludes_null
 from smachac.analysis.type_lattice import NONE, mapping, present
-from smachac.checks.candidate_keys import UnreadOutput, may_be, unread_output
+from smachac.checks.candidate_keys import may_be, unread_output
 from smachac.checks.meant_keys import sees_everything
 from smachac.checks.messages import other_place
 from smachac.checks.value_places import place_of_fault
 from smachac.diagnostics.diagnostic import Finding
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Container, Leaf, Preset
-from smachac.ir.traversal import outcome_names, remapping
+from smachac.ir.traversal import inputs_from, outcome_names
 from smachac.ir.types import ANY, Type
 
 
@@ -69,10 +69,8 @@ def _readers(path: str, container: Container, key: str) -> Iterator[tuple[str, L
     """The leaves in a container and in those below it that read a key, with their paths and their
     names for it; none below a container that compares the key with null."""
     for child in container.children:
-        names, below = remapping(child), f"{path}/{child.name}"
-        for each in child.inputs:
-            if names.get(each.name, each.name) != key:
-                continue
+        below = f"{path}/{child.name}"
+        for each in inputs_from(child, key):
             if isinstance(child, Leaf):
                 yield below, child, each.name
             elif not _is_compared(child, each.name):
@@ -93,15 +91,4 @@ def _is_always_null(scope: UserdataScope, key: str) -> bool:
     null."""
     if key in scope.inputs or sees_everything(scope):
         return False
-    for child in scope.container.children:
-        names = remapping(child)
-        if any(names.get(each.name, each.name) == key for each in child.outputs):
-            return False
-    return not _is_compared(scope.container, key)
-
-
-def output_for_null(context: Context, path: str, key: str) -> UnreadOutput | None:
-    """The output that nothing reads and that is probably meant for a key which the container at
-    `path` sets to nothing but null."""
-    scope = context.corrected_flow.scopes.get(path)
-    return unread_output(scope, key) if scope is not None and _is_always_null(scope, key) else None
+    return key not in scope.uses.written and not _is_compared(scope.container, key)

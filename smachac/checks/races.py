@@ -18,7 +18,7 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import both, either
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, Variable
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outputs_to, remapping
 
 MOST_PLACES = 4
 """Limit on the other branches that a finding shows."""
@@ -116,7 +116,7 @@ def raced_keys(context: Context) -> set[tuple[str, str]]:
         if raced is not None and not any(
             _is_never_set(child, raced.key) for child in container.children
         ):
-            outer = remapping(container).get(raced.meant, raced.meant)
+            outer = remapping(container)[raced.meant]
             found.add((path.rpartition("/")[0], outer))
     return found
 
@@ -132,8 +132,7 @@ def _is_never_set(writer: Node, key: str) -> bool:
 
 def _own_key(writer: Node, key: str) -> str:
     """The name that a branch has for a key that it writes."""
-    names = remapping(writer)
-    return next((each.name for each in writer.outputs if names.get(each.name) == key), key)
+    return next((each.name for each in outputs_to(writer, key)), key)
 
 
 def _race(

@@ -36,7 +36,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.script_paths import name_in_script
-from smachac.ir.traversal import ends_preempted, outcome_names, remapping
+from smachac.ir.traversal import ends_preempted, outcome_names, outer_outputs
 
 
 @rule(
@@ -157,15 +157,13 @@ def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
 def keys_of_hidden_states(context: Context) -> dict[tuple[str, str], frozenset[str]]:
     """The keys that states set past which the state before them leads (SM201), each with the path
     of its container; and the states that are entered without that transition."""
-    found = {}
+    found: dict[tuple[str, str], frozenset[str]] = {}
     for each in _hidden_groups(context):
         if isinstance(each, Finding) or each.past is None or not each.past.next:
             continue
         entered = _entered_without(each.container, each.past.step)
         for child in each.group:
-            names = remapping(child)
-            for key in child.outputs:
-                found[each.path, names.get(key.name, key.name)] = entered
+            found |= {(each.path, key): entered for key in outer_outputs(child)}
     return found
 
 

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
 from smachac.analysis.accesses import (
     callback_names,
-    fields_of,
     scripted_steps,
-    userdata_fields,
 )
-from smachac.analysis.code_slots import code_slots, undeclared_slot_reads, userdata_parameter
+from smachac.analysis.code_slots import undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
-from smachac.checks.candidate_keys import keys_around, meant_input
-from smachac.checks.class_code import dropped_writes, unknown_reads
+from smachac.checks.candidate_keys import keys_around
+from smachac.checks.class_code import (
+    DICTIONARY_METHODS,
+    dropped_writes,
+    first_of_each,
+    leaves_by_type,
+    unknown_reads,
+    used_here,
+)
 from smachac.checks.code_slots import unknown_function_reads
 from smachac.checks.edits import listing, with_key_list, with_output
 from smachac.checks.messages import calls, did_you_mean
 from smachac.checks.rule import rule
-from smachac.checks.unlisted_keys import unlisted_reads, unlisted_writes
 from smachac.checks.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
@@ -30,7 +33,7 @@ from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.code_places import key_place
 from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, StateType, Struct
+from smachac.ir.nodes import Container, Leaf, StateType, Struct
 
 
 @rule("SM308", "lossy-write", Severity.ERROR)
@@ -67,7 +70,7 @@ def lossy_write(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_lossy_writes)
     yield from dropped_writes(context)
-    yield from unlisted_writes(context)
+    yield from _unlisted(context, "output")
 
 
 def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
@@ -80,22 +83,17 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
             only = any(each.name == key for each in leaf.inputs)
             what = "only an input key" if only else "not one of its output keys"
             span = _place_of_write(leaf, key)
-            meant = _meant(key, leaf.outputs if not only else ())
-            unset = _never_set(leaf) if not meant else []
-            added = listing([leaf], "output_keys", key)
-            help = f"did you mean {listed(unset)}? or {added}" if unset else added
-            if len(unset) == 1:
-                help = f"write `{key}` in place of `{unset[0]}` in the `output_keys` of"
-                help += f" `{leaf.name}`, or `{unset[0]}` in place of `{key}` here"
+            never_set = listed(_never_set(leaf))
             yield Finding(
                 span=span,
                 message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",
                 arguments=(key,),
-                help=meant or help,
+                help=listing([leaf], "output_keys", key)
+                + (f"; nothing in `{leaf.name}` sets {never_set}" if never_set else ""),
                 related=calls(leaf, span),
                 node=inner,
                 # With an edit, a state that reads the key that is not set would fail in the run.
-                edits=with_output(leaf, key) if not meant and not unset else (),
+                edits=with_output(leaf, key) if not never_set else (),
             )
 
 
@@ -124,10 +122,6 @@ def leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Lea
     for child in container.children if not raw else ():
         if isinstance(child, Leaf) and child.variables and not child.open:
             yield f"{path}/{child.name}", child
-
-
-def _meant(key: str, known: Iterable[Key]) -> str | None:
-    return did_you_mean(guesser(each.name for each in known)(key))
 
 
 def _never_set(leaf: Leaf) -> list[str]:
@@ -199,40 +193,8 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     """
     yield from context.at_containers(_undeclared_accesses, context.machine.state_types)
     yield from unknown_reads(context)
-    yield from unlisted_reads(context)
+    yield from _unlisted(context, "input")
     yield from unknown_function_reads(context)
-
-
-def lone_input(leaf: Leaf, container: Container) -> str | None:
-    """The only input key of a leaf that its code does not read, if the code reads exactly one key
-    that is not declared and is no misspelt one; otherwise None."""
-    item = container.item_key if isinstance(container, nodes.Iterator) else None
-    wrong = [key for key, _ in undeclared_reads(leaf) if key != item]
-    called = [*(functions(leaf, "callbacks") or {}).values(),
-              *(functions(leaf, "conditions") or {}).values()]  # fmt: skip
-    fields = [userdata_fields(code.text) for code in called] if len(wrong) == 1 else []
-    if not fields or guesser(each.name for each in leaf.inputs)(wrong[0]) is not None:
-        return None
-    used = {key for each in fields if each is not None for key in (*each.read, *each.tested)}
-    left = [key for key in leaf.inputs if key.name not in used]
-    sure = None not in fields and len(left) == 1 and left[0].role == "argument"
-    return left[0].name if sure else None
-
-
-def _read_by_code(leaf: Leaf, types: Mapping[str, StateType]) -> set[str]:
-    """The keys that code of the script in a leaf reads, and those that a variable lists; also all
-    inputs, if some code cannot be read."""
-    listed = (each.value.data for each in leaf.variables if isinstance(each.value.data, tuple))
-    found = {key for names in listed for key in names if isinstance(key, str)}
-    for slot in code_slots(leaf, types):
-        name, tree = userdata_parameter(slot), slot.tree
-        fields = userdata_fields(slot.code.text)
-        if name is not None and isinstance(tree, ast.Lambda):
-            fields = fields_of(tree.body, {name})
-        if fields is None:
-            return found | {key.name for key in leaf.inputs}
-        found.update(fields.read, fields.tested)
-    return found
 
 
 def _undeclared_accesses(
@@ -242,7 +204,6 @@ def _undeclared_accesses(
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
         if not read:
             continue
-        lone = lone_input(leaf, container) if len(read) == 1 else None
         guess = guesser(each.name for each in leaf.inputs)
         names = [key for key, _ in read]
         if len(read) > 1 and not leaf.inputs and keys_around(container).issuperset(names):
@@ -253,9 +214,6 @@ def _undeclared_accesses(
             if isinstance(container, nodes.Iterator) and key == container.item_key:
                 continue
             span = key_place(code, key)
-            near = guess(key)
-            if near is not None:
-                near = meant_input(key, guess, _read_by_code(leaf, types), container)
             added = listing([leaf], "input_keys", key)
             if key not in keys_around(container):
                 added += f", and set it before, for example in `userdata: {{{key}: ...}}`"
@@ -264,15 +222,31 @@ def _undeclared_accesses(
                 message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
                 " input keys",
                 arguments=(key,),
-                help=did_you_mean(near)
-                or (
-                    f"write `{lone}` in place of `{key}`: it is the only input key of"
-                    f" `{leaf.name}` that its code does not read"
-                    if lone
-                    else None
-                )
-                or added,
+                help=added,
                 related=calls(leaf, code.span),
                 node=inner,
-                edits=respelt(Word(key, span), guess.sure(key)) if near is not None else (),
+                edits=respelt(Word(key, span), guess.sure(key)),
+            )
+
+
+def _unlisted(context: Context, role: Literal["input", "output"]) -> Iterator[Finding]:
+    """The keys that the class of a template without an interface uses, although its constructor,
+    whose lists are constants, does not pass them to `smach.State`."""
+    for path, leaf, facts in leaves_by_type(context, declared=True):
+        is_read = role == "input"
+        names = [key.name for key in (leaf.inputs if is_read else leaf.outputs)]
+        words = facts.unlisted_reads if is_read else facts.unlisted_writes
+        known = DICTIONARY_METHODS if is_read else {word.text for word in facts.unlisted_reads}
+        for word in first_of_each(words, known):
+            near = guesser(names)(word.text) if word.text not in names else None
+            verb, lost = ("reads", "") if is_read else ("sets", ": the value is discarded")
+            yield Finding(
+                span=word.span,
+                message=f"the code of `{leaf.type}` {verb} `{word.text}`, which its `__init__` does"
+                f" not pass to `smach.State` as an {role} key{lost}",
+                arguments=(word.text,),
+                help=did_you_mean(near)
+                or f"add `{word.text}` to the `{role}_keys` of `smach.State.__init__`",
+                related=used_here(leaf),
+                node=path,
             )

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from smachac.analysis.accesses import USERDATA, fields_of
 from smachac.analysis.code_slots import code_slots, free_names, userdata_parameter
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of
 from smachac.analysis.message_code import leaf_definitions
+from smachac.analysis.uses import place_of
 from smachac.checks.messages import calls
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.spelling import guesser

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from smachac.analysis.accesses import callback_names, received_part, unreceived_outputs
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of, uses_by_key
 from smachac.analysis.error_recovery import undeclared_writes
 from smachac.analysis.message_code import leaf_definitions
+from smachac.analysis.uses import place_of
 from smachac.checks.messages import calls
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
@@ -104,11 +104,10 @@ def read_unwritten(
     certain = [each for each in unwritten if each.leaf.built_in]
     never = {(each.path, each.key.name) for each in certain}
     for path, leaf, key, _, _ in certain:
-        outer = path.rpartition("/")[0], remapping(leaf).get(key.name, key.name)
+        outer = path.rpartition("/")[0], remapping(leaf)[key.name]
         if outer not in missing or outer[0] not in flow.scopes:
             continue
-        users = uses_by_key(flow, outer[0]).get(outer[1], [])
-        writers = [use for use in users if use.kind not in ("reads", "copies in")]
+        writers = flow.scopes[outer[0]].uses.writers(outer[1])
         if all((use.path, use.key) in never for use in writers):
             found[path, key.name] = outer
     return found
@@ -130,7 +129,7 @@ def unwritten_finding(found: Unwritten, *, read: bool) -> Finding | None:
         message = f"`{leaf.name}` never writes `{key.name}`: `{leaf.type}` writes {listed(names)}"
         free = [name for name in names if all(each.name != name for each in leaf.outputs)]
         meant = guesser(free)(key.name) or (free[0] if free else None)
-        outer = remapping(leaf).get(key.name, key.name)
+        outer = remapping(leaf)[key.name]
         if meant is not None:
             help = f"write `output_keys: [{meant}]` and `remapping: {{{meant}: {outer}}}`"
         if any(each.role == "callbacks" for each in leaf.variables):

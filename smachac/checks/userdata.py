@@ -8,7 +8,6 @@ from functools import cache
 from pathlib import PurePath
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import place_of, uses_by_key
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
@@ -21,6 +20,7 @@ from smachac.analysis.unset_reads import (
 )
 from smachac.checks.candidate_keys import (
     MOST_FITTING,
+    keys_of,
     keys_of_type,
     may_be,
     meant_by_remap,
@@ -41,7 +41,7 @@ from smachac.checks.misled_failures import Misled, misled_failures
 from smachac.checks.races import raced_keys
 from smachac.checks.reachability import keys_of_hidden_states
 from smachac.checks.rule import rule
-from smachac.checks.unset_read_findings import Guesses, name_help, unset_read
+from smachac.checks.unset_read_findings import unset_read
 from smachac.checks.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
@@ -112,12 +112,10 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     """
     flow = context.corrected_flow
     searches = Searches(flow)
-    guesses = Guesses()
-    used = cache(lambda path: uses_by_key(flow, path))
     presets, misled = meant_keys(context), misled_failures(context)
     misnamed = misnamed_keys(context)
     causes = _with_their_own_cause(context)
-    for lacking in missing_together(causes, used):
+    for lacking in missing_together(causes):
         if lacking[0].scope.path in presets:
             continue
         yield together_finding(context, lacking)
@@ -136,9 +134,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
             misplaced = node.misplaced_keys if isinstance(node, nodes.Leaf) else ()
             if witness.reader.key in misplaced and not witness.also:
                 continue  # SM003 reports the cause
-            users = used(missing.scope.path).get(missing.key, [])
-            guess = guesses if is_searched else None
-            finding = unset_read(missing, witness, users, guess, context.types)
+            finding = unset_read(flow, missing, witness, context.types, is_searched=is_searched)
             if wrong is not None:
                 help = f"did you mean `{wrong.word.text}`?"
                 finding = _with_unread(finding, help, wrong.word)
@@ -307,9 +303,8 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: held}
     """
     yield from context.at_containers(_unknown_remaps, context.machine.definitions)
-    guesses = Guesses()
     for missing in context.missing_keys("remapped"):
-        yield from _remapped(context.types, missing, guesses)
+        yield from _remapped(context.types, missing)
     yield from empty_remap_findings(context)
 
 
@@ -354,7 +349,7 @@ def _lacking(path: str, node: Container, keys: Sequence[str]) -> Finding:
         (child, key)
         for child in node.children
         for key in child.inputs
-        if remapping(child).get(key.name, key.name) == first.key
+        if remapping(child)[key.name] == first.key
     ]
     return Finding(
         span=first.span,
@@ -398,15 +393,15 @@ def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[
         )
 
 
-def _remapped(types: Types, missing: Missing, guesses: Guesses) -> Iterator[Finding]:
+def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
     """The remaps to a key that nothing sets."""
     scope, key = missing.scope, missing.key
-    around = scope.container.name
+    around, guess = scope.container.name, guesser(sorted(keys_of(scope)))
     for child in scope.container.children:
         for remap in child.remaps:
             if remap.to != key or child.name not in missing.vertices:
                 continue
-            meant = meant_by_remap(types, scope, child, remap, guesses.of(scope))
+            meant = meant_by_remap(types, scope, child, remap, guess)
             unread = unread_output(scope, key) if meant is None else None
             wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
             fits = unread is not None and may_be(types, scope, unread.key, wanted)
@@ -503,13 +498,6 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
             help = f"write `{key}` in place of `{loop.item_key}` in the `input_keys` of"
             help += f" {listed(between)}: the `for_each` of `{loop.name}` sets `{loop.item_key}`;"
             help += f" or move the `for_each` to {listed(between)}"
-        inner = _inner_name(scope, missing.other, key)
-        if inner is not None:
-            help = name_help(reader.node, reader.key, key, inner)
-            if remapping(reader.node).get(reader.key) == key:
-                help = f"write `{reader.key}: {inner}`"
-            help = f"{help.rstrip('?')}: the remapping of `{scope.container.name}` gives `{key}`"
-            help += " this name"
         if isinstance(holder, nodes.Iterator) and holder.item_key == key:
             why = f"which the loop `{held}` provides, but which is not an input of"
             why += " its state" if list(between) == [held] else f" {listed(between)}"
@@ -531,18 +519,8 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
                 *calls(reader.node, reader.span),
             ),
             node=reader.path,
-            edits=_taken_in(flow, scope.path, missing.other, key) if inner is None else (),
+            edits=_taken_in(flow, scope.path, missing.other, key),
         )
-
-
-def _inner_name(scope: UserdataScope, holder: str, key: str) -> str | None:
-    """The input of a container that its remapping gives the value of a key of the container around
-    it, if there is exactly one."""
-    if scope.path.rpartition("/")[0] != holder:
-        return None
-    inputs = {each.name for each in scope.container.inputs}
-    found = [each.key for each in scope.container.remaps if each.to == key and each.key in inputs]
-    return found[0] if len(found) == 1 else None
 
 
 def _list_of(container: Container, keys: Sequence[Key], field: str) -> tuple[Related, ...]:
@@ -643,15 +621,16 @@ def lost_output(context: Context) -> Iterator[Finding]:
     """
     shown: set[tuple[Span, str]] = set()
     for lost in context.lost_outputs:
-        keeper, written = lost.keeper.container, place_of(lost.writer, lost.written)
+        keeper, written = lost.keeper.container, lost.written.span
+        own = lost.written.outer
         called = bool(keeper.via) and written.source is not keeper.span.source
-        if called and (written, lost.own) in shown:
+        if called and (written, own) in shown:
             continue  # another call of the same sub-script
-        shown.add((written, lost.own))
-        inner = f"`{lost.own}`" + (f" (`{lost.key}` outside)" * (lost.own != lost.key))
+        shown.add((written, own))
+        inner = f"`{own}`" + (f" (`{lost.key}` outside)" * (own != lost.key))
         gets = "an unset key" if lost.is_missing else "an older value"
         wrong, reader = lost.misspelt, name_in_script(lost.reader.node)
-        writer = name_in_script(lost.writer)
+        writer = name_in_script(lost.written.node)
         itself = reader == keeper.name
         happens = "it is lost at the end of each run" if itself else f"`{reader}` reads {gets}"
         effect = f"`{reader}` works with a value that was set before"
@@ -663,12 +642,12 @@ def lost_output(context: Context) -> Iterator[Finding]:
         place = written if called else keeper.span
         if called and listed_here:
             place = listed_here[-1].span
-        fix = f"write `{lost.own}` in place of `{wrong.name}`" if wrong is not None else ""
+        fix = f"write `{own}` in place of `{wrong.name}`" if wrong is not None else ""
         yield Finding(
             span=wrong.span if wrong is not None else place,
             message=f"{inner}, set by `{writer}`, is not an output of `{keeper.name}`: {happens}",
-            arguments=(lost.own,),
-            help=fix or _output_help(lost.own, keeper, written if called else None),
+            arguments=(own,),
+            help=fix or _output_help(own, keeper, written if called else None),
             related=(
                 *(other_place(written, f"`{writer}` sets it here") if place != written else ()),
                 *other_place(lost.reader.span, lost.reader.words),
@@ -680,7 +659,7 @@ def lost_output(context: Context) -> Iterator[Finding]:
             node=lost.keeper.path,
             edits=()
             if called or wrong is not None or not lost.is_missing
-            else with_output(keeper, lost.own),
+            else with_output(keeper, own),
         )
 
 

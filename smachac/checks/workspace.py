@@ -117,7 +117,7 @@ def _offsets(types: Types, path: str, leaf: Leaf) -> list[Numbers | None]:
     """The possible offsets of a state (None: the key is absent); empty if they are unknown."""
     names, cell = remapping(leaf), None
     for key in key_names(leaf.inputs, "goal_offset"):
-        cell = types.cells.get((path, names.get(key, key)))
+        cell = types.cells.get((path, names[key]))
     flows = [flow for alike in cell.flows.values() for flow in alike] if cell is not None else []
     found: list[Numbers | None] = []
     for flow in flows:

@@ -8,7 +8,7 @@ import os
 import re
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from smachac.commands.output import FINDINGS, OK, shown
@@ -80,17 +80,41 @@ def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
     made: list[Path] = []
     try:
         for path in paths:
-            missing = [each for each in path.parents if not each.exists()]
-            for each in reversed(missing):
-                each.mkdir(exist_ok=True)
-                made.append(each)
+            made += make_folders(path.parent)
         put_all(paths)
     except BaseException:
-        for each in reversed(made):
-            with contextlib.suppress(OSError):
-                each.rmdir()
+        remove_folders(made)
         raise
     return list(paths)
+
+
+def make_folders(folder: Path) -> list[Path]:
+    """Make a folder and those above it that are missing; those that were made, outermost first.
+
+    Raises OSError, after which none is left. Its text names what is no folder, with the target
+    of a link.
+    """
+    missing = [path for path in (folder, *folder.parents) if not path.is_dir()]
+    for path in missing:
+        if os.path.lexists(path):
+            what = f"is a link to {shown(path.readlink())}, which " if path.is_symlink() else ""
+            raise NotADirectoryError(errno.ENOTDIR, f"{shown(path)} {what}is no folder")
+    made: list[Path] = []
+    try:
+        for path in reversed(missing):
+            path.mkdir(exist_ok=True)
+            made.append(path)
+    except OSError:
+        remove_folders(made)
+        raise
+    return made
+
+
+def remove_folders(made: Sequence[Path]) -> None:
+    """Remove what `make_folders` has made, unless it is used."""
+    for path in reversed(made):
+        with contextlib.suppress(OSError):
+            path.rmdir()
 
 
 class ChangedError(Exception):

@@ -7,7 +7,8 @@ import os
 import sys
 from argparse import Namespace
 
-from smachac.commands.output import FINDINGS, OK, shown, usage
+from smachac.commands.arguments import colour
+from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ examples:
   smachac new state Grasp --target cpp     include/robot_states/grasp.hpp
 
 Existing files are never overwritten.
-exit codes: 0 success, 1 a file exists or cannot be written, 2 wrong usage, 70 a bug in smachac
+exit codes: 0 success, 1 a file exists, has errors or cannot be written, 2 wrong usage,
+70 a bug in smachac
 """
 
 
@@ -42,6 +44,7 @@ def new_arguments(parser: argparse.ArgumentParser) -> None:
                             help=f"an {name} key of the state type (repeatable)")  # fmt: skip
     parser.add_argument("--outcome", action="append", default=[], metavar="NAME",
                         help="an outcome of the state type (repeatable)")  # fmt: skip
+    colour(parser)
 
 
 def new_command(arguments: Namespace) -> int:
@@ -105,6 +108,7 @@ def _state(name: str, arguments: Namespace) -> int:
         key_and_type,
         stub,
     )
+    from smachac.diagnostics.diagnostic import has_errors
     from smachac.frontend.files import disk_library
     from smachac.frontend.state_types import find_state_type
 
@@ -134,6 +138,9 @@ def _state(name: str, arguments: Namespace) -> int:
         files[f"templates/{name}.yml"] = text
         library = _with(library, f"{name}.yml", files[f"templates/{name}.yml"])
     type_ = find_state_type(name, library, report)
+    if has_errors(report):
+        print_report(report, arguments, sys.stderr)
+        return FINDINGS
     assert type_ is not None
     from smachac.targets.cpp.types import UnportableError
 

@@ -235,7 +235,7 @@ def _run_program(arguments: Namespace, analysis: Analysis) -> int:
     faults: tuple[Fault, ...] | None = ()
     if arguments.faults is not None:
         found: Report = []
-        faults = read_fault_file(arguments.faults, found)
+        faults = read_fault_file(arguments.faults, machine, found)
         print_report(found, arguments, sys.stderr)
     if faults is None:
         return FINDINGS
@@ -491,13 +491,14 @@ def watching(
 ) -> Iterator[tuple[Callable[[Event], None], list[Event]]]:
     """An observer that writes the trace, shows progress and feeds the view, and the error events it
     received."""
+    from smachac.commands.files import make_folders
     from smachac.runtime.tracing.progress import Progress
     from smachac.runtime.tracing.writer import TraceWriter
 
     recorders: list[TraceWriter | LiveTrace] = [] if view is None else [view]
     with ExitStack() as stack:
         if arguments.trace is not None:
-            arguments.trace.parent.mkdir(parents=True, exist_ok=True)
+            make_folders(arguments.trace.parent)
             stream = stack.enter_context(arguments.trace.open("wb", buffering=0))
             failures: list[OSError] = []
             recorders.append(TraceWriter(partial(_write_lines, stream.fileno(), failures)))
@@ -546,10 +547,14 @@ NO_SCENARIO = "the scenario cannot be played, so nothing is run"
 """What the findings in a file of faults or a scenario have as their effect."""
 
 
-def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
-    """The faults of a file; None, with findings in the report, if it has mistakes."""
+def read_fault_file(path: Path, machine: Machine, report: Report) -> tuple[Fault, ...] | None:
+    """The faults of a file; None, with findings in the report, if it has mistakes, such as a state
+    that the machine does not have. A simulation knows states by their full paths."""
+    from dataclasses import replace
+
     from smachac.frontend.data_files import plain, span_at
     from smachac.frontend.errors.script import wrong_shape
+    from smachac.interpreter.scenario import leaves_named
     from smachac.robots.faults import read_file
     from smachac.robots.fields import DataError
 
@@ -557,11 +562,19 @@ def read_fault_file(path: Path, report: Report) -> tuple[Fault, ...] | None:
     if tree is None:
         return None
     try:
-        return read_file(plain(tree))
+        faults = [*read_file(plain(tree))]
     except DataError as error:
         place = span_at(tree, error.place)
         report.append(wrong_shape(place, error.message, error.help, effect=NO_FAULTS))
         return None
+    for number, fault in enumerate(faults):
+        paths, problem = ([], None) if fault.state is None else leaves_named(fault.state, machine)
+        if problem is not None:
+            place = span_at(tree, ("faults", number, "state"))
+            report.append(wrong_shape(place, problem.message, problem.help, effect=NO_FAULTS))
+        elif len(paths) == 1:
+            faults[number] = replace(fault, state=paths[0])
+    return None if report else (*faults,)
 
 
 def read_scenario_file(
@@ -580,7 +593,7 @@ def read_scenario_file(
     scenario, found = read_scenario(plain(tree), machine)
     for problem in found:
         place = _place(problem, tree)
-        report.append(wrong_shape(place, problem.message, effect=NO_SCENARIO))
+        report.append(wrong_shape(place, problem.message, problem.help, effect=NO_SCENARIO))
     if report:
         return None, {}
     states = tree.get("states") if isinstance(tree, Map) else None

@@ -10,6 +10,7 @@ from keyword import iskeyword
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.ir.nodes import StateType
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
+from smachac.report.terminal import on_one_line
 
 LANGUAGES = ("python", "cpp")
 
@@ -97,14 +98,26 @@ def stub(type_: StateType, language: str) -> str:
     return _cpp_stub(type_) if language == "cpp" else _python_stub(type_)
 
 
+def _summary(type_: StateType) -> str:
+    """The first line of the doc of a type, as a comment can have it in every language."""
+    line = on_one_line((type_.doc or "what it does.").splitlines()[0]).replace("\\", "/")
+    return f"{type_.name}: {line}"
+
+
+def _outcomes(type_: StateType) -> list[str]:
+    """The outcomes of a type: at least the one that a stub returns."""
+    return [outcome.name for outcome in type_.outcomes] or ["succeeded"]
+
+
 def _python_stub(type_: StateType) -> str:
-    outcomes = [each.name for each in type_.outcomes] or ["succeeded"]
+    outcomes = _outcomes(type_)
+    quoted = _summary(type_).replace('"', "'")
     arguments = [f"outcomes={outcomes!r}"]
     for part, keys in (("input_keys", type_.input_keys), ("output_keys", type_.output_keys)):
         arguments += [f"{part}={[key.name for key in keys]!r}"] if keys else []
     variables = "".join(f", {name}" for name in type_.variables)
     lines = [
-        f'"""{type_.name}: {type_.doc or "what it does."}"""',
+        f'"""{quoted}"""',
         "",
         "try:",
         "    import smach",
@@ -143,7 +156,7 @@ def _cpp_stub(type_: StateType) -> str:
         text = parameter_type(of)
         return f"{text}{identifier(name)}" if text.endswith("&") else f"{text} {identifier(name)}"
 
-    outcomes = [identifier(each.name) for each in type_.outcomes]
+    outcomes = [*map(identifier, _outcomes(type_))]
     variables = [(name, each.type) for name, each in type_.variables.items()]
     given = [
         *(["In in"] if type_.input_keys else []),
@@ -152,7 +165,7 @@ def _cpp_stub(type_: StateType) -> str:
     ]
     members = [f"  {cpp_type(each)} {identifier(name)}_;" for name, each in variables]
     lines = [
-        f"// {type_.name}: {type_.doc or 'what it does.'}",
+        f"// {_summary(type_)}",
         "#pragma once",
         "",
         "#include <cstdint>",

@@ -146,12 +146,25 @@ def sweep_command(arguments: Namespace) -> int:
         signals = _perform(arguments, task, database)
         code = _report(arguments, machine, task, database)
         database.check_file()
+        if signals:
+            print(_interruption(arguments, database), file=sys.stderr)
     except (DatabaseError, WorkerError) as error:
         print(error, file=sys.stderr)
         return FINDINGS
     finally:
         database.close()
     return 128 + signals[0] if signals else code
+
+
+def _interruption(arguments: Namespace, database: Database) -> str:
+    """The sentence on a sweep that a signal ended."""
+    first, planned = arguments.seed, arguments.runs
+    done = len(database.seeds() & {*range(first, first + planned)})
+    runs = f"{done} of {planned} {'run is' if planned == 1 else 'runs are'} done"
+    if arguments.database is None:
+        advice = "with `--database FILE` the same command continues"
+        return f"interrupted: {runs}, and none is kept; {advice}"
+    return f"interrupted: {runs} and kept in {arguments.database}; the same command continues"
 
 
 def _file_with_two_uses(arguments: Namespace) -> str | None:
@@ -211,7 +224,7 @@ def _prepared(arguments: Namespace) -> tuple[Checked, Task, dict[str, str]] | in
     if arguments.expect is not None and arguments.expect not in known:
         return usage(f"the machine has no outcome `{arguments.expect}`", arguments.expect, known)
     found: Report = []
-    faults = () if arguments.faults is None else read_fault_file(arguments.faults, found)
+    faults = () if arguments.faults is None else read_fault_file(arguments.faults, machine, found)
     scenario = None
     if arguments.mock is not None:
         scenario, _ = read_scenario_file(arguments.mock, machine, found)

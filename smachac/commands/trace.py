@@ -82,6 +82,7 @@ def _files(parser: argparse.ArgumentParser, traces: str, *formats: str) -> None:
 def trace_command(arguments: Namespace) -> int:
     """Judge every trace, or count in them; the exit code."""
     from smachac.report.terminal import on_one_line
+    from smachac.sweep.database import DatabaseError
     from smachac.verify.statistics_report import statistics_json, statistics_text
     from smachac.verify.trace_report import refusals, trace_json, trace_text, untaken
 
@@ -95,7 +96,7 @@ def trace_command(arguments: Namespace) -> int:
         judged, taken, statistics = _judged(
             arguments.traces, machine, conformance=arguments.action == "check"
         )
-    except UnreadableTraceError as error:
+    except (UnreadableTraceError, DatabaseError) as error:
         return usage(str(error))
     never = untaken(machine, taken)
     bad = refusals(judged)

@@ -289,7 +289,28 @@ quadratic time."""
 
 def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     """The help line for a misspelt name, or None when nothing is near."""
-    return _nearest(word, tuple(dict.fromkeys(candidates)))
+    near = _nearest(word, tuple(dict.fromkeys(candidates)))
+    return None if near is None else f"did you mean `{near}`?"
+
+
+def did_you_mean_file(name: str, candidates: Iterable[str]) -> str | None:
+    """The help line for a misspelt name of a file, or None when nothing is near. Endings such as
+    `.yml` are not compared, because files of one kind share theirs; a candidate with the same
+    ending comes first."""
+    stem, ending = _stem_and_ending(name)
+    parts = [(*_stem_and_ending(each), each) for each in candidates]
+    parts.sort(key=lambda part: part[1] != ending)
+    by_stem = {part[0]: part[2] for part in reversed(parts)}
+    near = stem if stem in by_stem else _nearest(stem, tuple(by_stem))
+    return None if near is None else f"did you mean `{by_stem[near]}`?"
+
+
+def _stem_and_ending(name: str) -> tuple[str, str]:
+    """The parts of a path before and after the first dot in its last name: `robots/arm` and
+    `urdf.xacro`."""
+    folder, slash, last = name.rpartition("/")
+    stem, _, ending = last.partition(".")
+    return f"{folder}{slash}{stem}", ending
 
 
 # Cached, because a misspelt word is often repeated: a call costs 0.4 us instead of 30 us, 10 % of a
@@ -302,4 +323,4 @@ def _nearest(word: str, names: tuple[str, ...]) -> str | None:
         nearest = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
     if not nearest or are_unlike(word, nearest[0]):
         return None
-    return f"did you mean `{nearest[0]}`?"
+    return nearest[0]

@@ -39,7 +39,7 @@ from smachac.ir.nodes import (
     Variable,
 )
 from smachac.ir.outcome_names import GOOD_OUTCOMES
-from smachac.ir.traversal import PREEMPTED, outcome_names, remapping
+from smachac.ir.traversal import PREEMPTED, OuterNames, outcome_names, remapping
 from smachac.ir.types import optional
 
 
@@ -238,10 +238,10 @@ def _repeated(node: Node, loop: ForEach) -> Iterator:
 def _with_input(fields: dict[str, Any], outer: str, span: Span) -> str:
     """The key by which a container reads the key `outer` of its parent; added to `fields` if the
     container has none."""
-    remaps = {remap.key: remap.to for remap in fields["remaps"]}
+    remaps = OuterNames({remap.key: remap.to for remap in fields["remaps"]})
     names: list[str] = [key.name for key in fields["inputs"]]
     for name in names:
-        if remaps.get(name, name) == outer:
+        if remaps[name] == outer:
             return name
     name = _fresh(outer, (*names, *remaps))
     fields["inputs"] += (Key(name=name, span=span),)

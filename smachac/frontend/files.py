@@ -11,7 +11,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
-from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity, did_you_mean
+from smachac.diagnostics.diagnostic import (
+    Code,
+    Diagnostic,
+    Report,
+    Severity,
+    did_you_mean,
+    did_you_mean_file,
+)
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.config import (
     FOLDERS,
@@ -57,7 +64,7 @@ def read_source(path: Path, report: Report) -> Source | None:
         if isinstance(error, IsADirectoryError):
             near = _script_inside(path)
         elif isinstance(error, FileNotFoundError):
-            near = did_you_mean(path.name, _names_beside(path))
+            near = did_you_mean_file(path.name, _names_beside(path))
         message = f"this file cannot be read: {words}"
         report.append(unreadable_file(place, message, near, arguments=("read",)))
     return None

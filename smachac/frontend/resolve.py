@@ -23,6 +23,7 @@ from smachac.frontend.errors.references import (
 )
 from smachac.frontend.errors.script import too_big, wrong_shape
 from smachac.frontend.fields import as_name, expanded, kind_of, name_of, pairs_of, wrong
+from smachac.frontend.file_kinds import OTHER_FILES, kind_of_tree
 from smachac.frontend.kept import Kept, KeptCall, same_objects
 from smachac.frontend.loader import SUFFIXES, Library
 from smachac.frontend.message_definitions import (
@@ -153,6 +154,13 @@ def resolve(
             message = "a script must be a mapping; this list is a sub-script"
             help = "check or build the script that calls it"
         report.append(wrong_shape(span, message, help, arguments=("script", kind_of(tree))))
+        return None
+    kind = kind_of_tree(tree)
+    if kind in OTHER_FILES:
+        what, help = OTHER_FILES[kind]
+        help = help.replace("FILE", PurePath(source.name).name)
+        message = f"a script is expected; this is {what}"
+        report.append(wrong_shape(tree.entries[0].key.span, message, help, arguments=(kind,)))
         return None
     resolver = _Resolver(library, report, kept)
     script = resolver.script(source, tree)

@@ -17,9 +17,9 @@ from smachac.interpreter.behaviours import preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
 from smachac.ir.leaf import default_outcome
-from smachac.ir.nodes import Iterator, Leaf, Machine, Node
+from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.script_paths import walk_script
-from smachac.ir.traversal import PREEMPTED, outcome_names, walk
+from smachac.ir.traversal import PREEMPTED, enclosing, outcome_names, walk
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -185,7 +185,7 @@ def _by_path(scenario: Scenario, machine: Machine) -> dict[str, tuple[ScenarioSt
     for name, steps in scenario.steps.items():
         path = _found(name, leaves)
         if path is None:
-            raise ValueError(_not_found(name, machine, leaves))
+            raise ValueError(": ".join(filter(None, _not_found(name, machine, leaves))))
         by_path[path] = steps
     return by_path
 
@@ -195,6 +195,7 @@ class ScenarioProblem(NamedTuple):
     the number of the step, counted from 1."""
 
     message: str
+    help: str | None = None
     state: str | None = None
     step: int | None = None
 
@@ -216,37 +217,40 @@ def read_scenario(data: object, machine: Machine) -> tuple[Scenario, list[Scenar
     """
     problems: list[ScenarioProblem] = []
     steps: dict[str, tuple[ScenarioStep, ...]] = {}
-    if isinstance(data, dict) and "states" not in data:
-        near = (f"unknown key `{key}`; {help_}" for key in data
-                if (help_ := did_you_mean(str(key), ["states"])))  # fmt: skip
-        if message := next(near, None):
-            return Scenario(steps={}), [ScenarioProblem(message)]
+    leaves, unknown = _leaves(machine), 0
     if not isinstance(data, dict) or not isinstance(data.get("states"), dict):
         message = "a scenario is a mapping with `states`: a mapping of paths"
-        return Scenario(steps={}), [ScenarioProblem(message)]
+        near = (
+            (did_you_mean(str(key), ["states"]) for key in data if key != "states")
+            if isinstance(data, dict)
+            else ()
+        )
+        help_ = next(filter(None, near), None) or f"write `states: {{{_example(leaves)}}}`"
+        return Scenario(steps={}), [ScenarioProblem(message, help_)]
     problems.extend(
-        ScenarioProblem(f"unknown key `{key}`; a scenario has only `states`")
+        ScenarioProblem(f"unknown key `{key}`; a scenario has only `states`", f"remove `{key}`")
         for key in data
         if key != "states"
     )
-    leaves, unknown = _leaves(machine), 0
+    names: dict[str, str] = {}
     for key, given in data["states"].items():
         name = str(key)
         path = _found(name, leaves)
         if path is None:
             unknown += 1
-            message = f"there is no state `{name}`"
             if unknown <= MOST_EXPLAINED:
-                message = _not_found(name, machine, leaves)
-            problems.append(ScenarioProblem(message, name))
+                problems.append(ScenarioProblem(*_not_found(name, machine, leaves), name))
+            else:
+                problems.append(ScenarioProblem(f"there is no state `{name}`", None, name))
             continue
-        if path in steps:
-            shown = leaves[path].paths[0]
-            message = f"`{shown}` is given twice, the second time as `{name}`"
-            problems.append(ScenarioProblem(message, name))
+        if path in names:
+            message = f"`{names[path]}` and `{name}` are the same state"
+            problems.append(ScenarioProblem(message, "write all its steps in one list", name))
+        names.setdefault(path, name)
         entries = given if isinstance(given, list) else [given]
         if not entries:
-            problems.append(ScenarioProblem(f"`{name}` has no steps", name))
+            help_ = f"write `{_example(leaves, path)}`, or remove it"
+            problems.append(ScenarioProblem(f"`{name}` has no steps", help_, name))
         reader = _StepReader(leaves[path], name, problems)
         steps[path] = tuple(reader.step(entry, at) for at, entry in enumerate(entries, 1))
     return Scenario(steps=steps), problems
@@ -329,9 +333,8 @@ class _StepReader:
         return tuple(found)
 
     def problem(self, number: int, message: str, help_: str | None = None) -> None:
-        end = f"; {help_}" if help_ else ""
-        text = f"{self.place.paths[0]}, step {number}: {message}{end}"
-        self.problems.append(ScenarioProblem(text, self.name, number))
+        text = f"{self.place.paths[0]}, step {number}: {message}"
+        self.problems.append(ScenarioProblem(text, help_, self.name, number))
 
 
 @dataclass(frozen=True, slots=True)
@@ -346,6 +349,15 @@ class _Leaves:
         return self.by_path[path]
 
 
+def leaves_named(name: str, machine: Machine) -> tuple[list[str], ScenarioProblem | None]:
+    """The full paths of the leaves that a name means, which can be several; without one, the
+    fault."""
+    leaves = _leaves(machine)
+    found = _matches(name, leaves)
+    problem = None if found else ScenarioProblem(*_not_found(name, machine, leaves))
+    return found, problem
+
+
 def _leaves(machine: Machine) -> _Leaves:
     by_path = _leaves_by_path(machine)
     by_end: tuple[dict[str, list[str]], ...] = ({}, {}, {})
@@ -356,11 +368,11 @@ def _leaves(machine: Machine) -> _Leaves:
 
 
 def _leaves_by_path(machine: Machine) -> dict[str, _LeafEntry]:
-    nodes: dict[str, Node] = dict(walk(machine.root))
+    around = enclosing(machine.root)
     return {
         each.full: _LeafEntry(
             each.node,
-            each.node.open or isinstance(nodes[each.full.rpartition("/")[0]], Iterator),
+            each.node.open or isinstance(around[each.full][1], Iterator),
             (each.shown, each.plain, each.full),
         )
         for each in walk_script(machine.root)
@@ -389,15 +401,25 @@ def _found(name: str, leaves: _Leaves) -> str | None:
     return matches[0] if len(matches) == 1 else None
 
 
-def _not_found(name: str, machine: Machine, leaves: _Leaves) -> str:
-    """The message for a name that is no leaf, or several."""
+def _not_found(name: str, machine: Machine, leaves: _Leaves) -> tuple[str, str | None]:
+    """The message and the help for a name that is no leaf, or several."""
     matches = [leaves[path].paths[0] for path in _matches(name, leaves)]
     if matches:
-        return f"`{name}` may be any of {', '.join(f'`{path}`' for path in matches)}"
+        named = ", ".join(f"`{path}`" for path in matches)
+        return f"`{name}` may be any of {named}", "write one of them, or an entry for each"
     paths = (path for each in walk_script(machine.root) for path in (each.shown, each.full))
     if any(f"/{path}".endswith(f"/{name}") for path in paths):
-        return f"`{name}` is a container: it ends as its states make it end"
+        message = f"`{name}` is a container: it ends as its states make it end"
+        return message, "name one of its states"
     shown = [each.paths[0] for each in leaves.by_path.values()]
     names = [*shown, *(path.rpartition("/")[2] for path in shown)]
-    help_ = did_you_mean(name, names)
-    return f"there is no state `{name}`" + (f"; {help_}" if help_ else "")
+    return f"there is no state `{name}`", did_you_mean(name, names)
+
+
+def _example(leaves: _Leaves, path: str = "") -> str:
+    """An entry of a scenario, for a leaf with a path or for the first one: `PICK: [succeeded]`."""
+    place = leaves.by_path.get(path) or next(iter(leaves.by_path.values()), None)
+    if place is None:
+        return "STATE: [OUTCOME]"
+    outcomes = outcome_names(place.leaf) or ("OUTCOME",)
+    return f"{place.paths[0].rpartition('/')[2]}: [{outcomes[0]}]"

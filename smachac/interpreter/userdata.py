@@ -106,7 +106,7 @@ def copy_in(node: Node, around: Mapping[str, object], own: dict[str, object]) ->
     """
     names = remapping(node)
     for key in node.inputs:
-        outer = names.get(key.name, key.name)
+        outer = names[key.name]
         if outer in around:
             own[key.name] = around[outer]
 
@@ -116,7 +116,7 @@ def copy_out(node: Node, own: Mapping[str, object], around: dict[str, object]) -
     names = remapping(node)
     for key in node.outputs:
         if key.name in own:
-            around[names.get(key.name, key.name)] = own[key.name]
+            around[names[key.name]] = own[key.name]
 
 
 class Userdata:
@@ -157,7 +157,7 @@ class Userdata:
     def __getitem__(self, key: str) -> object:
         if self._reads is not None and key not in self._reads:
             raise UserdataError("undeclared-read", f"reads `{key}`, which is not one of its inputs")
-        outer = self._names.get(key, key)
+        outer = self._names[key]
         if outer not in self._around:
             where = f"`{key}`" if outer == key else f"`{key}` (`{outer}` of its container)"
             raise UserdataError("missing-key", f"reads {where}, which holds nothing")
@@ -166,12 +166,12 @@ class Userdata:
     def __setitem__(self, key: str, value: object) -> None:
         if self._writes is not None and key not in self._writes:
             return
-        self._around[self._names.get(key, key)] = value
+        self._around[self._names[key]] = value
         self._on_write(key, value)
 
     def __contains__(self, key: object) -> bool:
         declared = self._reads is None or key in self._reads
-        return declared and isinstance(key, str) and self._names.get(key, key) in self._around
+        return declared and isinstance(key, str) and self._names[key] in self._around
 
     def keys(self) -> list[str]:
         """The keys that can be read now, under the leaf's names, sorted."""

@@ -64,7 +64,7 @@ def _same_keys(root: Node) -> Mapping[_Cell, list[_Cell]]:
         names = remapping(node)
         if around:
             for key in {each.name for each in (*node.inputs, *node.outputs)}:
-                inner, outer = (path, key), (around, names.get(key, key))
+                inner, outer = (path, key), (around, names[key])
                 same[inner].append(outer)
                 same[outer].append(inner)
         if isinstance(node, IteratorNode) and node.items_key:

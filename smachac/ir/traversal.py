@@ -3,13 +3,14 @@ keys of one node. All in the order of the script."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from smachac.ir.nodes import (
     Concurrence,
     Container,
     Data,
     Expression,
+    Key,
     Leaf,
     Node,
     Struct,
@@ -106,6 +107,43 @@ def expressions_in(data: Data) -> Iterator[Expression]:
                 yield from expressions_in(value)
 
 
-def remapping(node: Node) -> dict[str, str]:
+class OuterNames(dict[str, str]):
+    """The names of a node's keys in its container, by its own names. A key that is not remapped has
+    its own name there."""
+
+    def __missing__(self, key: str) -> str:
+        return key
+
+
+def remapping(node: Node) -> OuterNames:
     """The remapped keys of a node: from its own name of the key to the name in its container."""
-    return {remap.key: remap.to for remap in node.remaps} if node.remaps else {}
+    return OuterNames({remap.key: remap.to for remap in node.remaps} if node.remaps else ())
+
+
+def outer_inputs(node: Node) -> list[str]:
+    """The names in its container of the inputs of a node."""
+    return _outer(node, node.inputs)
+
+
+def outer_outputs(node: Node) -> list[str]:
+    """The names in its container of the outputs of a node."""
+    return _outer(node, node.outputs)
+
+
+def _outer(node: Node, keys: Iterable[Key]) -> list[str]:
+    if not node.remaps:
+        return [key.name for key in keys]
+    names = remapping(node)
+    return [names[key.name] for key in keys]
+
+
+def inputs_from(node: Node, key: str) -> list[Key]:
+    """The inputs of a node that are copied from a key of its container."""
+    return [own for own, outer in zip(node.inputs, outer_inputs(node), strict=True) if outer == key]
+
+
+def outputs_to(node: Node, key: str) -> list[Key]:
+    """The outputs of a node that are copied to a key of its container."""
+    return [
+        own for own, outer in zip(node.outputs, outer_outputs(node), strict=True) if outer == key
+    ]

@@ -8,11 +8,10 @@ from __future__ import annotations
 import gc
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.batch import Batch, check_scripts
@@ -22,6 +21,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import CODES, Analysis, Previous, read_machine
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.discovery import NothingFoundError, scripts_of
+from smachac.frontend.file_kinds import FileKind, kind_of_tree
 from smachac.frontend.files import Disk, disk_library, find_project
 from smachac.frontend.loader import Library
 from smachac.frontend.robots import DataKind, check_data_file
@@ -42,24 +42,6 @@ def collection_paused() -> Iterator[None]:
     finally:
         if enabled:
             gc.enable()
-
-
-FileKind: TypeAlias = Literal[
-    "script", "interface", "scenario", "project", "robot", "scene", "faults"
-]
-"""The kinds of files that are edited; a sub-script is a script."""
-
-KEYS_OF_KINDS: Mapping[str, FileKind] = {
-    "arms": "robot",
-    "urdf": "robot",
-    "parts": "robot",
-    "bodies": "scene",
-    "faults": "faults",
-}
-"""The keys by which a file is known that is no script: scripts have no such field."""
-
-SCRIPT_KEYS = frozenset(["template", "outcomes", "states"])
-"""The keys by which a script is known, also with a field of another kind of file."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -256,17 +238,7 @@ class Session:
             return "project"
         if self.is_interface(path):
             return "interface"
-        tree = self._tree(path)
-        if isinstance(tree, Map) and len(tree.entries) == 1:
-            entry = tree.entries[0]
-            if entry.key.value == "states" and isinstance(entry.value, Map):
-                return "scenario"
-        keys = [str(entry.key.value) for entry in tree.entries] if isinstance(tree, Map) else []
-        if SCRIPT_KEYS.isdisjoint(keys):
-            for key in keys:
-                if key in KEYS_OF_KINDS:
-                    return KEYS_OF_KINDS[key]
-        return "script"
+        return kind_of_tree(self._tree(path))
 
     def is_interface(self, path: str) -> bool:
         """Whether a file is the interface of a state type: it is in a folder of templates."""

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from smachac.diagnostics.source import Source
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, StateMachine, Transition
+from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD_OUTCOMES
-from smachac.ir.traversal import leads_to_child, outcome_names, remapping
+from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs
 from smachac.refactor.cst import Atom, Collection, Item
 from smachac.refactor.editor import (
     RefusedError,
@@ -206,11 +206,6 @@ def _unique_name(words: Sequence[str], taken: set[str]) -> str:
 # --- keys
 
 
-def _outer(node: Node, keys: Iterable[Key]) -> list[str]:
-    names = remapping(node)
-    return [names.get(key.name, key.name) for key in keys]
-
-
 def _keys(
     parent: StateMachine, inside: Sequence[Node], presets: set[str]
 ) -> tuple[list[str], list[str]]:
@@ -221,11 +216,11 @@ def _keys(
     """
     mine = {child.name for child in inside}
     others = [child for child in parent.children if child.name not in mine]
-    reads = dict.fromkeys(key for child in inside for key in _outer(child, child.inputs))
-    writes = dict.fromkeys(key for child in inside for key in _outer(child, child.outputs))
-    wanted = {key for child in others for key in _outer(child, child.inputs)}
+    reads = dict.fromkeys(key for child in inside for key in outer_inputs(child))
+    writes = dict.fromkeys(key for child in inside for key in outer_outputs(child))
+    wanted = {key for child in others for key in outer_inputs(child)}
     wanted |= {key.name for key in parent.outputs}
-    given = {key for child in others for key in _outer(child, child.outputs)}
+    given = {key for child in others for key in outer_outputs(child)}
     given |= {key.name for key in parent.inputs}
     given |= {preset.key for preset in parent.userdata if preset.key not in presets}
     sources = dict.fromkeys((*writes, *sorted(presets)))
@@ -242,10 +237,10 @@ def _check_independence(inside: Sequence[Node]) -> None:
     concurrently."""
     writers: dict[str, Node] = {}
     for child in inside:
-        for key in _outer(child, child.outputs):
+        for key in outer_outputs(child):
             writers.setdefault(key, child)
     for child in inside:
-        for key in (*_outer(child, child.inputs), *_outer(child, child.outputs)):
+        for key in (*outer_inputs(child), *outer_outputs(child)):
             writer = writers.get(key)
             if writer is not None and writer is not child:
                 message = f"`{child.name}` uses `{key}`, which `{writer.name}` writes:"

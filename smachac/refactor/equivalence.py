@@ -111,7 +111,7 @@ def _node(node: Node, around: dict[str, int], found: MachineShape) -> None:
     found.structure.append((type(node).__name__, node.type, node.doc, len(own), node.claims))
     for keys in (node.inputs, node.outputs):
         found.names += [key.name for key in keys]
-        linked = [(str(key.type), inner[key.name], around[outer.get(key.name, key.name)]
+        linked = [(str(key.type), inner[key.name], around[outer[key.name]]
                    if around is not inner and isinstance(around, _Numbers) else -1)
                   for key in keys]  # fmt: skip
         found.structure.append(linked)

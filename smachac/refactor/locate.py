@@ -10,7 +10,7 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Iterator, Leaf, Machine, Node, Outcome
 from smachac.ir.script_paths import ScriptPath, sugared_child, walk_script
-from smachac.ir.traversal import remapping, walk
+from smachac.ir.traversal import outer_inputs, outer_outputs, walk
 from smachac.refactor.editor import RefusedError
 
 
@@ -91,8 +91,7 @@ def find_named(machine: Machine, path: str, kind: str | None) -> tuple[str, Span
         keys = {key.name for key in (*node.inputs, *node.outputs)}
         keys |= {preset.key for preset in node.userdata}
         for child in node.children:
-            outer = remapping(child)
-            keys |= {outer.get(key.name, key.name) for key in (*child.inputs, *child.outputs)}
+            keys.update(outer_inputs(child), outer_outputs(child))
         known.update(dict.fromkeys(sorted(keys)))
         if name in keys:
             note("key", f"{here}/{name}", node.children[0].span)

@@ -418,7 +418,7 @@ def _names_items(node: Node, key: str) -> bool:
     """Whether a state has `for_each: {in: key}`."""
     if not isinstance(node, nodes.Iterator) or node.sugar != "for_each" or not node.items_key:
         return False
-    return remapping(node).get(node.items_key, node.items_key) == key
+    return remapping(node)[node.items_key] == key
 
 
 def _rename_items(renaming: Renaming, node: Node) -> None:

@@ -246,7 +246,9 @@ def _other_classes(type_: str, interface: Text, types: Collection[str]) -> Itera
 def _unused_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
     """A name of the finding that is in a text only once, so that nothing uses it: in place of a
     name with a word in common, in a state whose name has its other word."""
-    for word in _words_of(item) if text.tree is not None else ():
+    if text.tree is None:
+        return
+    for word in _words_of(item):
         words = words_of(word) if text.counts[word] == 1 else set()
         for name in text.counts if words and len(text.counts) <= MOST_COMPARED else ():
             if name == word or words.isdisjoint(words_of(name)):
@@ -345,17 +347,26 @@ def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
 
 
 def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
-    """The single value of the innermost entry, exchanged with the others of its mapping."""
+    """The value of the innermost entry, exchanged with the others of its mapping. Lists and
+    mappings too: a slip puts them where a word must be. What is not on one line stays."""
     for around, entry in reversed([*pairwise(path)]):
         if not isinstance(around, Map) or not isinstance(entry, Entry):
             continue
         own = entry.value.span
-        for other in around.entries if isinstance(entry.value, Scalar) and own.text else ():
+        for other in around.entries if _fits_anywhere(entry.value) else ():
             value = other.value.span
-            if isinstance(other.value, Scalar) and value.text and value.text != own.text:
+            if _fits_anywhere(other.value) and value.text != own.text:
                 edits = (Edit(span=own, text=value.text), Edit(span=value, text=own.text))
-                yield candidate(1.8, "exchange two values", *edits)
+                names = f"`{entry.key.value}` and `{other.key.value}`"
+                yield candidate(1.8, f"exchange the values of {names}", *edits)
         return
+
+
+def _fits_anywhere(value: Tree) -> bool:
+    """Whether a value can stand in the place of every other one: it has text, on one line, and a
+    list or a mapping has brackets."""
+    text = value.span.text
+    return bool(text) and "\n" not in text and (isinstance(value, Scalar) or text[0] in "[{")
 
 
 def _type_of(path: list[Tree | Entry]) -> str:

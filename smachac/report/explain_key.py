@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from smachac.analysis.context import Context
-from smachac.analysis.def_use import Status, Use, around, key_statuses, path_without, same_key, uses
+from smachac.analysis.def_use import (
+    Status,
+    around,
+    key_statuses,
+    path_without,
+    same_key,
+    written_on,
+)
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
+from smachac.analysis.uses import Use
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Preset
 from smachac.ir.printer import print_data
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outcome_names
 from smachac.ir.types import ANY, Type
 from smachac.report.outline import STATUS, Paragraph, at, place, way
 from smachac.runtime.tracing.writer import SECRET
@@ -24,9 +32,14 @@ MOST_READERS = 100
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UseStatus:
-    """A use of a key. For a read: whether the key is set there, and a path on which it is not."""
+    """A use of a key by the state at a path of the script. For a read: whether the key is set
+    there, and a path on which it is not; for a write: the outcomes with which the key is set, and
+    whether these are all."""
 
     use: Use
+    path: str
+    outcomes: tuple[str, ...] = ()
+    always: bool = True
     status: Status | None = None
     without: tuple[str, ...] = ()
 
@@ -70,12 +83,9 @@ def _names_in(scope: UserdataScope) -> Iterator[tuple[str, str]]:
     if isinstance(container, nodes.Iterator):
         own += [container.item_key, *filter(None, [container.items_key])]
     yield from ((key, key) for key in sorted(own))
-    for child in container.children:
-        names = remapping(child)
-        for each in (*child.inputs, *child.outputs):
-            outer = names.get(each.name, each.name)
-            yield outer, outer
-            yield each.name, outer
+    for use in scope.uses.all:
+        yield use.outer, use.outer
+        yield use.key, use.outer
 
 
 def explain_keys(context: Context, pairs: Iterable[tuple[str, str]]) -> Iterator[KeyExplanation]:
@@ -98,8 +108,8 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
     shown = context.script_paths.get(outer or "", outer)
     inside = next(((shown, name) for name in beyond if shown and name), None)
     preset = next((each for each in container.userdata if each.key == key), None)
-    found = list(uses(flow, path, key))
-    read = [use for use in found if use.kind in ("reads", "copies in") and use.path != path]
+    found = scope.uses.of(key)
+    read = [use for use in found if use.reads and use.path != path]
     followed = key_statuses(flow, path, key, [use.path for use in read[:MOST_READERS]])
     paths = context.script_paths
     return KeyPart(
@@ -109,7 +119,7 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
         value=_value(context, path, preset) if preset else "",
         given=outer is None and key in scope.inputs,
         inside=inside,
-        uses=tuple(_use_status(context, use, key, followed.get(use.path)) for use in found),
+        uses=tuple(_use_status(context, scope, use, followed.get(use.path)) for use in found),
         span=container.span,
     )
 
@@ -120,15 +130,21 @@ def _value(context: Context, path: str, preset: Preset) -> str:
     return SECRET if secret else print_data(preset.value.data)
 
 
-def _use_status(context: Context, use: Use, key: str, status: Status | None) -> UseStatus:
+def _use_status(
+    context: Context, scope: UserdataScope, use: Use, status: Status | None
+) -> UseStatus:
     """A use of a key, with the path of its state in the script. `status`: that of a reader."""
-    flow, shown = context.flow, replace(use, path=context.script_paths.get(use.path, use.path))
-    if status is None or use.kind not in ("reads", "copies in"):
-        return UseStatus(use=shown)
+    flow, shown = context.flow, context.script_paths.get(use.path, use.path)
+    if use.writes:
+        outcomes = written_on(flow, scope, use)
+        always = outcomes == outcome_names(use.node)
+        return UseStatus(use=use, path=shown, outcomes=outcomes, always=always)
+    if status is None or not use.reads:
+        return UseStatus(use=use, path=shown)
     without: tuple[str, ...] = ()
     if status in ("sometimes", "never"):
-        without = path_without(flow, use.path, key, context.plain_paths)
-    return UseStatus(use=shown, status=status, without=without)
+        without = path_without(flow, use.path, use.outer, context.plain_paths)
+    return UseStatus(use=use, path=shown, status=status, without=without)
 
 
 def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
@@ -153,7 +169,7 @@ def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
 def _use_text(part: KeyPart, use_status: UseStatus) -> tuple[str, list[str]]:
     """The paragraph of a use, and its lines."""
     use = use_status.use
-    name = use.path.rpartition("/")[2]
+    name = use_status.path.rpartition("/")[2]
     called = f" as `{use.key}`" if use.key != part.key else ""
     where = place(use.span)
     status = f": {STATUS[use_status.status]}" if use_status.status else ""
@@ -163,18 +179,18 @@ def _use_text(part: KeyPart, use_status: UseStatus) -> tuple[str, list[str]]:
             return "set", [f"before {name} starts, to {part.value}{where}"]
         case "items":
             return "set", [f"by {name}, to each item in turn{where}"]
-        case "reads" if use.path == part.container:
+        case "reads" if use_status.path == part.container:
             return "read", [f"by {name} itself, which iterates over it{where}"]
         case "reads":
             return "read", [f"by {name}{called}{status}{where}", *unset]
         case "copies in":
             return "copied", [f"into {name}{called}{status}{where}", *unset]
         case "writes":
-            return "written", [f"by {name}{called}{_on(use)}{where}"]
-    return "copied", [f"out of {name}{called}{_on(use)}{where}"]
+            return "written", [f"by {name}{called}{_on(use_status)}{where}"]
+    return "copied", [f"out of {name}{called}{_on(use_status)}{where}"]
 
 
-def _on(use: Use) -> str:
+def _on(use: UseStatus) -> str:
     if use.always:
         return ""
     if not use.outcomes:
@@ -199,9 +215,14 @@ def key_json(explanation: KeyExplanation) -> list[dict[str, Any]]:
 
 def _use_json(use_status: UseStatus) -> dict[str, Any]:
     use = use_status.use
-    found: dict[str, Any] = {"state": use.path, "use": use.kind, "as": use.key, "at": at(use.span)}
-    if use.kind in ("writes", "copies out"):
-        found |= {"on": list(use.outcomes), "always": use.always}
+    found: dict[str, Any] = {
+        "state": use_status.path,
+        "use": use.kind,
+        "as": use.key,
+        "at": at(use.span),
+    }
+    if use.writes:
+        found |= {"on": list(use_status.outcomes), "always": use_status.always}
     if use_status.status is not None:
         found |= {"set": use_status.status, "unset_path": list(use_status.without)}
     return found

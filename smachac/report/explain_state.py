@@ -70,14 +70,14 @@ def explain_state(context: Context, path: str, report: Report) -> StateExplanati
     names = remapping(node)
 
     def read(key: Key) -> StateKey:
-        outer = names.get(key.name, key.name)
+        outer = names[key.name]
         status = key_status(context.flow, path, outer) if node is not routes.root else None
         known = types.inputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
         return StateKey(key=key, type=known, outer=outer, status=status)
 
     def written(key: Key) -> StateKey:
         known = types.outputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
-        return StateKey(key=key, type=known, outer=names.get(key.name, key.name))
+        return StateKey(key=key, type=known, outer=names[key.name])
 
     found = [*outcome_names(node), *(step.outcome for step in node.transitions)]
     return StateExplanation(

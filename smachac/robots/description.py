@@ -25,7 +25,7 @@ from smachac.robots.fields import (
     in_metres,
     listed,
 )
-from smachac.robots.urdf import Urdf, UrdfJoint
+from smachac.robots.urdf import Mimic, Urdf, UrdfJoint
 
 DOWN: Pose = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 """The pose of a tool in the frame of a body that it grasps from above."""
@@ -487,6 +487,8 @@ def check(robot: Description, urdf: Urdf) -> None:
         place: Place = ("arms", limb.name)
         for k, name in enumerate(limb.joints):
             _moved(name, urdf, (*place, "joints", k))
+            if urdf.joints[name].mimic is not None:
+                raise _follows(urdf.leader(name), name, (*place, "joints", k))
         for k, (name, angle) in enumerate(zip(limb.joints, limb.home, strict=True)):
             _inside(angle, urdf.joints[name], (*place, "home", k))
         for name, _ in limb.efforts:
@@ -504,8 +506,35 @@ def _check_gripper(gripper: Gripper, urdf: Urdf, place: Place) -> None:
         _moved(finger.joint, urdf, at)
         for key, position in (("open", finger.opened), ("closed", finger.closed)):
             _inside(position, urdf.joints[finger.joint], (*at, key))
+        if urdf.joints[finger.joint].mimic is not None:
+            _check_follower(finger, gripper, urdf, at)
     for k, name in enumerate(gripper.pads):
         _known(name, urdf.links, "link", (*place, "pads", k))
+
+
+def _check_follower(finger: Finger, gripper: Gripper, urdf: Urdf, place: Place) -> None:
+    """Raise DataError unless the gripper has the joint that a finger follows (`<mimic>`), with
+    positions that lead to those of the finger."""
+    leader = urdf.leader(finger.joint)
+    first = next((other for other in gripper.fingers if other.joint == leader.joint), None)
+    if first is None:
+        raise _follows(leader, finger.joint, place)
+    for key, position, led in (
+        ("open", finger.opened, first.opened),
+        ("closed", finger.closed, first.closed),
+    ):
+        reached = leader.multiplier * led + leader.offset
+        if not math.isclose(position, reached, abs_tol=1e-6):
+            message = f"`{finger.joint}` follows `{leader.joint}` (`<mimic>`) to {reached:.6g}"
+            help = f"remove `{finger.joint}`, which needs no entry, or write `{key}: {reached:.6g}`"
+            raise DataError(message, (*place, key), help)
+
+
+def _follows(leader: Mimic, name: str, place: Place) -> DataError:
+    """The mistake of a joint that follows another one and is named in its place."""
+    message = f"the joint `{name}` follows `{leader.joint}` (`<mimic>`): no command moves it"
+    help = f"write `{leader.joint}`, with its own positions, in its place, or remove it"
+    return DataError(message, place, help)
 
 
 def _check_chain(limb: Limb, urdf: Urdf, place: Place) -> None:

@@ -20,7 +20,7 @@ from smachac.frontend.import_cycles import circular_imports
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, Parameter, renamed_name
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
-from smachac.ir.traversal import remapping, walk
+from smachac.ir.traversal import inputs_from, outer_outputs, remapping, walk
 from smachac.targets.class_faults import CHECKED_ONLY, SET_IN_SCRIPT, STOPS_PROGRAM
 from smachac.targets.errors import (
     Difference,
@@ -289,8 +289,7 @@ def type_faults(
         place = type_.class_spans.get((target.name, field))
         named = [] if place is None else [Related(span=place, message="the class is named here")]
         here = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`")
-        used = [*named, here]
-        yield interfaces_differ(used, target.name, type_.name, found.name, differences)
+        yield interfaces_differ((*named, here), target.name, type_.name, found.name, differences)
 
 
 def _reader(machine: Machine, type_: StateType, fault: ClassFault) -> Related | None:
@@ -305,16 +304,14 @@ def _reader(machine: Machine, type_: StateType, fault: ClassFault) -> Related | 
         for leaf in container.children:
             if not isinstance(leaf, Leaf) or leaf.type != type_.name:
                 continue
-            outer = remapping(leaf).get(key, key)
+            outer = remapping(leaf)[key]
             targets = {each.outcome: each.target for each in leaf.transitions}
             reader = states.get(targets.get(outcome or "", ""))
             if not isinstance(reader, Leaf) or reader is leaf:
                 continue
             setters = _setters(container) if setters is None else setters
-            names = remapping(reader)
-            reads = {names.get(each.name, each.name) for each in reader.inputs
-                     if each.type.name != "optional"}  # fmt: skip
-            if outer in reads and setters[outer] == 1:
+            read = any(each.type.name != "optional" for each in inputs_from(reader, outer))
+            if read and setters[outer] == 1:
                 text = f"`{reader.name}` reads `{outer}` after `{leaf.name}` ends with `{outcome}`"
                 return Related(span=reader.span, message=text)
     return None
@@ -325,8 +322,7 @@ def _setters(container: StateMachine) -> Counter[str]:
     found = Counter(each.name for each in container.inputs)
     found.update(each.key for each in container.userdata)
     for child in container.children:
-        names = remapping(child)
-        found.update({names.get(each.name, each.name) for each in child.outputs})
+        found.update({*outer_outputs(child)})
     return found
 
 

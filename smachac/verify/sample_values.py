@@ -119,6 +119,6 @@ class SampleValues:
         (docs/semantics.md, Iterator).
         """
         around = path.rpartition("/")[0]
-        outer = key if around in self._iterators else remapping(leaf).get(key, key)
+        outer = key if around in self._iterators else remapping(leaf)[key]
         type_ = self._types.keys.get((around, outer), ANY)
         return self._types.outputs[path, key] if type_ == ANY else type_

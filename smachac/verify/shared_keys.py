@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 
-from smachac.ir.nodes import Concurrence, Leaf, Machine, Node
+from smachac.ir.nodes import Concurrence, Leaf, Machine
 from smachac.ir.secret_keys import secret_keys
-from smachac.ir.traversal import containers, remapping, walk
+from smachac.ir.traversal import containers, outer_inputs, outer_outputs, walk
 
 
 def contended_keys(machine: Machine) -> dict[str, tuple[str, ...]]:
@@ -20,20 +20,12 @@ def contended_keys(machine: Machine) -> dict[str, tuple[str, ...]]:
             users: Counter[str] = Counter()
             written: set[str] = set()
             for child in node.children:
-                reads, writes = _keys(child)
+                reads, writes = {*outer_inputs(child)}, {*outer_outputs(child)}
                 users.update(reads | writes)
                 written |= writes
             if shared := tuple(sorted(key for key in written if users[key] > 1)):
                 found[path] = shared
     return found
-
-
-def _keys(child: Node) -> tuple[set[str], set[str]]:
-    names = remapping(child)
-    reads, writes = (
-        {names.get(key.name, key.name) for key in keys} for keys in (child.inputs, child.outputs)
-    )
-    return reads, writes
 
 
 def deterministic_reads(machine: Machine) -> dict[str, tuple[str, ...]]:

@@ -14,7 +14,7 @@ from smachac.ir import graph
 from smachac.ir.nodes import Concurrence, Iterator, Leaf, Machine, Node
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import SecretKeys, secret_keys
-from smachac.ir.traversal import remapping, walk
+from smachac.ir.traversal import outputs_to, walk
 from smachac.runtime.tracing.writer import SECRET, Event, with_shown_paths
 from smachac.verify.status_conformance import NO_STATE, status_of
 
@@ -272,10 +272,8 @@ class StatusEvents:
         for label in self._active.get(report.path, ()):
             path = f"{report.path}/{label}"
             if label in (report.ended or ()) and (node := self._nodes.get(path)) is not None:
-                names = remapping(node)
-                for output in node.outputs:
-                    if names.get(output.name, output.name) == key:
-                        return path, output.name
+                for output in outputs_to(node, key):
+                    return path, output.name
         return report.path, key
 
     def _place(self, path: str) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from smachac.analysis.def_use import key_status, path_without, same_key, uses
+from smachac.analysis.def_use import key_status, path_without, same_key, written_on
 from smachac.analysis.definite_assignment import data_flow
 from smachac.diagnostics.diagnostic import Severity
 from smachac.diagnostics.source import NOWHERE
@@ -345,13 +345,12 @@ def test_who_uses_a_key() -> None:
                     to={"out": "done"})  # fmt: skip
     node = root(writer("W", {"ok": "C", "bad": "C"}, "a", ok="1"), inner)
     flow = data_flow(Machine(root=node))
-    found = [
-        (use.kind, use.path, use.key, use.outcomes, use.always) for use in uses(flow, "sm", "a")
+    found = flow.scopes["sm"].uses.of("a")
+    assert [(use.kind, use.path, use.key) for use in found] == [
+        ("writes", "sm/W", "a"),
+        ("copies in", "sm/C", "b"),
     ]
-    assert found == [
-        ("writes", "sm/W", "a", ("ok",), False),
-        ("copies in", "sm/C", "b", (), True),
-    ]
+    assert written_on(flow, flow.scopes["sm"], found[0]) == ("ok",)
     assert same_key(flow, "sm", "a") == (("sm", "a"), ("sm/C", "b"))
     assert key_status(flow, "sm/C/R", "b") == "sometimes"
     assert path_without(flow, "sm/C/R", "b") == ("W", "(bad)", "C", "R")

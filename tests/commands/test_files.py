@@ -31,6 +31,31 @@ def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:
     assert (report[2].span.line, report[2].span.column) == (2, 1)
 
 
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("abc.yml", None),  # only its ending is that of the others
+        ("faults.yml", None),
+        ("mian.yml", "main.yml"),
+        ("main.yaml", "main.yml"),
+        ("scenaro.yml", "scenario.yml"),
+        ("arm.udrf", "arm.urdf"),
+        ("main", "main.yml"),
+        ("Main.yml", "main.yml"),
+    ],
+)
+def test_the_near_name_of_a_file_has_a_near_stem(
+    tmp_path: Path, name: str, near: str | None
+) -> None:
+    for other in ("main.yml", "scenario.yml", "arm.urdf", "arm.urdf.xacro", "a.yml"):
+        (tmp_path / other).write_text("")
+    report: Report = []
+    assert read_source(tmp_path / name, report) is None
+    help = report[0].finding.help
+    assert help == (f"did you mean `{near}`?" if near else "check the path, and check that the"
+                    " file is text in UTF-8")  # fmt: skip
+
+
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 def test_encodings_of_yaml(tmp_path: Path, encoding: str) -> None:
     (tmp_path / "a.yml").write_bytes("name: \u00fc\n".encode(encoding))

@@ -103,6 +103,46 @@ def test_code_in_another_language(project: Path, capsys: pytest.CaptureFixture[s
     )
 
 
+@pytest.mark.parametrize("language", ["python", "cpp"])
+@pytest.mark.parametrize(
+    ("interface", "code"),
+    [
+        ("variables: {class: int}\noutcomes: {done: {}}", "SM004"),
+        ("outcoms: {done: {}}", "SM003"),
+        ("outcomes: [done", "SM001"),
+        ("outcomes: 7", "SM004"),
+        ("outcomes: {done: {}}\n== smachac.toml ==\nscripts = 7", "SM007"),
+    ],
+)
+def test_no_stub_is_made_for_an_interface_with_errors(
+    project: Path, capsys: pytest.CaptureFixture[str], interface: str, code: str, language: str
+) -> None:
+    text, _, settings = interface.partition("== smachac.toml ==\n")
+    Path("templates/Bad.yml").write_text(f"name: Bad\n{text}")
+    if settings:
+        Path("smachac.toml").write_text(settings)
+    before = files(project)
+    capsys.readouterr()
+    assert main(["new", "state", "Bad", "--target", language]) == 1
+    assert f"error[{code}]" in capsys.readouterr().err
+    assert files(project) == before
+
+
+DOCS = ['say """ and \\ end', "two\nlines", "*/ ends\\", '"', "\u2028\u202e", "   "]
+
+
+@pytest.mark.parametrize("doc", DOCS)
+def test_a_stub_holds_any_doc(project: Path, doc: str) -> None:
+    Path("templates/Odd.yml").write_text(f"name: Odd\ndoc: {json.dumps(doc)}\n")
+    for language in ("python", "cpp"):
+        assert main(["new", "state", "Odd", "--target", language]) == 0
+    compile(Path("robot_states/odd.py").read_text(), "odd.py", "exec")
+    header = Path("include/robot_states/odd.hpp").read_text()
+    assert header.splitlines()[1] == "#pragma once"
+    assert not header.splitlines()[0].endswith("\\")
+    assert "enum class Outcome { succeeded };" in header
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

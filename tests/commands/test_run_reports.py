@@ -136,3 +136,28 @@ def test_an_output_that_is_not_written_names_the_state(
     assert "never written" not in printed
     warning = "`sm/OUTER/BOTH/FIND` ended with `found` and did not write its output key `pose`"
     assert (warning in printed) == is_warned
+
+
+STOP = (
+    "import os, signal; os.kill(os.getpid(), signal.SIGTERM);"
+    " next(filter(None, iter(self.preempt_requested, None))); "
+)
+"""Stop the run as `docker stop` does, and wait for the request."""
+
+
+@pytest.mark.parametrize(
+    ("body", "is_warned"),
+    [
+        (f"{STOP} return 'found'", False),
+        (f"{STOP} self.service_preempt(); return 'found'", False),
+        ("return 'found'", True),
+    ],
+)
+def test_a_state_that_is_stopped_need_not_write_its_outputs(body: str, is_warned: bool) -> None:
+    project(body)
+    done = subprocess.run(
+        [sys.executable, "-m", "smachac", "run", "main.yml"],
+        capture_output=True, text=True, check=False, timeout=100,
+    )  # fmt: skip
+    assert done.returncode == (0 if is_warned else 143), done.stderr
+    assert ("did not write" in done.stderr) == is_warned

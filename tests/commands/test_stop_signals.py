@@ -145,6 +145,16 @@ def test_max_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         assert "--max-steps needs --mock" in capsys.readouterr().err
 
 
+def test_a_stopped_sweep_without_a_database_has_lost_its_runs(tmp_path: Path) -> None:
+    work_folder(tmp_path, "os.kill(os.getppid(), signal.SIGTERM), threading.Event().wait()", 0)
+    found = smachac("sweep", "main.yml", "--runs", "1", "--jobs", "1", folder=tmp_path)
+    assert (found.returncode, found.stdout[:17]) == (143, "0 of 1 run of sm\n")
+    assert found.stderr.endswith(
+        "interrupted: 0 of 1 run is done, and none is kept; with `--database FILE` the same command"
+        " continues\n"
+    )
+
+
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
 def test_a_stopped_sweep_keeps_what_is_done(tmp_path: Path, name: str) -> None:
     stop = ONCE.format(f"os.kill(os.getppid(), signal.{name}), threading.Event().wait()")

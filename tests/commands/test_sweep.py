@@ -146,9 +146,13 @@ def test_a_database_of_another_program_is_refused(
 
 
 def broken(path: Path, change: str) -> None:
-    """Damages a database of a sweep: cuts it off, or changes one value of the run with seed 3."""
+    """Damages a database of a sweep: cuts it off, removes a byte of its first ones, or changes one
+    value of the run with seed 3."""
     if change == "cut":
         path.write_bytes(path.read_bytes()[:5000])
+        return
+    if change == "other":
+        path.write_bytes(b"SQLite" + path.read_bytes()[7:])
         return
     connection = sqlite3.connect(path)
     with connection:
@@ -159,6 +163,7 @@ def broken(path: Path, change: str) -> None:
 VALUES_ARE_WRONG = "the values of the run with seed 3 are wrong"
 DAMAGE = {
     "cut": "database disk image is malformed",
+    "other": "file is not a database",
     "steps = 'no JSON'": VALUES_ARE_WRONG,
     "states = '[1]'": VALUES_ARE_WRONG,
     "covered = NULL": VALUES_ARE_WRONG,
@@ -177,8 +182,9 @@ def test_a_damaged_database_is_one_message(
         shutil.copy(folder / "whole.db", folder / "sweep.db")
         broken(folder / "sweep.db", change)
         message = f"the database sweep.db cannot be used: {reason}\n"
-        assert main(["stats", "main.yml", "sweep.db"]) == 2, change
-        assert capsys.readouterr().err == f"smachac: error: {message}"
+        for command in ("stats", "trace stats"):
+            assert main([*command.split(), "main.yml", "sweep.db"]) == 2, change
+            assert capsys.readouterr().err == f"smachac: error: {message}"
         assert main([*MOCK, "--runs", "8", "--database", "sweep.db"]) in (1, 2), change
         assert capsys.readouterr().err.endswith(message), change
 
@@ -293,7 +299,12 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path) -> None:
     words = ("sweep", "main.yml", "--runs", "12", "--jobs", "2", "--database", "sweep.db")
     first = smachac(*words, folder=tmp_path)
     assert first.returncode == 130, first.stderr
-    assert "of 12 runs of sm" in first.stdout
+    done = len(seeds(tmp_path / "sweep.db"))
+    assert f"{done} of 12 runs of sm" in first.stdout
+    assert first.stderr.endswith(
+        f"interrupted: {done} of 12 runs are done and kept in sweep.db; the same command"
+        " continues\n"
+    )
     assert "Traceback" not in first.stderr
     assert 5 not in seeds(tmp_path / "sweep.db")
     assert smachac(*words, folder=tmp_path).returncode == 0

@@ -122,3 +122,41 @@ def test_commands_write_all_or_none(
     assert main(words) == 1
     assert contents(tmp_path) == before
     assert "No space left on device" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "build main.yml -t cpp -o {}",
+        "new {}",
+        "run main.yml --mock s.yml -q --trace {}/t.jsonl",
+        "check main.yml --baseline {}/k.json --write-baseline",
+    ],
+)
+@pytest.mark.parametrize(
+    ("place", "reason"),
+    [
+        ("out", "out is a link to nowhere, which is no folder"),
+        ("out/sub", "out is a link to nowhere, which is no folder"),
+        ("loop", "loop is a link to loop, which is no folder"),
+        ("linked/new", "linked is a link to s.yml, which is no folder"),
+        ("s.yml", "s.yml is no folder"),
+    ],
+)
+def test_a_folder_that_is_none(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    words: str,
+    place: str,
+    reason: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("main.yml").write_text(UNFORMATTED.format(name="main"))
+    Path("s.yml").write_text("states: {A: [done]}\n")
+    for name, target in (("out", "nowhere"), ("loop", "loop"), ("linked", "s.yml")):
+        Path(name).symlink_to(target)
+    before = sorted(tmp_path.iterdir())
+    assert main(words.format(place).split()) in (1, 2)
+    assert reason in capsys.readouterr().err
+    assert sorted(tmp_path.iterdir()) == before

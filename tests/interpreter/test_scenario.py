@@ -38,7 +38,7 @@ def picking() -> Machine:
 
 def read(states: Any) -> tuple[Scenario, list[str]]:
     scenario, problems = read_scenario({"states": states}, picking())
-    return scenario, [problem.message for problem in problems]
+    return scenario, ["; ".join(filter(None, problem[:2])) for problem in problems]
 
 
 def test_the_forms_of_a_scenario() -> None:
@@ -95,15 +95,16 @@ def test_the_forms_of_a_scenario() -> None:
         ({"CHECK": {"set": 3}}, "sm/CHECK, step 1: `set` is a mapping of userdata keys to values"),
         ({"CHECK": {"wait": 1}}, "sm/CHECK, step 1: `wait` is true or false"),
         ({"CHECK": {"stop": "yes"}}, "sm/CHECK, step 1: `stop` is true or false"),
-        ({"CHECK": []}, "`CHECK` has no steps"),
+        ({"CHECK": []}, "`CHECK` has no steps; write `CHECK: [true]`, or remove it"),
         (
             {"CHECK": True, "sm/CHECK": True},
-            "`sm/CHECK` is given twice, the second time as `sm/CHECK`",
+            "`CHECK` and `sm/CHECK` are the same state; write all its steps in one list",
         ),
     ],
 )
 def test_what_is_wrong_is_told(states: Any, problem: str) -> None:
-    assert read(states)[1] == [problem]
+    (found,) = read(states)[1]
+    assert found.startswith(problem)
 
 
 @pytest.mark.parametrize("given", [None, [], {"states": []}, {"other": {}}])
@@ -111,26 +112,31 @@ def test_a_scenario_is_a_mapping_of_states(given: Any) -> None:
     scenario, problems = read_scenario(given, picking())
     assert scenario.steps == {}
     assert problems == [
-        ScenarioProblem("a scenario is a mapping with `states`: a mapping of paths")
+        ScenarioProblem(
+            "a scenario is a mapping with `states`: a mapping of paths",
+            "write `states: {GRASP: [succeeded]}`",
+        )
     ]
 
 
 def test_a_misspelt_key_is_named() -> None:
     assert read_scenario({"statez": {"CHECK": True}}, picking())[1] == [
-        ScenarioProblem("unknown key `statez`; did you mean `states`?")
+        ScenarioProblem(
+            "a scenario is a mapping with `states`: a mapping of paths", "did you mean `states`?"
+        )
     ]
 
 
 def test_other_keys_beside_states_are_told() -> None:
     assert read_scenario({"states": {}, "state": {}}, picking())[1] == [
-        ScenarioProblem("unknown key `state`; a scenario has only `states`")
+        ScenarioProblem("unknown key `state`; a scenario has only `states`", "remove `state`")
     ]
 
 
 def test_a_problem_names_its_key_and_step() -> None:
     states = {"PICK/GRASP": ["aborted", "lost"], "CHEKC": True, "sm/CHECK": []}
     _, problems = read_scenario({"states": states}, picking())
-    assert [problem[1:] for problem in problems] == [
+    assert [problem[2:] for problem in problems] == [
         ("PICK/GRASP", 2),
         ("CHEKC", None),
         ("sm/CHECK", None),
@@ -269,7 +275,10 @@ def test_a_state_with_sugar_has_the_path_that_the_script_shows(path: str, leaf: 
 @pytest.mark.parametrize(
     ("states", "message"),
     [
-        ({"DRIVE": "there", "sm/LEG/DRIVE/TIMED/DRIVE": "there"}, "`sm/LEG/DRIVE` is given twice"),
+        (
+            {"DRIVE": "there", "sm/LEG/DRIVE/TIMED/DRIVE": "there"},
+            "`DRIVE` and `sm/LEG/DRIVE/TIMED/DRIVE` are the same state",
+        ),
         ({"DRIVE": "lost"}, "sm/LEG/DRIVE, step 1: `lost` is not one"),
         ({"DRIVE (retry)": "there"}, "`DRIVE (retry)` is a container"),
         ({"sm/LEG/DRIVES": "there"}, "did you mean `sm/LEG/DRIVE`?"),
@@ -279,7 +288,7 @@ def test_problems_of_a_scenario_show_the_path_of_the_script(
     states: dict[str, str], message: str
 ) -> None:
     _, found = read_scenario({"states": states}, smachac.load(SUGAR, name="main.yml"))
-    assert any(message in each.message for each in found), found
+    assert any(message in f"{each.message}; {each.help}" for each in found), found
 
 
 def test_an_outcome_is_drawn_from_its_probabilities() -> None:

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from smachac.frontend.file_kinds import FileKind
 from smachac.lsp.completion import complete
 from smachac.lsp.facts import Facts
 from smachac.lsp.hover import hover_at
-from smachac.lsp.session import FileKind, Session
+from smachac.lsp.session import Session
 
 INTERFACE = """\
 name: Grasp

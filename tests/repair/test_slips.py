@@ -5,6 +5,8 @@ Each row is a project, the right text in one of its files, and the wrong text in
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from smachac.diagnostics.repair import edited_texts
@@ -130,6 +132,28 @@ states:
 """
 }
 
+TRIES = {
+    MAIN: """\
+name: sm
+template: Base
+outcomes: [done, failed]
+states:
+  - GRASP:
+      template: ScriptedState
+      outcomes: [held, slipped, preempted]
+      retry: {on: [slipped], max: 3}
+      transitions: {held: BOTH, exhausted: failed, preempted: failed}
+  - BOTH:
+      template: Concurrence
+      outcomes: [done, failed]
+      default_outcome: failed
+      outcome_map: {done: {LEFT: ok}}
+      transitions: {done: done, failed: failed}
+      states:
+        - LEFT: {template: ScriptedState, outcomes: [ok, preempted]}
+"""
+}
+
 SIDES = {
     MAIN: """\
 name: sm
@@ -180,6 +204,19 @@ code: {cpp: {header: glue.hpp, class: Glue}}
 }
 
 ROWS = [
+    (TRIES, MAIN, "{on: [slipped], max: 3}", "{on: 3, max: [slipped]}"),
+    (
+        TRIES,
+        MAIN,
+        "[held, slipped, preempted]\n      retry: {on: [slipped], max: 3}",
+        "{on: [slipped], max: 3}\n      retry: [held, slipped, preempted]",
+    ),
+    (
+        TRIES,
+        MAIN,
+        "failed\n      outcome_map: {done: {LEFT: ok}}",
+        "{done: {LEFT: ok}}\n      outcome_map: failed",
+    ),
     (SIDES, MAIN, "home: right_home", "home: left_home"),
     (GLUE, MAIN, "seam: seam_a, volume: volume_a", "seam: volume_a, volume: seam_a"),
     (WATCH, MAIN, "template: MonitorState", "template: WaitForMsgState"),
@@ -214,4 +251,4 @@ def test_a_slip_is_one_finding_with_the_text_to_write(
         file: files[file]
     }
     assert len(items) == 1
-    assert any(part in (items[0].help or "") for part in right.rstrip(":").split(": "))
+    assert any(part in (items[0].help or "") for part in re.split(r": |\n *", right.rstrip(":")))

@@ -47,12 +47,12 @@ def changed(text: str, place: tuple[str | int, ...], value: Any) -> Any:
     return data
 
 
-def mistake(data: Any) -> DataError | None:
-    """The first mistake in the description of a robot with the joints and links above."""
+def mistake(data: Any, file: urdf.Urdf = URDF) -> DataError | None:
+    """The first mistake in the description of a robot with these joints and links."""
     try:
         found = description.read(copy.deepcopy(data))
         assert isinstance(found, Description)
-        description.check(found, URDF)
+        description.check(found, file)
     except DataError as error:
         return error
     return None
@@ -145,6 +145,51 @@ def test_a_mistake_has_its_place(
     found = mistake(changed(ROBOT, place, value))
     assert found is not None
     assert (found.place, found.message) == (where, message)
+
+
+FOLLOWERS = URDF.text.replace(
+    "</robot>",
+    """<link name="right"/><link name="third"/><link name="wrist"/>
+<joint name="g" type="prismatic"><parent link="hand"/><child link="right"/>
+<limit lower="-0.04" upper="0" effort="1" velocity="1"/><mimic joint="f" multiplier="-1"/></joint>
+<joint name="h" type="prismatic"><parent link="hand"/><child link="third"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="g" multiplier="2" offset="0.1"/>
+</joint>
+<joint name="w" type="revolute"><parent link="hand"/><child link="wrist"/>
+<limit lower="-2" upper="2" effort="1" velocity="1"/><mimic joint="b"/></joint></robot>""",
+)
+FINGERS = (*LEFT, "gripper", "joints")
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "where", "message", "help"),
+    [
+        (FINGERS, {"g": {"open": -0.04}}, (*FINGERS, "g"),
+         "the joint `g` follows `f` (`<mimic>`): no command moves it",
+         "write `f`, with its own positions, in its place, or remove it"),
+        (FINGERS, {"g": {"open": -0.04}, "h": {"open": 0.02}}, (*FINGERS, "g"),
+         "the joint `g` follows `f` (`<mimic>`): no command moves it", None),
+        (FINGERS, {"f": {"open": 0.04}, "g": {"open": -0.02}}, (*FINGERS, "g", "open"),
+         "`g` follows `f` (`<mimic>`) to -0.04",
+         "remove `g`, which needs no entry, or write `open: -0.04`"),
+        (FINGERS, {"f": {"open": 0.04}, "h": {"open": 0.02}}, (*FINGERS, "h", "closed"),
+         "`h` follows `f` (`<mimic>`) to 0.1", None),
+        ((*LEFT, "joints", 1), "w", (*LEFT, "joints", 1),
+         "the joint `w` follows `b` (`<mimic>`): no command moves it", None),
+        (FINGERS, {"f": {"open": 0.04}, "g": {"open": -0.04}}, None, "", None),
+        (FINGERS, {"f": {"open": 0.04}, "h": {"open": 0.02, "closed": 0.1}}, None, "", None),
+    ],
+)  # fmt: skip
+def test_a_joint_that_follows_another_one_is_not_commanded(
+    place: tuple[str | int, ...],
+    value: Any,
+    where: tuple[str | int, ...] | None,
+    message: str,
+    help: str | None,
+) -> None:
+    found = mistake(changed(ROBOT, place, value), urdf.read(FOLLOWERS))
+    assert (found and found.place, found.message if found else "") == (where, message)
+    assert help is None or (found is not None and found.help == help)
 
 
 def test_a_wrong_unit_has_help() -> None:

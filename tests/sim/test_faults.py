@@ -9,8 +9,10 @@ from typing import Any
 
 import pytest
 
+import smachac
 from smachac import sim
 from smachac.commands.cli import main
+from smachac.commands.run import read_fault_file
 from smachac.sim import faults
 from smachac.sim.faults import Fault, FaultSchedule
 
@@ -202,3 +204,52 @@ def test_faults_are_events_of_the_trace(tmp_path: Path, capsys: pytest.CaptureFi
     assert found["sim_time"] == 0.5
     assert found["during"][0].endswith("PICK_BLOCK/OPEN_GRIPPER")
     assert capsys.readouterr().out.endswith("outcome: succeeded\n")
+
+
+RECOVERY = Path(__file__).parents[2] / "examples" / "13_recovery" / "main.yml"
+
+
+@pytest.mark.parametrize(
+    ("state", "message", "help"),
+    [
+        ("FIND_BLOK", "there is no state `FIND_BLOK`", "did you mean `FIND_BLOCK`?"),
+        ("LEFT/TRY/LIFT", "there is no state `LEFT/TRY/LIFT`", None),
+        ("recovery/LEFT", "`recovery/LEFT` is a container", "name one of its states"),
+        ("TRY", "`TRY` is a container", "name one of its states"),
+    ],
+)
+@pytest.mark.parametrize("command", ["run", "sweep --runs 1 --jobs 1"])
+def test_a_fault_for_a_state_that_does_not_exist(
+    state: str,
+    message: str,
+    help: str | None,
+    command: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = f"faults:\n  - {{kind: crash, at: 1}}\n  - {{kind: crash, state: {state}}}\n"
+    (tmp_path / "faults.yml").write_text(text)
+    name, *options = command.split()
+    assert main([name, str(RECOVERY), *options, "--faults", str(tmp_path / "faults.yml")]) == 1
+    printed = capsys.readouterr().err
+    assert message in printed
+    assert "faults.yml:3:26" in printed
+    assert help is None or help in printed
+    assert "so nothing is run" in printed
+
+
+@pytest.mark.parametrize(
+    ("state", "full"),
+    [
+        ("recovery/LEFT/TRY/FIND_BLOCK", "recovery/LEFT/TRY/TRY/FIND_BLOCK"),
+        ("LEFT/TRY/FIND_BLOCK", "recovery/LEFT/TRY/TRY/FIND_BLOCK"),
+        ("FIND_MARK", "recovery/FIND_MARK"),
+        ("FIND_BLOCK", "FIND_BLOCK"),  # two states: the fault happens at the first that begins
+    ],
+)
+def test_the_state_of_a_fault_is_named_as_in_the_script(
+    state: str, full: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "faults.yml"
+    path.write_text(f"faults: [{{kind: crash, state: {state}}}]\n")
+    assert read_fault_file(path, smachac.load(RECOVERY), []) == (Fault(kind="crash", state=full),)

@@ -15,6 +15,7 @@ from smachac.diagnostics.diagnostic import (
     Related,
     Severity,
     did_you_mean,
+    did_you_mean_file,
     problem,
 )
 from smachac.diagnostics.source import Span, Word
@@ -48,7 +49,7 @@ def _where(
     what = "it" if "/" in file else f"`{file}`"
     where = f"put {what} in one of the folders that were searched: {folders}"
     where = where if folders else "add a folder for it to the project file"
-    guess = did_you_mean(word.text, known)
+    guess = did_you_mean_file(word.text, known)
     return f"{guess} (searched in {folders})" if guess and folders else guess or where
 
 

@@ -156,7 +156,7 @@ class _BuiltInLeaf:
 
     def bound(self, key: str) -> str:
         """The key of the container to which a key of the leaf is remapped."""
-        return self.scope.names(self.leaf).get(key, key)
+        return self.scope.names(self.leaf)[key]
 
     def reads(self) -> dict[str, Spelling]:
         """The keys that functions of the leaf may read."""

@@ -210,17 +210,17 @@ def _call(plan: ContainerPlan, child: Node) -> ChildCall:
     before, after = [], []
     for key in child.inputs:
         if key.name not in inner.shared:
-            outer = names.get(key.name, key.name)
+            outer = names[key.name]
             target = f"{own}.{identifier(key.name)}"
             before.append(_copy(target, plan.scope.object(outer), outer in plan.scope.sure))
     for key in child.outputs:
         if key.name not in inner.shared:
-            outer = names.get(key.name, key.name)
+            outer = names[key.name]
             held, source = outer in plan.scope.sure, f"{own}.{identifier(key.name)}"
             after.append(_copy(plan.scope.object(outer), source, key.name in inner.sure, held=held))
     userdata = own
     if inner.shared:
-        outers = (plan.scope.object(names.get(key, key)) for key in inner.view)
+        outers = (plan.scope.object(names[key]) for key in inner.view)
         userdata = f"{{{', '.join([own, *outers])}}}"
     call = f"{identifier(child.name)}::execute(states.{member(child)}, {userdata}, run)"
     found = ChildCall(statements=before, outcome=call, declares=False, uses_userdata=True)

@@ -14,7 +14,7 @@ from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateType
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
-from smachac.ir.traversal import containers, outcome_names, remapping
+from smachac.ir.traversal import OuterNames, containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
 from smachac.targets import comment
 from smachac.targets.cpp.expressions import Spelling
@@ -80,10 +80,10 @@ class ContainerScope:
         """The type of `ud` in the functions of the container and of its states."""
         return "const UserdataView &" if self.shared else "Userdata &"
 
-    def names(self, child: Node) -> dict[str, str]:
-        """The keys of the container by those of a child, where they differ. The child of an
-        iterator has no remapping."""
-        return {} if isinstance(self.node, Iterator) else remapping(child)
+    def names(self, child: Node) -> OuterNames:
+        """The keys of the container by those of a child. The child of an iterator has no
+        remapping."""
+        return OuterNames() if isinstance(self.node, Iterator) else remapping(child)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -137,7 +137,7 @@ def _sure(node: Container, around: ContainerScope | None) -> frozenset[str]:
         held.add(node.item_key)
     if around is not None:
         names = around.names(node)
-        held |= {key.name for key in node.inputs if names.get(key.name, key.name) in around.sure}
+        held |= {key.name for key in node.inputs if names[key.name] in around.sure}
     return frozenset(held)
 
 
@@ -158,11 +158,11 @@ def _shared(
         return frozenset()
     names = around.names(node)
     inputs, outputs = ({key.name for key in keys} for keys in (node.inputs, node.outputs))
-    outer = Counter(names.get(key, key) for key in inputs | outputs)
+    outer = Counter(names[key] for key in inputs | outputs)
     kept = {preset.key for preset in node.userdata}
 
     def is_shared(key: str) -> bool:
-        bound = names.get(key, key)
+        bound = names[key]
         if outer[bound] > 1 or key in kept:
             return False
         if (key not in scope.keys) or scope.keys[key] != around.keys.get(bound):
@@ -179,11 +179,11 @@ def _written(node: Container, types: Mapping[str, StateType]) -> frozenset[str]:
         return frozenset(key.name for key in (*node.inputs, *node.outputs)) | {node.item_key}
     found = {node.item_key} if isinstance(node, Iterator) else set()
     for child in node.children:
-        names = {} if isinstance(node, Iterator) else remapping(child)
+        names = OuterNames() if isinstance(node, Iterator) else remapping(child)
         outputs = child.outputs
         if isinstance(child, Leaf) and child.type in types:
             outputs += types[child.type].output_keys
-        found |= {names.get(key.name, key.name) for key in outputs}
+        found |= {names[key.name] for key in outputs}
     return frozenset(found)
 
 
@@ -226,7 +226,7 @@ def _check_races(plan: Plan, scope: ContainerScope, node: Concurrence) -> None:
     for child in node.children:
         names = scope.names(child)
         for keys, found in ((child.outputs, writers), (child.inputs, readers)):
-            for outer in {names.get(key.name, key.name): None for key in keys}:
+            for outer in {names[key.name]: None for key in keys}:
                 found.setdefault(outer, []).append(child)
     for key, writing in writers.items():
         branches = {child.name: child for child in (*writing, *readers.get(key, ()))}
@@ -244,7 +244,7 @@ def _check_borders(plan: Plan, scope: ContainerScope, around: ContainerScope) ->
     pairs = [(key, around, scope) for key in scope.node.inputs]
     pairs += [(key, scope, around) for key in scope.node.outputs]
     for key, source, target in pairs:
-        outer = names.get(key.name, key.name)
+        outer = names[key.name]
         ends = {id(around): outer, id(scope): key.name}
         try:
             given, wanted = source.key(ends[id(source)]), target.key(ends[id(target)])

@@ -95,8 +95,8 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
         raise UnportableError(message)
     state = f"states.{identifier(leaf.name)}"
     names = scope.names(leaf)
-    inputs = [_input(scope, key, names.get(key.name, key.name)) for key in type_.input_keys]
-    outs = [_output(scope, key, names.get(key.name, key.name)) for key in type_.output_keys]
+    inputs = [_input(scope, key, names[key.name]) for key in type_.input_keys]
+    outs = [_output(scope, key, names[key.name]) for key in type_.output_keys]
     arguments = [
         *([f"{{{', '.join(inputs)}}}"] if inputs else []),
         *([f"{{{', '.join(f'run.out({out})' for out in outs)}}}"] if outs else []),
@@ -105,7 +105,7 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
     call = f"{state}.execute({', '.join(arguments)})"
 
     def hidden(key: Key) -> str:
-        return ", true" if names.get(key.name, key.name) in scope.secret else ""
+        return ", true" if names[key.name] in scope.secret else ""
 
     if outs:
         told = [

@@ -135,7 +135,7 @@ def _keys(
     return [
         {
             "name": key.name,
-            "key": names.get(key.name, key.name),
+            "key": names[key.name],
             "type": str(types.get((path, key.name), key.type)),
             "doc": key.doc,
             **({"secret": True} if key.name in secret.get(path, ()) else {}),

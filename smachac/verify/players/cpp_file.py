@@ -151,7 +151,7 @@ class _Header:
         headers without views, as older versions printed them, each container has its own keys."""
         while key in scope.shared and f"{scope_name(scope.path)}::UserdataView" in self._found:
             around = self._scopes[scope.path.rpartition("/")[0]]
-            key = around.names(scope.node).get(key, key)
+            key = around.names(scope.node)[key]
             scope = around
         return f"{_userdata(scope.path, self._scopes)}.{identifier(key)}"
 
@@ -453,7 +453,7 @@ def _types(each: _StandIn) -> dict[str, Type]:
         return {key.name: plain(key.type) for key in keys}
     scope, leaf = each.leaf.scope, each.leaf.leaf
     names = scope.names(leaf)
-    outer = {key.name: names.get(key.name, key.name) for key in (*leaf.inputs, *leaf.outputs)}
+    outer = {key.name: names[key.name] for key in (*leaf.inputs, *leaf.outputs)}
     return {name: scope.keys[key] for name, key in outer.items() if key in scope.keys}
 
 
@@ -473,7 +473,7 @@ def _write(each: _StandIn, types: Mapping[str, Type], key: str, value: object) -
 def _outer_key(each: _StandIn, key: str) -> str:
     """The key of the container that a key of a leaf is remapped to."""
     leaf = each.leaf
-    return each.keys[leaf.scope.names(leaf.leaf).get(key, key)]
+    return each.keys[leaf.scope.names(leaf.leaf)[key]]
 
 
 def _userdata(path: str, scopes: Mapping[str, ContainerScope]) -> str:

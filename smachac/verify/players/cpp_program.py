@@ -179,11 +179,11 @@ class CppLeaf:
         names = self.scope.names(self.leaf)
         found: dict[str, dict[str, Type]] = {"input_keys": {}, "output_keys": {}}
         for key in self.leaf.outputs:
-            outer = names.get(key.name, key.name)
+            outer = names[key.name]
             if outer in self.scope.keys:
                 found["output_keys"][key.name] = self.scope.keys[outer]
         for key in self.leaf.inputs:
-            outer = names.get(key.name, key.name)
+            outer = names[key.name]
             if outer in self.scope.keys:
                 type_ = plain(Type("optional", (self.scope.keys[outer],)))
                 if type_.name == "optional":
