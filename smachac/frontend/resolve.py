@@ -45,7 +45,6 @@ from smachac.frontend.params import (
     look_up_word,
     params_of,
     size_up_to,
-    texts_meant,
 )
 from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
@@ -279,8 +278,6 @@ class _Resolver:
         type_, owner = self.type_of(name, entries, role, around)
         if type_.variables:
             entries |= self.lists(own, scope, type_)
-        if scope:
-            entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_, self.report)
         self.uses.type(type_)
         if scope:

@@ -264,13 +264,14 @@ def _other_forms(item: Diagnostic, text: Text) -> Iterator[Candidate]:
     """A name of the finding without the brackets of a list of this one name; and as a look-up of a
     param in place of a value that is its name."""
     for word in _words_of(item):
-        for found in re.finditer(rf"\[\s*{word}\s*\]", text.source.text):
-            span = Span(text.source, *found.span())
-            yield candidate(1.4, "remove the brackets", Edit(span=span, text=word))
-        for found in re.finditer(rf"(?<=: ){word}(?=[,}}\s])", text.source.text):
-            span = Span(text.source, *found.span())
-            if "params" in text.counts:
-                yield candidate(1.5, "look the param up", Edit(span=span, text=f"[params, {word}]"))
+        alone = [*re.finditer(rf"\[\s*{word}\s*\]", text.source.text)]
+        values = [*re.finditer(rf"(?<=: ){word}(?=[,}}\s])", text.source.text)]
+        for found in alone:
+            edit = Edit(span=Span(text.source, *found.span()), text=word)
+            yield candidate(1.4, "remove the brackets", edit)
+        for found in (*alone, *values) if "params" in text.counts else ():
+            edit = Edit(span=Span(text.source, *found.span()), text=f"[params, {word}]")
+            yield candidate(1.5, "look the param up", edit)
 
 
 def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candidate]:
