@@ -41,13 +41,7 @@ from smachac.checks.unwritten_keys import (
     unwritten_finding,
     unwritten_keys,
 )
-from smachac.checks.word_loops import (
-    is_over_the_word,
-    loop_over_the_word,
-    loops_over_names_of_lists,
-    word_as_list,
-    words_as_lists,
-)
+from smachac.checks.word_loops import words_as_lists
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, is_plain, respelt
@@ -121,7 +115,6 @@ def dead_key(context: Context) -> Iterator[Finding]:
         near_unset = guesser(sorted(unset.get(scope.path, ())))
         type_keys = _type_keys(container)
         explained = 0
-        yield from loops_over_names_of_lists(scope, read)
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
                 continue
@@ -149,10 +142,6 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 yield _unread_key(scope, key, node, span, None, is_searched=False)
                 continue
             # The userdata of the machine can be read after the run.
-            loop = loop_over_the_word(container, key)
-            if loop is not None:
-                yield word_as_list(f"{scope.path}/{loop.name}", loop, key)
-                continue
             back = _turned_preset(scope, key, read) if node is container else None
             finding = _unread_key(scope, key, node, span, back)
             is_result = container is flow.machine.root and node is not container
@@ -423,10 +412,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             if wrong is not None and wrong.declared:
                 yield misnamed_finding(wrong, scope.path, container_name(scope, key.span))
                 continue
-            if not isinstance(container, nodes.Iterator) or not is_over_the_word(
-                container, key.name
-            ):
-                yield _unused(scope.path, container, key, "input")
+            yield _unused(scope.path, container, key, "input")
         set_ = scope.uses.provided
         outer = scope.path.rpartition("/")[0]
         for key in container.outputs:

@@ -57,7 +57,6 @@ from smachac.frontend.state_fields import (
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
-    meant_container,
     params_meant,
     read_fields,
     second_key,
@@ -626,7 +625,6 @@ class _Resolver:
             return StateType(name="", open=True), role or nested
         kind = schema.CONTAINERS.get(word.text)
         if not role and kind is not None:
-            kind = meant_container(around.inner or name, word, kind, entries, self.report)
             return schema.CONTAINER_TYPES[kind], kind
         found = self.state_type(word.text)
         if found is None:

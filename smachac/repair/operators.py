@@ -260,12 +260,16 @@ def _unused_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
                     yield candidate(1.6, RENAME, Edit(span=span, text=word))
 
 
+_VALUE = r"(?<=: )(?:WORD|\$\((?:\w+ )?WORD\)|['\"](?:\$\{|\{\{)\s*WORD\s*\}+['\"])(?=[,}\s])"
+"""A value that is a word, or its look-up in the syntax of launch files, shells or templates."""
+
+
 def _other_forms(item: Diagnostic, text: Text) -> Iterator[Candidate]:
     """A name of the finding without the brackets of a list of this one name; and as a look-up of a
     param in place of a value that is its name."""
     for word in _words_of(item):
         alone = [*re.finditer(rf"\[\s*{word}\s*\]", text.source.text)]
-        values = [*re.finditer(rf"(?<=: ){word}(?=[,}}\s])", text.source.text)]
+        values = [*re.finditer(_VALUE.replace("WORD", word), text.source.text)]
         for found in alone:
             edit = Edit(span=Span(text.source, *found.span()), text=word)
             yield candidate(1.4, "remove the brackets", edit)
@@ -370,34 +374,42 @@ def _fits_anywhere(value: Tree) -> bool:
     return bool(text) and "\n" not in text and (isinstance(value, Scalar) or text[0] in "[{")
 
 
-def _type_of(path: list[Tree | Entry]) -> str:
-    """The state type of the innermost state; empty if there is none."""
+def _state_in(path: list[Tree | Entry]) -> Map | None:
+    """The fields of the innermost state that has a template."""
     for part in reversed(path):
         fields = part.value if isinstance(part, Entry) else part
-        entry = fields.get("template") if isinstance(fields, Map) else None
-        if entry is not None:
-            return entry.value.span.text
-    return ""
+        if isinstance(fields, Map) and fields.get("template") is not None:
+            return fields
+    return None
+
+
+def _type_of(path: list[Tree | Entry]) -> str:
+    """The state type of the innermost state; empty if there is none."""
+    state = _state_in(path)
+    entry = state.get("template") if state is not None else None
+    return entry.value.span.text if entry is not None else ""
 
 
 def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator[Candidate]:
-    """The state types that have all fields of the innermost state, in place of its own one."""
-    for part in reversed(path):
-        entry = part.get("template") if isinstance(part, Map) else None
-        if entry is None or not isinstance(part, Map):
-            continue
-        own = [str(each.key.value) for each in part.entries if each.key.value not in schema.LONG]
-        fields = [name for name in own if name not in schema.VARIABLES]
-        fitting = [
-            name
-            for name, text in types.items()
-            if fields and name != entry.value.span.text
-            if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
-        ]
-        if len(fitting) <= MOST_NEAR:
-            for name in fitting:
-                yield candidate(1.7, RENAME, Edit(span=entry.value.span, text=name))
+    """The state types that have all fields of the innermost state, in place of its own one; for a
+    container, the other kinds of containers."""
+    state = _state_in(path)
+    entry = state.get("template") if state is not None else None
+    if state is None or entry is None:
         return
+    word = entry.value.span.text
+    own = [str(each.key.value) for each in state.entries if each.key.value not in schema.LONG]
+    fields = [name for name in own if name not in schema.VARIABLES]
+    fitting = [
+        name
+        for name, text in types.items()
+        if fields and name != word
+        if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
+    ]
+    kinds = [name for name in schema.CONTAINERS if name != word and word in schema.CONTAINERS]
+    for name in (*kinds, *(fitting if len(fitting) <= MOST_NEAR else ())):
+        cost = 1.2 if name in kinds else 1.7
+        yield candidate(cost, RENAME, Edit(span=entry.value.span, text=name))
 
 
 def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import shown
+from tests.trust.project_text import analysed
 
 Row = tuple[str, str, str | None]
 
@@ -306,8 +308,9 @@ params: {{suction: 0.4}}
 states:
   - A: {{template: SleepState, time: {written}, transitions: {{succeeded: done, preempted: done}}}}
 """
-    help = "write `[params, suction]` for the value of the param"
-    assert [row[2] for row in reported({"main.yml": text})] == [help]
+    _, repair = shown(analysed({"main.yml": text}))
+    assert repair is not None
+    assert [edit.text for edit in repair.edits] == ["[params, suction]"]
 
 
 def test_lost_brackets_around_a_list_in_braces() -> None:
