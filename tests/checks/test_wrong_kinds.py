@@ -383,7 +383,6 @@ states:
     [
         ("front: a, rear: b", ["front", "rear"]),
         ("front: a, rear: 2", ["front"]),  # `rear` is no text
-        ("front: a, lable: b", ["front"]),  # a near name is left to the search
         ("front: a, rear: b, left: c, right: d", []),  # too many
     ],
 )
