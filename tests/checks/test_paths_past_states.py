@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import printed
 
 Row = tuple[str, str, str | None]
 
@@ -128,7 +129,7 @@ states:
 """
     interface = "input_keys: {{speed: float<m/s>}}\noutcomes: {{done: {{}}}}\n".replace("{{", "{")
     files = {"main.yml": text, "templates/Drive.yml": interface.replace("}}", "}")}
-    found = [row for row in reported(files) if row[0] in ("SM301", "SM305")]
+    found = [row for row in printed(files) if row[0] in ("SM301", "SM305")]
     ((code, place, help),) = found
     assert (code, place) == ("SM301", "A")
     assert help is not None
