@@ -20,13 +20,6 @@ from smachac.analysis.item_reads import ItemRead, item_reads
 from smachac.analysis.kept_facts import Fact, Found, Preorder, found_at
 from smachac.analysis.loaded_bodies import LoadingOrder, bodies_loaded
 from smachac.analysis.lost_outputs import Lost, lost_outputs
-from smachac.analysis.misplaced_states import (
-    Misplaced,
-    Stray,
-    misplaced_branches,
-    misplaced_states,
-    stray_transitions,
-)
 from smachac.analysis.possible_outcomes import Endings, Judged, endings, judged
 from smachac.analysis.reaching_values import reaching_clashes
 from smachac.analysis.resource_claims import Held, claims
@@ -266,19 +259,6 @@ class Context:
     def accesses(self) -> dict[str, Accesses]:
         """What each state reads and writes of the userdata around it."""
         return accesses(self.states)
-
-    @cached_property
-    def strays(self) -> tuple[Stray, ...]:
-        """The transitions that lead nowhere."""
-        return tuple(
-            stray for path, each in self.misnamed for stray in stray_transitions(path, each)
-        )
-
-    @cached_property
-    def misplaced(self) -> tuple[Misplaced, ...]:
-        """The states that are indented wrongly."""
-        found = misplaced_states(self.containers, self.strays) if self.strays else []
-        return (*found, *misplaced_branches(self.containers))
 
     @cached_property
     def claims(self) -> Held:

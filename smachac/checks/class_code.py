@@ -378,6 +378,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             above, container = containers[above]
             levels.append(container)
         known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
+        used = {word.text for word in facts.reads}
         old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
@@ -385,7 +386,8 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
                 " key of its interface"
             )
-            help = did_you_mean(guesser(inputs)(word.text)) or (
+            near = guesser(key for key in inputs if key not in used)(word.text)
+            help = did_you_mean(near) or (
                 f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
                 + _in_the_class(facts, "input_keys", word.text)
             )

@@ -615,7 +615,8 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
     for used in calls_of.values():
         known = {key.name for _, node, _, _ in used for key in (*node.inputs, *node.outputs)}
         path, node, slot, facts = used[0]
-        guess = guesser(key.name for key in node.inputs)
+        used = {word.text for word in facts.reads}
+        guess = guesser(key.name for key in node.inputs if key.name not in used)
         for word in {each.text: each for each in reversed(facts.reads)}.values():
             if word.text not in known:
                 yield Finding(

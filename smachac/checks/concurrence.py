@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open, outcome_of_one_meaning
@@ -16,14 +16,8 @@ from smachac.analysis.outcome_rules import (
 )
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.messages import calls, did_you_mean, ends_of, other_place
-from smachac.checks.misplaced_states import misplaced_finding
 from smachac.checks.outcomes import inverted_rules
 from smachac.checks.rule import rule
-from smachac.checks.rule_slips import (
-    UNKNOWN_BRANCH,
-    copied_rule_help,
-    lost_condition,
-)
 from smachac.checks.timeouts import missing_joins, turned_renames
 from smachac.checks.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -33,6 +27,8 @@ from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Condition, Leaf, Node, OutcomeRule
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
+
+UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
 
 
 @rule("SM403", "dead-rule", Severity.ERROR, firm=True)
@@ -83,15 +79,10 @@ def dead_rule(context: Context) -> Iterator[Finding]:
                 - RIGHT: {template: ScriptedState, outcomes: [done]}
               transitions: {ready: ready, failed: failed}
     """
-    branches = [each for each in context.misplaced if isinstance(each.meant, Concurrence)]
-    yield from map(misplaced_finding, branches)
-    moved: dict[str, set[str]] = {}
-    for branch in branches:
-        moved.setdefault(branch.meant_path, set()).add(branch.child.name)
     for path, container in context.containers:
         match container:
             case Concurrence():
-                yield from _dead_rules(path, container, moved.get(path, ()))
+                yield from _dead_rules(path, container)
             case nodes.Iterator(sugar=""):
                 yield from _dead_renames(path, container)
     for each in context.judged:
@@ -104,7 +95,7 @@ def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -
     """The finding on a rule that is empty, or lists states with `any` only."""
     name = written_name(entry.outcome)
     what = " beside `any`, which stands for every outcome" if entry.ignored else ""
-    condition = lost_condition(container, entry.outcome) or _example(container)
+    condition = _example(container)
     help = f"write conditions, as in `{name}: {{{condition}}}`, or remove the rule"
     if entry.ignored and container.default_outcome in ("", entry.outcome):
         help = f"write `default_outcome: {name}` in place of the rule"
@@ -119,9 +110,8 @@ def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -
     )
 
 
-def _dead_rules(path: str, container: Concurrence, moved: Collection[str]) -> Iterator[Finding]:
-    """The rules about states and outcomes that do not exist, but for states that are `moved`: they
-    are beside the concurrence."""
+def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
+    """The rules about states and outcomes that do not exist."""
     children = {child.name: child for child in container.children}
     if len(children) < len(container.children):
         return  # SM106: a rule can be about a state that has the name of another one
@@ -159,7 +149,7 @@ def _dead_rules(path: str, container: Concurrence, moved: Collection[str]) -> It
                 node=path,
             )
         for condition in entry.when:
-            if not condition.child or condition in swapped or condition.child in moved:
+            if not condition.child or condition in swapped:
                 continue  # a rule of a wrong shape: SM004
             child, span = children.get(condition.child), condition.span
             if child is None:
@@ -635,7 +625,6 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
     first, last = _ends(each.concurrence, tie)
     above, below = each.concurrence.written[first], each.concurrence.written[last]
     here = each.concurrence.written[number]
-    copied = copied_rule_help(each.concurrence.node, above, below, here)
     conditions = ", ".join(f"{child}: {outcome}" for child, outcome in tie.items())
     return Finding(
         span=here.span,
@@ -643,8 +632,7 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
         f" {written(tie)}: SMACH for Noetic ends with `{above.outcome}`, SMACH for ROS 2 with"
         f" `{below.outcome}`",
         arguments=(above.outcome, below.outcome, *_names(tie)),
-        help=copied
-        or "add a condition to the rule that must win, as in"
+        help="add a condition to the rule that must win, as in"
         f" `{above.outcome}: {{{conditions}}}`: the rule with more conditions wins",
         related=(
             *other_place(above.span, "the other rule"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -13,7 +14,6 @@ from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
 from smachac.analysis.expression_types import type_of_data
-from smachac.analysis.misplaced_states import keys_of_misplaced
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
 from smachac.analysis.uses import place_of
@@ -32,7 +32,6 @@ from smachac.checks.meant_keys import (
 from smachac.checks.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.messages import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes import meant_default
-from smachac.checks.param_texts import look_up_help, params_as_text, params_in_code
 from smachac.checks.rule import rule
 from smachac.checks.undeclared_keys import leaves_with_code
 from smachac.checks.unsent_keys import unsent_keys
@@ -42,13 +41,7 @@ from smachac.checks.unwritten_keys import (
     unwritten_finding,
     unwritten_keys,
 )
-from smachac.checks.word_loops import (
-    is_over_the_word,
-    loop_over_the_word,
-    loops_over_names_of_lists,
-    word_as_list,
-    words_as_lists,
-)
+from smachac.checks.word_loops import words_as_lists
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, is_plain, respelt
@@ -58,8 +51,8 @@ from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Node, Remap, Unused
-from smachac.ir.traversal import OuterNames, remapping
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
+from smachac.ir.traversal import OuterNames, expressions, remapping, walk
 
 
 @rule(
@@ -122,7 +115,6 @@ def dead_key(context: Context) -> Iterator[Finding]:
         near_unset = guesser(sorted(unset.get(scope.path, ())))
         type_keys = _type_keys(container)
         explained = 0
-        yield from loops_over_names_of_lists(scope, read)
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or (scope.path, key) in reported:
                 continue
@@ -150,10 +142,6 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 yield _unread_key(scope, key, node, span, None, is_searched=False)
                 continue
             # The userdata of the machine can be read after the run.
-            loop = loop_over_the_word(container, key)
-            if loop is not None:
-                yield word_as_list(f"{scope.path}/{loop.name}", loop, key)
-                continue
             back = _turned_preset(scope, key, read) if node is container else None
             finding = _unread_key(scope, key, node, span, back)
             is_result = container is flow.machine.root and node is not container
@@ -221,7 +209,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
     found |= {place for place in unset if place is not None}  # SM301
     found |= _swapped_lists(context)
-    return found | keys_of_misplaced(context.misplaced)  # SM101
+    return found
 
 
 def swapped_loop(missing: Missing) -> nodes.Iterator | None:
@@ -424,10 +412,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             if wrong is not None and wrong.declared:
                 yield misnamed_finding(wrong, scope.path, container_name(scope, key.span))
                 continue
-            if not isinstance(container, nodes.Iterator) or not is_over_the_word(
-                container, key.name
-            ):
-                yield _unused(scope.path, container, key, "input")
+            yield _unused(scope.path, container, key, "input")
         set_ = scope.uses.provided
         outer = scope.path.rpartition("/")[0]
         for key in container.outputs:
@@ -496,29 +481,23 @@ MOST_SHOWN = 40
 """The longest value that a message shows, in characters."""
 
 
+_PARAM_IN_CODE = re.compile(r"\bparams(?:\.|\[['\"])(\w+)")
+
+
+def _params_in_code(machine: Machine) -> set[str]:
+    """The params that code of the script names as if they were variables: `params.limit`."""
+    codes = [code.text for _, node in walk(machine.root) for code in expressions(node)]
+    return {name for text in codes for name in _PARAM_IN_CODE.findall(text)}
+
+
 def _unused_by_the_script(context: Context) -> Iterator[Finding]:
     """The params and types of the script that nothing uses."""
     machine = context.machine
     if not machine.unused:
         return
-    in_code = params_in_code(machine)
-    as_text = params_as_text(context)
-    wrong = {each.flow.origin.span for each in context.clashes["type"]} if as_text else set()
+    in_code = _params_in_code(machine)
     for what, word, via, known, kept in machine.unused:
         if what == "param" and word.text in in_code:  # SM019
-            continue
-        if what == "param" and (place := as_text.get(word.text)) is not None:
-            if place in wrong:  # SM304
-                continue
-            yield Finding(
-                span=place,
-                message=f"`{word.text}` is a text here, and nothing uses the param `{word.text}`",
-                arguments=(what, word.text),
-                help=look_up_help(word.text),
-                effect=f"the state gets the text `{word.text}`, not the value of the param",
-                related=other_place(word.span, "the param is defined here"),
-                node=machine.root.name,
-            )
             continue
         yield _unused_word(Unused(what, word, via, known, kept), machine.root.name)
 

@@ -38,13 +38,28 @@ def with_output(node: Node, key: str) -> tuple[Edit, ...]:
 def with_key_list(node: Node, part: str, keys: Iterable[str]) -> tuple[Edit, ...]:
     """The edit that begins a list of keys of a state which has none, where its place is certain."""
     names = [*keys]
-    return _begun(node.span, part, ", ".join(names)) if all(map(is_plain, names)) else ()
+    return _begun(node.span, f"{part}: [{', '.join(names)}]") if all(map(is_plain, names)) else ()
+
+
+def with_remapping(node: Node, key: str, to: str) -> tuple[Edit, ...]:
+    """The edit that adds an entry to the `remapping` of a state, where its place is certain."""
+    if not (is_plain(key) and is_plain(to)):
+        return ()
+    last = max((remap.to_span for remap in node.remaps), key=lambda span: span.start, default=None)
+    if last is None:
+        return _begun(node.span, f"remapping: {{{key}: {to}}}")
+    source = last.source
+    is_flow = "{" in source.text[source.text.rfind("\n", 0, last.start) + 1 : last.start]
+    end = Span(source, last.end, last.end)
+    return (Edit(span=end, text=f", {key}: {to}"),) if is_flow else ()
 
 
 def adding_outcome(node: Node, outcome: str) -> tuple[Repair, ...]:
     """The repair that adds an outcome to those that a state lists, where its place is certain."""
     here = [each.span for each in node.outcomes if each.span.source is node.span.source]
     after = sorted({span for span in here if span.start > node.span.start})
+    while after and after[0].source.text[: after[0].start].rstrip()[-1:] not in ("[", "-"):
+        del after[0]  # the name is not the first one of a list
     count = sum(1 for _ in takewhile(_are_in_one_list, pairwise(after)))
     edits = _listed(after[count], outcome) if after and is_plain(outcome) else ()
     repair = Repair(edits=edits, certainty=Certainty.LIKELY, operator="add the outcome")
@@ -90,7 +105,7 @@ def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Ed
         return ()
     spans = (each.span for each in known if each.span.source is node.span.source)
     last = max(spans, key=lambda span: span.start, default=None)
-    return _listed(last, key) if last is not None else _begun(node.span, part, key)
+    return _listed(last, key) if last is not None else _begun(node.span, f"{part}: [{key}]")
 
 
 def _listed(last: Span, key: str) -> tuple[Edit, ...]:
@@ -107,21 +122,21 @@ def _listed(last: Span, key: str) -> tuple[Edit, ...]:
     return (Edit(span=Span(last.source, end, end), text=new),)
 
 
-def _begun(name: Span, part: str, key: str) -> tuple[Edit, ...]:
-    """The edit that adds a list with one item as the first field of a state."""
+def _begun(name: Span, field: str) -> tuple[Edit, ...]:
+    """The edit that adds a field as the first one of a state."""
     text = name.source.text
     body = _BODY.match(text, name.end)
     if body is None or name.source is NOWHERE.source:
         return ()
     if body["flow"]:
         place = Span(name.source, body.end(), body.end())
-        return (Edit(span=place, text=f"{part}: [{key}], "),)
+        return (Edit(span=place, text=f"{field}, "),)
     first = body.start("block")
     indent = text[text.rfind("\n", 0, first) + 1 : first]
     at = text.find("\n", name.end) + 1
     if indent.strip() or not name.end < at <= first:
         return ()
-    new = f"{indent}{part}: [{key}]{_line_end(text, name.end)}"
+    new = f"{indent}{field}{_line_end(text, name.end)}"
     return (Edit(span=Span(name.source, at, at), text=new),)
 
 

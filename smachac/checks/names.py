@@ -22,14 +22,10 @@ from smachac.analysis.control_flow import (
     strays,
     unknown_outcomes,
 )
-from smachac.analysis.misplaced_states import stray_transitions
 from smachac.checks.edits import adding_outcome
 from smachac.checks.expressions import unknown_endings
-from smachac.checks.loop_targets import WORDS as LOOP_WORDS
-from smachac.checks.loop_targets import loop_target
 from smachac.checks.meant_keys import meant_keys
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
-from smachac.checks.misplaced_states import misplaced_finding
 from smachac.checks.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
@@ -138,31 +134,18 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               transitions: {done: stacked}
     """
     lost = [each for path, container in context.misnamed for each in _lost(path, container)]
-    misplaced = [each for each in context.misplaced if not isinstance(each.meant, Concurrence)] \
-        if lost else []  # fmt: skip
-    for each in misplaced:
-        yield misplaced_finding(each)
-    causes = {(each.meant_path, each.child.name) for each in misplaced}
-    moved = {each.path for each in misplaced}
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
         paths.setdefault(node.name, context.plain_paths.get(path, path))
     alike: dict[tuple[object, ...], list[_Lost]] = {}
     for at, fault in enumerate(lost):
         target = fault.step.target
-        if (fault.path, target) not in causes and f"{fault.path}/{fault.child.name}" not in moved:
-            alike.setdefault((fault.path, target or at, fault.child.via), []).append(fault)
+        alike.setdefault((fault.path, target or at, fault.child.via), []).append(fault)
     for first, *others in alike.values():
-        loop = None
-        if first.step.target.casefold() in LOOP_WORDS:
-            whole = dict(context.containers)
-            loop = loop_target(
-                first.path, first.container, first.child, first.step, first.meant, whole
-            )
-        yield _with_others(_nowhere(first, paths.get(first.step.target), loop), others)
+        yield _with_others(_nowhere(first, paths.get(first.step.target)), others)
     for path, container in context.containers:
         if isinstance(container, Concurrence | nodes.Iterator):
-            yield from _idle_transitions(context, path, container, moved)
+            yield from _idle_transitions(context, path, container)
 
 
 def _lost(path: str, container: Linear) -> Iterator[_Lost]:
@@ -170,16 +153,15 @@ def _lost(path: str, container: Linear) -> Iterator[_Lost]:
     near: Mapping[str, MeantTarget] = {}
     targets = _Targets(container)
     copied = copied_name(container)
-    for _, _, child, step in stray_transitions(path, container):
+    names, exits = children_names(container), frozenset(outcome_names(container))
+    lost = ((child, step) for child in container.children for step in strays([child], names, exits))
+    for child, step in lost:
         if guess is None:
             guess, near = places_of(container), meant_targets(container)
         if not _was_reported(step) and step.target != copied:  # SM106
             meant = near.get(step.target)
             name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
             sure = guess.sure(step.target) if meant is not None else None
-            uses = targets.places
-            if sure is not None and sure not in uses and len(uses[step.target]) > 1:
-                sure = None  # the declared name is rather the misspelt one
             yield _Lost(path, container, targets, child, step, name, sure, paired)
 
 
@@ -233,8 +215,9 @@ def _add_or_use(fault: _Lost) -> str:
     return f"add the state `{target}`, or {known}"
 
 
-def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
-    """SM101 for a transition; `loop` is the help if its target is a word for a loop."""
+def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
+    """SM101 for a transition; `elsewhere` is the path of a state of the name of its target in
+    another container."""
     path, container, targets, child, step, meant, sure, paired = fault
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
@@ -252,6 +235,8 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
         sure = None
     if step.target in OF_SMACH or (sure is not None and not _same_case(step.target, sure)):
         sure = None  # a name that is like an outcome of SMACH is rather the misspelt one
+    if sure not in targets.places and len(targets.places[step.target]) > 1:
+        sure = None  # a name with several uses is rather right, and the known name misspelt
     return Finding(
         span=step.target_span,
         message=whole,
@@ -260,7 +245,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None, loop: str | None) -> Finding:
             step.target,
             *(() if step.target else (step.outcome,)),
         ),
-        help=loop or help or _add_or_use(fault),
+        help=help or _add_or_use(fault),
         effect="SMACH refuses to run such a container: none of its states runs",
         related=(*_unentered(fault), *calls(child, step.target_span)),
         node=f"{path}/{child.name}",
@@ -319,11 +304,9 @@ def _same_case(word: str, name: str) -> bool:
     return same and word.casefold() != name.casefold()
 
 
-def _idle_transitions(
-    context: Context, path: str, container: Container, moved: Collection[str]
-) -> Iterator[Finding]:
+def _idle_transitions(context: Context, path: str, container: Container) -> Iterator[Finding]:
     """The transitions of the children of a concurrence or an iterator, except those of a sub-script
-    that a state machine calls as well, and those of misplaced states."""
+    that a state machine calls as well."""
     why = "an iterator repeats its child or ends"
     help = "remove it: `loop_outcomes` lists the outcomes that continue the loop"
     if isinstance(container, Concurrence):
@@ -333,8 +316,6 @@ def _idle_transitions(
             " order put the states into a Sequence in one branch"
         )
     for child in container.children:
-        if f"{path}/{child.name}" in moved:
-            continue
         steps = [step for step in child.transitions if step.origin == "written"]
         if steps and not (child.via and _is_taken_elsewhere(context, steps[0].span)):
             first, several = steps[0], len(steps) > 1
@@ -457,7 +438,7 @@ def _unknown_steps(
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=()
-            if default is not None
+            if default is not None or step.outcome in OF_SMACH
             else respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
         )
 

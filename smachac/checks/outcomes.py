@@ -241,14 +241,9 @@ def unhandled_outcome(context: Context) -> Iterator[Finding]:
               outcomes: [done, slipped, blocked]
               transitions: {done: picked, slipped: lost, blocked: lost}
     """
-    found = [
-        each for path, container in context.linear
-        for each in _unhandled_outcomes(
-            path, container, context.of_container(unhandled_in, path, container)
-        )
-    ]  # fmt: skip
-    moved = {each.path for each in context.misplaced} if found else ()
-    yield from (each for each in found if each.node not in moved)
+    for path, container in context.linear:
+        lacking = context.of_container(unhandled_in, path, container)
+        yield from _unhandled_outcomes(path, container, lacking)
 
 
 def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Iterator[Finding]:

@@ -555,15 +555,10 @@ def unknown_event(context: Context) -> Iterator[Finding]:
           - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     faults = [(each.property, fault) for each in _with(context, "unclear") for fault in each.faults]
-    if not faults:
-        return
-    lost = {each.step.target for each in context.strays}  # SM101
     alike: dict[tuple[str, ...], list[tuple[Property, NameFault]]] = {}
     for given, fault in faults:
-        atom = fault.atom
-        if atom.subject != "path" or atom.name.rpartition("/")[2] not in lost:
-            which = fault.kind, atom.subject, atom.name, atom.outcome or ""
-            alike.setdefault(which, []).append((given, fault))
+        which = fault.kind, fault.atom.subject, fault.atom.name, fault.atom.outcome or ""
+        alike.setdefault(which, []).append((given, fault))
     for first, *others in alike.values():
         found = name_fault(first[1], first[0], context)
         spans = [*dict.fromkeys(fault.atom.span for _, fault in others)][:_MOST_ALIKE]

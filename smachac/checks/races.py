@@ -81,18 +81,14 @@ def data_race(context: Context) -> Iterator[Finding]:
     """
     for path, container in context.containers:
         if isinstance(container, Concurrence) and len(container.children) > 1:
-            moved = {id(each.child) for each in context.misplaced}
-            branches = [child for child in container.children if id(child) not in moved]
-            yield from _races(path, container, branches, context.accesses)
+            yield from _races(path, container, context.accesses)
 
 
-def _races(
-    path: str, container: Concurrence, branches: list[Node], known: Mapping[str, Accesses]
-) -> Iterator[Finding]:
+def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> Iterator[Finding]:
     raced = raced_output(path, container, known)
     writers: dict[str, list[tuple[Node, Node]]] = {}
     readers: dict[str, list[tuple[Node, Node]]] = {}
-    for child in branches:
+    for child in container.children:
         own = known[f"{path}/{child.name}"]
         for key, origin in own.writes.items():
             if child is origin and _is_never_set(child, key):
@@ -113,7 +109,7 @@ def raced_keys(context: Context) -> set[tuple[str, str]]:
     """The keys that are unset because a branch of a concurrence writes the key of another branch
     (SM405), each with the path of the container that has it."""
     found = set[tuple[str, str]]()
-    for path, container in context.containers if not context.misplaced else ():
+    for path, container in context.containers:
         raced = None
         if isinstance(container, Concurrence):
             raced = raced_output(path, container, context.accesses)

@@ -11,7 +11,6 @@ from smachac.analysis.control_flow import (
     Linear,
     is_open,
 )
-from smachac.analysis.misplaced_states import ends_of_misplaced
 from smachac.checks.hidden_conditions import hidden_conditions
 from smachac.checks.messages import calls, did_you_mean, other_place, own_name
 from smachac.checks.misled_failures import linear_outcomes, misled_failures
@@ -19,7 +18,6 @@ from smachac.checks.needed_variables import outcomes_without_variable
 from smachac.checks.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties import missed_states
 from smachac.checks.rule import rule
-from smachac.checks.rule_slips import lost_condition
 from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Word
@@ -135,7 +133,6 @@ def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
             continue
         if missed is None:
             missed = missed_states(context)
-            missed |= {each.path for each in context.misplaced}
         before = _before(whole, frozenset(child.name for child in hidden))
         first = _first_hidden(container, hidden, before, seen)
         previous = {each.name: one for one, each in pairwise(container.children)}
@@ -144,7 +141,7 @@ def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
         groups = 0
         for child in hidden:
             if child.name not in first or f"{path}/{child.name}" in missed:
-                continue  # SM701 reports the transition that must lead to it, SM101 its place
+                continue  # SM701 reports the transition that must lead to it
             groups += 1
             alone, one = not before.get(child.name), previous.get(child.name)
             is_searched = alone and groups <= MOST_EXPLAINED
@@ -489,9 +486,8 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
             if possible is not None and outcome.name not in possible | known:
                 if moved is None:
                     misled = misled_failures(context).items()
-                    moved = ends_of_misplaced(context.misplaced)
-                    moved |= {(place, each.meant.name) for (place, _), each in misled}
-                if (path, outcome.name) not in moved:  # SM101, SM301
+                    moved = {(place, each.meant.name) for (place, _), each in misled}
+                if (path, outcome.name) not in moved:  # SM301
                     yield _impossible(path, container, outcome)
 
 
@@ -542,10 +538,6 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
         effect = f"a caller of `{name}` that waits for this outcome never gets it"
     if isinstance(container, Concurrence):
         help = f"add a rule for `{outcome.name}`, or {removed}"
-        condition = lost_condition(container, outcome.name)
-        if condition is not None:
-            rule = f"{written_name(outcome.name)}: {{{condition}}}"
-            help = f"write the rule `{rule}` in `outcome_map`, or {removed}"
         if outcome.name == PREEMPTED:
             # docs/semantics.md, Preemption.
             help = (

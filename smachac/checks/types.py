@@ -6,7 +6,6 @@ import json
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from itertools import pairwise
 from types import MappingProxyType
 
@@ -35,7 +34,6 @@ from smachac.checks.number_help import (
     rotation_meant,
     sizes_of,
 )
-from smachac.checks.param_texts import look_up_help, params_as_text
 from smachac.checks.record_fields import (
     missing_fields,
     misspelt_fields,
@@ -110,10 +108,7 @@ def type_mismatch(context: Context) -> Iterator[Finding]:
               transitions: {done: done}
     """
     clashes = [each for each in context.clashes["type"] if not _is_function(each)]
-    params = {span: name for name, span in params_as_text(context).items()} if clashes else {}
-    for found in clash_findings(clashes, context.machine.aliases):
-        name = params.get(found.span)
-        yield found if name is None else replace(found, help=look_up_help(name))
+    yield from clash_findings(clashes, context.machine.aliases)
     yield from _lists_for_items(context)
     yield from _without_items(context)
     yield from _wrong_steps(context)

@@ -83,17 +83,19 @@ def _lossy_writes(path: str, container: Container) -> Iterator[Finding]:
             only = any(each.name == key for each in leaf.inputs)
             what = "only an input key" if only else "not one of its output keys"
             span = _place_of_write(leaf, key)
-            never_set = listed(_never_set(leaf))
+            unset = _never_set(leaf) if not only else []
+            added = listing([leaf], "output_keys", key)
+            if unset:
+                added += f"; nothing in `{leaf.name}` sets {listed(unset)}"
             yield Finding(
                 span=span,
                 message=f"`{leaf.name}` sets `{key}`, which is {what}: the value is discarded",
                 arguments=(key,),
-                help=listing([leaf], "output_keys", key)
-                + (f"; nothing in `{leaf.name}` sets {never_set}" if never_set else ""),
+                help=did_you_mean(guesser(unset)(key)) or added,
                 related=calls(leaf, span),
                 node=inner,
                 # With an edit, a state that reads the key that is not set would fail in the run.
-                edits=with_output(leaf, key) if not never_set else (),
+                edits=with_output(leaf, key) if not unset else (),
             )
 
 
@@ -204,9 +206,9 @@ def _undeclared_accesses(
         read = [*undeclared_reads(leaf), *undeclared_slot_reads(leaf, types)]
         if not read:
             continue
-        guess = guesser(each.name for each in leaf.inputs)
+        guess, around = guesser(each.name for each in leaf.inputs), keys_around(container)
         names = [key for key, _ in read]
-        if len(read) > 1 and not leaf.inputs and keys_around(container).issuperset(names):
+        if len(read) > 1 and not leaf.inputs and around.issuperset(names):
             place = key_place(read[0][1], names[0])
             yield _without_list(inner, leaf, "input", names, place)
             continue
@@ -214,18 +216,19 @@ def _undeclared_accesses(
             if isinstance(container, nodes.Iterator) and key == container.item_key:
                 continue
             span = key_place(code, key)
-            added = listing([leaf], "input_keys", key)
-            if key not in keys_around(container):
+            added, near = listing([leaf], "input_keys", key), None
+            if key not in around:
+                near = guess.sure(key)
                 added += f", and set it before, for example in `userdata: {{{key}: ...}}`"
             yield Finding(
                 span=span,
                 message=f"the code of `{leaf.name}` reads `{key}`, which is not one of its"
                 " input keys",
                 arguments=(key,),
-                help=added,
+                help=did_you_mean(near) or added,
                 related=calls(leaf, code.span),
                 node=inner,
-                edits=respelt(Word(key, span), guess.sure(key)),
+                edits=respelt(Word(key, span), near),
             )
 
 
@@ -234,11 +237,13 @@ def _unlisted(context: Context, role: Literal["input", "output"]) -> Iterator[Fi
     whose lists are constants, does not pass them to `smach.State`."""
     for path, leaf, facts in leaves_by_type(context, declared=True):
         is_read = role == "input"
+        used = {word.text for word in (facts.reads if is_read else facts.writes)}
         names = [key.name for key in (leaf.inputs if is_read else leaf.outputs)]
+        unused = guesser(name for name in names if name not in used)
         words = facts.unlisted_reads if is_read else facts.unlisted_writes
         known = DICTIONARY_METHODS if is_read else {word.text for word in facts.unlisted_reads}
         for word in first_of_each(words, known):
-            near = guesser(names)(word.text) if word.text not in names else None
+            near = unused(word.text) if word.text not in names else None
             verb, lost = ("reads", "") if is_read else ("sets", ": the value is discarded")
             yield Finding(
                 span=word.span,

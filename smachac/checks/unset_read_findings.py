@@ -9,18 +9,24 @@ from collections.abc import Iterator
 from smachac.analysis.def_use import written_on
 from smachac.analysis.definite_assignment import DataFlow
 from smachac.analysis.type_inference import Types
+from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
 from smachac.checks.candidate_keys import (
+    may_be,
     unread_output,
 )
+from smachac.checks.edits import with_remapping
 from smachac.checks.initial_presets import counts, initial_value
-from smachac.checks.messages import calls, other_place
+from smachac.checks.messages import added_remapping, calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.repair import Certainty, Repair
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, outer_inputs
+from smachac.ir.types import ANY
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -59,6 +65,7 @@ def unset_read(
     if is_counter:
         help = f"give `{missing.key}` an initial value in `{name}`: {value}"
     related: tuple[Related, ...] = ()
+    fitting: list[str] = []
     if not (is_counter or witness.always) and len(witness.path) > 2 and witness.path[-2].is_outcome:
         before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
         if any(use.path == before.node for use in scope.uses.writers(missing.key)):
@@ -66,12 +73,15 @@ def unset_read(
     if missing.cause == "nowhere":
         why = f"which nothing in {container_name(scope, reader.span)} sets"
         unread = unread_output(scope, missing.key) if is_searched else None
+        fitting = _fitting_keys(missing, witness, types) if is_searched else []
         if isinstance(reader.node, nodes.Iterator) and isinstance(
             python_tree(missing.key), ast.Lambda
         ):
             help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
         elif unread is not None:
             help, related = unread.help, other_place(unread.place, f"nothing reads `{unread.key}`")
+        elif fitting:
+            help = " or ".join(added_remapping(reader.node, reader.key, key) for key in fitting)
         related += _item_place(scope.container, reader.node)
     return Finding(
         span=reader.span,
@@ -87,7 +97,37 @@ def unset_read(
         path=witness.path if len(witness.path) > 1 else (),
         severity=None if witness.always else Severity.WARNING,
         node=reader.path,
+        repairs=tuple(
+            Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="remap a key")
+            for key in fitting
+            if (edits := with_remapping(reader.node, reader.key, key))
+        ),
     )
+
+
+MOST_PROPOSED = 3
+"""Of more keys that can be read in place of one, none is proposed."""
+
+
+def _fitting_keys(missing: Missing, witness: Witness, types: Types) -> list[str]:
+    """The keys that a state can read in place of a key of its interface which nothing sets: those
+    that nothing reads and that can have its type, and those that are known to have it. The search
+    itself proposes near names."""
+    scope, reader = missing.scope, witness.reader
+    declared = next((key for key in reader.node.inputs if key.name == missing.key), None)
+    if declared is None or declared.span.source is reader.node.span.source:
+        return []
+    near, own = guesser([missing.key]), outer_inputs(reader.node)
+    wanted = types.inputs.get((reader.path, reader.key), ANY)
+    found = []
+    for key in sorted(scope.uses.provided.difference(own)):
+        given = types.keys.get((scope.path, key), ANY)
+        is_known = not is_open(given) and not is_open(wanted)
+        is_unread = key not in scope.uses.read and key not in scope.outputs
+        is_meant = near(key) is None if is_unread else is_known
+        if is_meant and may_be(types, scope, key, wanted):
+            found.append(key)
+    return found if len(found) <= MOST_PROPOSED else []
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:

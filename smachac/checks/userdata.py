@@ -114,9 +114,8 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     searches = Searches(flow)
     presets, misled = meant_keys(context), misled_failures(context)
     misnamed = misnamed_keys(context)
-    moved = {each.path for each in context.misplaced}
     causes = _with_their_own_cause(context)
-    for lacking in missing_together(causes) if not moved else ():
+    for lacking in missing_together(causes):
         if lacking[0].scope.path in presets:
             continue
         yield together_finding(context, lacking)
@@ -131,8 +130,6 @@ def read_before_write(context: Context) -> Iterator[Finding]:
         wrong = misnamed.get((missing.scope.path, missing.key))
         meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
-            if witness.reader.path in moved:
-                continue  # SM101: the state is in a wrong container
             node = witness.reader.node
             misplaced = node.misplaced_keys if isinstance(node, nodes.Leaf) else ()
             if witness.reader.key in misplaced and not witness.also:

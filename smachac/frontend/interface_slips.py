@@ -1,11 +1,10 @@
-"""Slips in an interface that one finding explains: a field under another name, two values of one
-entry that have changed places, outputs of `writes` without their declaration."""
+"""Slips in an interface that one finding explains: a field under another name, and outputs of
+`writes` without their declaration."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Word
@@ -16,10 +15,9 @@ from smachac.frontend.fields import name_of
 from smachac.frontend.interface_code import Section
 from smachac.frontend.schema import KEY_FACTS, OUTCOME_FACTS, VARIABLE_FACTS
 from smachac.frontend.type_annotations import as_record
-from smachac.frontend.value_facts import LANGUAGES, NAMES
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
+from smachac.frontend.value_facts import LANGUAGES
+from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.ir.class_facts import ClassFacts
-from smachac.ir.nodes import is_number
 from smachac.ir.types import parse_type, unknown_words
 
 # --- fields under another name
@@ -72,6 +70,13 @@ def _is_type(tree: Tree) -> bool:
     return isinstance(tree, Scalar) and isinstance(tree.value, str) and _type_fits(tree)
 
 
+def _type_fits(tree: Tree) -> bool:
+    tree = as_record(tree)
+    text = tree.value if isinstance(tree, Scalar) else None
+    type_ = parse_type(text) if isinstance(text, str) else None
+    return type_ is not None and not unknown_words(type_)
+
+
 def field_meant(
     value: Tree, fitting: Sequence[str], facts: Callable[[], ClassFacts | None], writes: Tree | None
 ) -> str | None:
@@ -114,84 +119,6 @@ def _names_in(tree: Tree) -> Iterator[str]:
     elif isinstance(tree, Seq):
         words = map(name_of, tree.items)
         yield from (word.text for word in words if word is not None)
-
-
-# --- values that have changed places
-
-
-class Swapped(NamedTuple):
-    """An entry of an interface with the values of two facts in their places, and the finding."""
-
-    tree: Map
-    finding: Diagnostic
-
-
-def swapped_facts(tree: Tree) -> Swapped | None:
-    """The entry of a variable or key, in which the values of two facts have changed places: neither
-    can be that of its own fact, and each can be that of the other. None for other entries."""
-    if not isinstance(tree, Map):
-        return None
-    wrong = [each for each in tree.entries if not _fact_fits(each.key.value, each.value)]
-    if len(wrong) != 2:
-        return None
-    one, other = wrong
-    if not (_fact_fits(one.key.value, other.value) and _fact_fits(other.key.value, one.value)):
-        return None
-    right = {one.key.span: Entry(one.key, other.value), other.key.span: Entry(other.key, one.value)}
-    kept = Map(tuple(right.get(each.key.span, each) for each in tree.entries), tree.span)
-    return Swapped(kept, swapped_values(one, other))
-
-
-def swapped_values(one: Entry, other: Entry) -> Diagnostic:
-    """SM004 for two entries of a mapping whose values have changed places."""
-    first, second = one.key.span.text, other.key.span.text
-    return wrong_shape(
-        one.value.span,
-        f"the values of `{first}` and `{second}` have changed places",
-        f"write `{first}: {other.value.span.text}, {second}: {one.value.span.text}`",
-        arguments=("swapped", first, second),
-    )
-
-
-_TYPE_WORDS = frozenset(["float", "int", "bool", "str", "list", "dict"])
-_TEXTS = frozenset(["doc", "role", "keys", "returns", "frame"])
-_FLAGS = frozenset(["exclusive", "called_first", "optional", "secret"])
-
-
-def _fact_fits(name: object, tree: Tree) -> bool:
-    """Whether a value can be that of a fact."""
-    value = tree.value if isinstance(tree, Scalar) else None
-    if "\n" in tree.span.text or is_known_wrong(tree):
-        return True  # its text is not shown
-    if name == "type":
-        return _type_fits(tree)
-    if name in ("min", "max"):
-        return is_number(value)
-    if name in _FLAGS:
-        return isinstance(value, bool)
-    if name == "unit":
-        return isinstance(value, str) and value not in _TYPE_WORDS and _is_unit(value)
-    if name == "one_of":
-        return isinstance(tree, Seq)
-    if name == "names":
-        return value in NAMES
-    if name == "default":
-        return not (isinstance(value, str) and value in _TYPE_WORDS)
-    if name in _TEXTS:
-        return isinstance(value, str)
-    return True
-
-
-def _type_fits(tree: Tree) -> bool:
-    tree = as_record(tree)
-    text = tree.value if isinstance(tree, Scalar) else None
-    type_ = parse_type(text) if isinstance(text, str) else None
-    return type_ is not None and not unknown_words(type_)
-
-
-def _is_unit(text: str) -> bool:
-    type_ = parse_type(f"float<{text}>")
-    return type_ is not None and type_.args == (text,)
 
 
 # --- outputs without their declaration

@@ -25,10 +25,6 @@ from smachac.frontend.yaml_tree import (
     known_wrong,
 )
 from smachac.ir.nodes import FixedParam, Param, StateType
-from smachac.ir.types import Type
-
-SERVER_NAMES = frozenset(["service_namespace", "action_server_namespace"])
-"""Variables of built-in types that are texts, without a type: code may compute them."""
 
 Scope = Mapping[str, Tree]
 """The params in scope of a state."""
@@ -119,82 +115,6 @@ def _with_meant_look_ups(tree: Seq, scope: Scope, report: Report) -> Seq:
             assert isinstance(word, Scalar)
             items[at] = Seq((replace(word, value="params"), item.items[1]), item.span)
     return tree if items == list(tree.items) else Seq(tuple(items), tree.span)
-
-
-def texts_meant(
-    own: Mapping[str, Entry], scope: Scope, type_: StateType, report: Report
-) -> dict[str, Entry]:
-    """The variables of a state type that are texts, but have lists in which a look-up is meant,
-    with their texts."""
-    found: dict[str, Entry] = {}
-    for key, entry in own.items():
-        held = type_.variables.get(key) if isinstance(entry.value, Seq) else None
-        word = _lone_word(entry.value, scope) if held is not None else None
-        if held is not None and word is not None and _is_single(held.type):
-            message = f"`{entry.value.span.text}` is a list of one text, not a look-up"
-            help, arguments = f"write `[params, {word}]`", ("look-up", key, word)
-            report.append(wrong_shape(entry.value.span, message, help, arguments=arguments))
-            found[key] = Entry(entry.key, scope[word])
-            continue
-        if held is None or not (held.type.name == "str" or key in SERVER_NAMES):
-            continue
-        text = _text_meant(entry.value, scope, report)
-        if text is not None:
-            found[key] = Entry(entry.key, text)
-    return found
-
-
-_SINGLE = frozenset(["float", "int", "bool", "str", "one_of"])
-"""The types whose values are no lists."""
-
-
-def _is_single(type_: Type) -> bool:
-    while type_.name == "optional" and isinstance(type_.args[0], Type):
-        type_ = type_.args[0]
-    return type_.name in _SINGLE
-
-
-def _lone_word(tree: Tree, scope: Scope) -> str | None:
-    """The name of a param in scope that is the only item of a list."""
-    match tree:
-        case Seq(items=(Scalar(value=str(name), plain=True),)) if name in scope:
-            return name
-    return None
-
-
-def _text_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
-    """The text of `[[x], /a]` as the value of a text, where the look-up `[params, x]` of a param in
-    scope is meant, which is reported; None for other trees."""
-    if not isinstance(tree, Seq) or len(tree.items) < 2:
-        return None
-    items = tuple(_with_word(each, scope) for each in tree.items)
-    if all(new is old for new, old in zip(items, tree.items, strict=True)):
-        return None
-    if not all(isinstance(each, Scalar) or look_up_word(each) is not None for each in items):
-        return None
-    text = fill_in(Seq(items, tree.span), scope, [])
-    if not isinstance(text, Scalar) or is_known_wrong(text):
-        return None
-    shown = ", ".join(
-        each.span.text if new is each else f"[params, {each.span.text[1:-1].strip()}]"
-        for each, new in zip(tree.items, items, strict=True)
-    )
-    if "\n" in tree.span.text or not tree.span.text.startswith("["):
-        shown = "..."
-    message = f"`{tree.span.text}` is a list, not a text: it has no look-up"
-    help = f"write `[{shown}]`" if shown != "..." else "write `[params, NAME]` for the param"
-    report.append(wrong_shape(tree.span, message, help, arguments=("text",)))
-    return text
-
-
-def _with_word(tree: Tree, scope: Scope) -> Tree:
-    """The look-up `[params, x]` in place of the list `[x]` of the name of a param that is a text or
-    a number."""
-    match tree:
-        case Seq(items=(Scalar(value=str(name), plain=True) as word,)):
-            if isinstance(scope.get(name), Scalar):
-                return Seq((replace(word, value="params"), word), tree.span)
-    return tree
 
 
 def look_ups(tree: Tree) -> Iterator[Word]:

@@ -31,11 +31,6 @@ from smachac.frontend.message_definitions import (
     missing_definitions_of,
     other_types_of,
 )
-from smachac.frontend.misplaced_fields import (
-    with_inner_rules,
-    with_outer_fields,
-    with_outer_variables,
-)
 from smachac.frontend.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
@@ -50,7 +45,6 @@ from smachac.frontend.params import (
     look_up_word,
     params_of,
     size_up_to,
-    texts_meant,
 )
 from smachac.frontend.properties import properties_of
 from smachac.frontend.robots import robot_of
@@ -63,7 +57,6 @@ from smachac.frontend.state_fields import (
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
-    meant_container,
     params_meant,
     read_fields,
     second_key,
@@ -282,11 +275,8 @@ class _Resolver:
             self.uses.value(key, entry.value, flat=flat)
             entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
-        entries = with_outer_variables(name, entries, owner, type_, self.report)
         if type_.variables:
             entries |= self.lists(own, scope, type_)
-        if scope:
-            entries |= texts_meant(own, scope, type_, self.report)
         entries = with_meant_fields(entries, owner, type_, self.report)
         self.uses.type(type_)
         if scope:
@@ -500,7 +490,6 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
-        own = with_inner_rules(with_outer_fields(name, own, self.report), self.report)
         own = with_meant_call(name, own, self.report)
         called: list[tuple[Word, tuple[Entry, ...]]] = []
         beside: dict[str, Span] = {}
@@ -636,7 +625,6 @@ class _Resolver:
             return StateType(name="", open=True), role or nested
         kind = schema.CONTAINERS.get(word.text)
         if not role and kind is not None:
-            kind = meant_container(around.inner or name, word, kind, entries, self.report)
             return schema.CONTAINER_TYPES[kind], kind
         found = self.state_type(word.text)
         if found is None:

@@ -10,7 +10,6 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
-from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser_of, words_of, written_name
 from smachac.diagnostics.wording import listed
@@ -45,7 +44,6 @@ from smachac.frontend.unquoted import check_name, check_unquoted
 from smachac.frontend.values import as_value, as_written
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
 from smachac.ir.nodes import (
-    ContainerKind,
     StateType,
     Struct,
     Value,
@@ -74,68 +72,6 @@ _READ_ELSEWHERE = frozenset(["template", "states", "types", *NAMES])
 
 _BASE_VARIABLES = ("node_name", "function_name", "manifest")
 """The fields of the base that are variables of every base type."""
-
-
-_ONLY_OF: Mapping[str, frozenset[str]] = {
-    kind: frozenset(row.name for row in schema.VARIABLES.values() if row.owners == {kind})
-    for kind in schema.CONTAINERS.values()
-}
-"""The fields that only one kind of container has."""
-
-
-def meant_container(
-    name: Word, word: Word, kind: ContainerKind, entries: Mapping[str, Entry], report: Report
-) -> ContainerKind:
-    """The kind of container that a state of the template `word` is meant to be (SM004).
-
-    It is another one if two or more of its fields belong to no other kind than that, or if one
-    does that the other kind requires and its states have no transitions to each other. It is a
-    StateMachine if its states have transitions to each other, and every field is missing that only
-    its kind requires.
-    """
-    rows = [schema.VARIABLES[key] for key in entries if key in schema.VARIABLES]
-    others = [row for row in rows if row.owners and kind not in row.owners]
-    if not others and (kind == "StateMachine" or not entries.keys().isdisjoint(_ONLY_OF[kind])):
-        return kind
-    shared: list[ContainerKind] = []
-    for each in schema.CONTAINERS.values():
-        if all(row.owners.issuperset([each]) for row in others):
-            shared.append(each)
-    own = _ONLY_OF[kind]
-    meant: ContainerKind = kind
-    why = ""
-    leads_inside = _leads_inside(entries.get("states"))
-    only = shared[0] if len(shared) == 1 and others else kind
-    required = not leads_inside and any(row.name in schema.REQUIRED[only] for row in others)
-    if only != kind and (len(others) > 1 or required):
-        meant = only
-        names = " and ".join(f"`{row.name}`" for row in others)
-        why = f"{names} {'is a field' if len(others) == 1 else 'are fields'} of `{meant}`"
-    elif own and entries.keys().isdisjoint(own) and leads_inside:
-        meant = "StateMachine"
-        why = "its states have transitions to each other"
-    if meant != kind:
-        message = f"the template of `{name.text}` is `{word.text}`, but {why}"
-        help = f"write `template: {meant}`"
-        if not others:
-            help += f"; the states of a container of type `{kind}` have no such transitions"
-        edits = (Edit(span=word.span, text=meant),) if others else ()
-        report.append(
-            wrong_shape(word.span, message, help, arguments=("container", name.text), edits=edits)
-        )
-    return meant
-
-
-def _leads_inside(states: Entry | None) -> bool:
-    """Whether a state of a container has a transition to another one."""
-    items = states.value.items if states is not None and isinstance(states.value, Seq) else ()
-    firsts = [item.entries[0] for item in items if isinstance(item, Map) and item.entries]
-    names = {first.key.value for first in firsts}
-    inside = [each for first in firsts if isinstance(first.value, Map)
-              for each in first.value.entries]  # fmt: skip
-    steps = [step for each in inside if each.key.value in ("transitions", "t")
-             and isinstance(each.value, Map) for step in each.value.entries]  # fmt: skip
-    return any(isinstance(each.value, Scalar) and each.value.value in names for each in steps)
 
 
 def read_fields(

@@ -6,7 +6,7 @@ template without either is an open type: any field is accepted, and nothing is k
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeVar, get_args
 
@@ -26,7 +26,7 @@ from smachac.frontend.interface_code import (
     python_code,
 )
 from smachac.frontend.interface_fields import interface_fields
-from smachac.frontend.interface_slips import swapped_facts, with_lost_outputs
+from smachac.frontend.interface_slips import with_lost_outputs
 from smachac.frontend.loader import Library
 from smachac.frontend.schema import KEY_FACTS, VARIABLE_FACTS
 from smachac.frontend.type_annotations import as_record, read_type
@@ -283,7 +283,6 @@ def _listed_roles(section: Section, report: Report) -> dict[str, KeyRole]:
     }
 
 
-_T = TypeVar("_T")
 _Role = TypeVar("_Role", VariableRole, KeyRole)
 
 
@@ -387,23 +386,7 @@ def _variables(section: Section, report: Report) -> dict[str, VariableType]:
     return {key: _variable(key, value, report) for key, value in declared_in(section)}
 
 
-def _with_swapped_facts(read: Callable[[Tree], _T], tree: Tree, report: Report) -> _T:
-    """What `read` finds in the facts of a key or variable; facts whose values are swapped are one
-    finding, and are read as they are meant."""
-    before = len(report)
-    found = read(tree)
-    swapped = swapped_facts(tree) if len(report) > before else None
-    if swapped is None:
-        return found
-    report[before:] = [swapped.finding]
-    return read(swapped.tree)
-
-
 def _variable(name: str, tree: Tree, report: Report) -> VariableType:
-    return _with_swapped_facts(lambda facts: _described_variable(name, facts, report), tree, report)
-
-
-def _described_variable(name: str, tree: Tree, report: Report) -> VariableType:
     whose = f"the variable `{name}`"
     meant = check_fields(tree, whose, VARIABLE_FACTS, report)
     role = _role(tree, _VARIABLE_ROLES, report)
@@ -487,10 +470,6 @@ def _keys(section: Section, report: Report) -> tuple[Key, ...]:
 
 
 def _key(name: Word, tree: Tree, report: Report) -> Key:
-    return _with_swapped_facts(lambda facts: _described_key(name, facts, report), tree, report)
-
-
-def _described_key(name: Word, tree: Tree, report: Report) -> Key:
     role = _role(tree, _KEY_ROLES, report)
     type_ = described(_type(tree, report), tree, role, report)
     limits = limits_of(tree, type_, role, report)

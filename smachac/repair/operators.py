@@ -141,7 +141,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     if not _is_field(item.span, text.tree):
         found += _mentioned_names(item, around.others)
     found += _unused_names(item, text)
-    found += _without_brackets(item, text)
+    found += _other_forms(item, text)
     for span in dict.fromkeys(places[:MOST_PLACES]):
         tree = around.read(span.source).tree
         path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
@@ -153,6 +153,8 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
         found += _exchanged_values(path, item.span)
         found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
         found += _other_types(path, around.types)
+        found += _moved_out(path, span.source)
+        found += _moved_states(path, span.source)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
     return sorted(unique.values(), key=_order)[:MOST_CANDIDATES]
 
@@ -229,7 +231,7 @@ def _names_of_interface(item: Diagnostic, text: Text, interface: Text) -> Iterat
     for made in found:
         (edit,) = made.repair.edits
         is_in_code = code is not None and _start(code) <= edit.span.start < _end(code)
-        if not is_in_code and edit.text.isupper() == edit.span.text.isupper():
+        if not is_in_code and edit.text.isupper() <= edit.span.text.isupper():
             yield made
 
 
@@ -258,12 +260,22 @@ def _unused_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
                     yield candidate(1.6, RENAME, Edit(span=span, text=word))
 
 
-def _without_brackets(item: Diagnostic, text: Text) -> Iterator[Candidate]:
-    """A name of the finding without the brackets of a list of this one name."""
+_VALUE = r"(?<=: )(?:WORD|\$\((?:\w+ )?WORD\)|['\"](?:\$\{|\{\{)\s*WORD\s*\}+['\"])(?=[,}\s])"
+"""A value that is a word, or its look-up in the syntax of launch files, shells or templates."""
+
+
+def _other_forms(item: Diagnostic, text: Text) -> Iterator[Candidate]:
+    """A name of the finding without the brackets of a list of this one name; and as a look-up of a
+    param in place of a value that is its name."""
     for word in _words_of(item):
-        for found in re.finditer(rf"\[\s*{word}\s*\]", text.source.text):
-            span = Span(text.source, *found.span())
-            yield candidate(1.4, "remove the brackets", Edit(span=span, text=word))
+        alone = [*re.finditer(rf"\[\s*{word}\s*\]", text.source.text)]
+        values = [*re.finditer(_VALUE.replace("WORD", word), text.source.text)]
+        for found in alone:
+            edit = Edit(span=Span(text.source, *found.span()), text=word)
+            yield candidate(1.4, "remove the brackets", edit)
+        for found in (*alone, *values) if "params" in text.counts else ():
+            edit = Edit(span=Span(text.source, *found.span()), text=f"[params, {word}]")
+            yield candidate(1.5, "look the param up", edit)
 
 
 def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candidate]:
@@ -369,34 +381,102 @@ def _fits_anywhere(value: Tree) -> bool:
     return bool(text) and "\n" not in text and (isinstance(value, Scalar) or text[0] in "[{")
 
 
-def _type_of(path: list[Tree | Entry]) -> str:
-    """The state type of the innermost state; empty if there is none."""
+def _state_in(path: list[Tree | Entry]) -> Map | None:
+    """The fields of the innermost state that has a template."""
     for part in reversed(path):
         fields = part.value if isinstance(part, Entry) else part
-        entry = fields.get("template") if isinstance(fields, Map) else None
-        if entry is not None:
-            return entry.value.span.text
-    return ""
+        if isinstance(fields, Map) and fields.get("template") is not None:
+            return fields
+    return None
+
+
+def _type_of(path: list[Tree | Entry]) -> str:
+    """The state type of the innermost state; empty if there is none."""
+    state = _state_in(path)
+    entry = state.get("template") if state is not None else None
+    return entry.value.span.text if entry is not None else ""
 
 
 def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator[Candidate]:
-    """The state types that have all fields of the innermost state, in place of its own one."""
-    for part in reversed(path):
-        entry = part.get("template") if isinstance(part, Map) else None
-        if entry is None or not isinstance(part, Map):
-            continue
-        own = [str(each.key.value) for each in part.entries if each.key.value not in schema.LONG]
-        fields = [name for name in own if name not in schema.VARIABLES]
-        fitting = [
-            name
-            for name, text in types.items()
-            if fields and name != entry.value.span.text
-            if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
-        ]
-        if len(fitting) <= MOST_NEAR:
-            for name in fitting:
-                yield candidate(1.7, RENAME, Edit(span=entry.value.span, text=name))
+    """The state types that have all fields of the innermost state, in place of its own one; for a
+    container, the other kinds of containers."""
+    state = _state_in(path)
+    entry = state.get("template") if state is not None else None
+    if state is None or entry is None:
         return
+    word = entry.value.span.text
+    own = [str(each.key.value) for each in state.entries if each.key.value not in schema.LONG]
+    fields = [name for name in own if name not in schema.VARIABLES]
+    fitting = [
+        name
+        for name, text in types.items()
+        if fields and name != word
+        if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
+    ]
+    kinds = [name for name in schema.CONTAINERS if name != word and word in schema.CONTAINERS]
+    for name in (*kinds, *(fitting if len(fitting) <= MOST_NEAR else ())):
+        cost = 1.2 if name in kinds else 1.7
+        yield candidate(cost, RENAME, Edit(span=entry.value.span, text=name))
+
+
+def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
+    """The lines of the innermost entry, moved out of the one or the two entries that it is in:
+    behind that one, with its indentation."""
+    *outside, inner = [None, *(part for part in path if isinstance(part, Entry))]
+    text = source.text
+    if inner is None:
+        return
+    start, end = _lines_of(inner, text)
+    if text[start : _start(inner)].strip():
+        return  # in braces
+    for outer in [part for part in outside if part is not None][:-3:-1]:
+        first, last = _lines_of(outer, text)
+        columns = inner.key.span.column - outer.key.span.column
+        moved = re.sub(rf"(?m)^ {{{columns}}}", "", text[start:end])
+        rest = text[end:last]
+        whole = Span(source, start, last)
+        if columns > 0 and first < start:
+            operator = f"move them {columns} columns to the left"
+            yield candidate(1.3, operator, Edit(span=whole, text=rest + moved))
+
+
+def _moved_states(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
+    """The lines of the innermost state with another indentation: that of the states around its
+    container if it is the last one in that, and that of the states of the container before it."""
+    lists = [
+        pair for pair in pairwise(path) if isinstance(pair[0], Seq) and pair[1] in pair[0].items
+    ]
+    if not lists:
+        return
+    items, state = lists[-1]
+    assert isinstance(items, Seq)
+    at = next(number for number, each in enumerate(items.items) if each is state)
+    others = [lists[-2][1]] if at + 1 == len(items.items) and len(lists) > 1 else []
+    before = items.items[at - 1] if at > 0 else None
+    fields = before.entries[0].value if isinstance(before, Map) and before.entries else None
+    inner = fields.get("states") if isinstance(fields, Map) else None
+    if inner is not None and isinstance(inner.value, Seq) and inner.value.items:
+        others.append(inner.value.items[-1])
+    start, end = _lines_of(state, source.text)
+    lines = source.text[start:end].splitlines(keepends=True)
+    for other in others:
+        columns = _dash(other, source.text) - _dash(state, source.text)
+        moved = (" " * columns + line if columns > 0 else line[-columns:] for line in lines)
+        text, way = "".join(moved), "right" if columns > 0 else "left"
+        operator = f"move them {abs(columns)} columns to the {way}"
+        yield candidate(1.3, operator, Edit(span=Span(source, start, end), text=text))
+
+
+def _dash(part: Tree | Entry, text: str) -> int:
+    """The column of the `-` before an item of a list."""
+    line, _ = _lines_of(part, text)
+    return text.find("-", line) - line
+
+
+def _lines_of(part: Tree | Entry, text: str) -> tuple[int, int]:
+    """The range of the whole lines of a part of a tree."""
+    end = text.find("\n", _end(part)) + 1
+    return text.rfind("\n", 0, _start(part)) + 1, end or len(text)
 
 
 def _repeated_parts(path: list[Tree | Entry], source: Source, cost: float) -> Iterator[Candidate]:
@@ -408,7 +488,6 @@ def _repeated_parts(path: list[Tree | Entry], source: Source, cost: float) -> It
         elif isinstance(around, Seq):
             others = [*around.items]
         if sum(other == part for other in others) > 1:
-            start = source.text.rfind("\n", 0, _start(part)) + 1
-            end = source.text.find("\n", _end(part)) + 1 or len(source.text)
-            yield candidate(cost, "delete a copy", Edit(span=Span(source, start, end), text=""))
+            span = Span(source, *_lines_of(part, source.text))
+            yield candidate(cost, "delete a copy", Edit(span=span, text=""))
             return

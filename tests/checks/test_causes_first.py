@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from smachac.diagnostics.diagnostic import Severity
+from tests.trust.judged_repairs import shown
 from tests.trust.project_text import analysed
 
 FIND = "outcomes: {found: {}, nothing: {}, preempted: {}}\n"
@@ -467,7 +468,8 @@ def test_a_misspelt_output_of_an_interface_is_one_finding() -> None:
         "sees.py": SEEING,
     }
     (item,) = [each for each in analysed(files).report if each.severity is Severity.ERROR]
-    assert (item.code, item.help) == ("SM603", "write `grasp` in place of `gasp`")
+    assert item.code == "SM308"
+    assert "write `grasp` in place of `gasp` in `Find.yml`" in str(item.help)
 
 
 REACHED = FIELDS.replace(
@@ -602,13 +604,8 @@ states:
 """
     report = analysed({"main.yml": script}).report
     found = [(each.code, each.help) for each in report if each.severity is not Severity.INFO]
-    assert found == [
-        (
-            "SM308",
-            "write `heat` in place of `part` in the `output_keys` of `WARM`, or `part` in place of"
-            " `heat` here",
-        )
-    ]
+    help = "write `output_keys: [part, heat]` in `WARM`; nothing in `WARM` sets `part`"
+    assert found == [("SM308", help)]
     both = script.replace("{heat:", "{part:")
     assert "SM405" in [each.code for each in analysed({"main.yml": both}).report]
 
@@ -623,8 +620,8 @@ states:
   - SAY: {template: Say, text: greeting, transitions: {said: done}}
 """
     interface = "variables: {text: str}\noutcomes: {said: {}}\n"
-    report = analysed({"main.yml": script, "templates/Say.yml": interface}).report
-    found = [(each.code, each.span.text, each.help) for each in report]
-    help = "write `[params, greeting]` for the value of the param"
-    assert found == [("SM306", "greeting", help)]
-    assert report[0].span.start == script.index("greeting, ")
+    items, repair = shown(analysed({"main.yml": script, "templates/Say.yml": interface}))
+    assert [(item.code, item.span.text) for item in items] == [("SM306", "greeting")]
+    assert repair is not None
+    assert [edit.text for edit in repair.edits] == ["[params, greeting]"]
+    assert repair.edits[0].span.start == script.index("greeting, ")

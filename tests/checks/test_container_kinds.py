@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import shown
+from tests.trust.project_text import analysed
 
 BOTH = """
 name: sm
@@ -34,9 +36,17 @@ states:
 """
 
 
+def kind(text: str) -> str:
+    """The kind of container that the repair writes."""
+    _, repair = shown(analysed({"main.yml": text}))
+    assert repair is not None
+    (edit,) = repair.edits
+    assert edit.span.line == 7
+    return edit.text
+
+
 def test_the_fields_of_another_container() -> None:
-    help = "write `template: Concurrence`"
-    assert reported({"main.yml": BOTH}) == [("SM004", "StateMachine", help)]
+    assert kind(BOTH) == "Concurrence"
 
 
 def test_a_sequence_written_as_another_container() -> None:
@@ -44,17 +54,12 @@ def test_a_sequence_written_as_another_container() -> None:
     text = text.replace("      outcome_map: {succeeded: {A: done, B: done}}\n", "").replace(
         "outcomes: [done]}", "outcomes: [done, aborted]}"
     )
-    found = reported({"main.yml": text.replace("[succeeded, aborted]", "[done, aborted]")})
-    assert found == [("SM004", "StateMachine", "write `template: Sequence`")]
+    assert kind(text.replace("[succeeded, aborted]", "[done, aborted]")) == "Sequence"
 
 
-@pytest.mark.parametrize("kind", ["Concurrence", "Sequence", "Iterator"])
-def test_a_container_whose_states_follow_one_another(kind: str) -> None:
-    help = (
-        "write `template: StateMachine`; the states of a container of type"
-        f" `{kind}` have no such transitions"
-    )
-    assert reported({"main.yml": ONE_BY_ONE.replace("KIND", kind)}) == [("SM004", kind, help)]
+@pytest.mark.parametrize("wrong", ["Concurrence", "Sequence", "Iterator"])
+def test_a_container_whose_states_follow_one_another(wrong: str) -> None:
+    assert kind(ONE_BY_ONE.replace("KIND", wrong)) == "StateMachine"
 
 
 def test_another_word_for_the_outcome_true() -> None:

@@ -82,11 +82,11 @@ CALLED = """\
 @pytest.mark.parametrize(
     ("code", "replaced", "arguments"),
     [
-        ("SM101", {}, {("", "", "failed"), ("", "bad"), ("", "bda"), ("", "NOWHERE")}),
-        ("SM102", {}, {("LOOP", "side"), ("", "okk")}),
-        ("SM104", {}, {("WORK", "x")}),
+        ("SM101", {}, {("", "bad"), ("", "bda"), ("", "NOWHERE")}),
+        ("SM102", {}, {("LOOP", "side"), ("", "okk"), ("", "failed")}),
+        ("SM104", {}, {("WORK", "failed", "x")}),
         ("SM105", {"never": "failed"}, {("WORK", "failed")}),
-        ("SM201", {", x]": "]"}, {("LOST",)}),
+        ("SM201", {", failed, x]": "]"}, {("LOST",)}),
         ("SM203", {"NOWHERE": "ok", ", x]": "]", "never": "failed"}, {("", "bad"), ("", "FIRST")}),
         ("SM204", {}, {("LOOP", "failed")}),
         ("SM205", {"states": "initial: A\n    states"}, {("", "A")}),

@@ -366,8 +366,8 @@ states:
       transitions: {succeeded: done, preempted: done}
 """
     found = [each for each in analysed({"main.yml": script}).report if each.code == "SM301"]
-    assert [each.help for each in found] == [
-        "write `item: pose` in `for_each`, or read `point`, as the loop calls its item"
+    assert [[place.message for place in each.related] for each in found] == [
+        ["`VISIT` reads `pose` here", "the loop calls its item `point`"]
     ]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.trust.judged_repairs import shown
 from tests.trust.project_text import analysed
 
 
@@ -363,11 +364,13 @@ states:
 """
 
 
-def test_a_param_as_a_text_is_one_finding() -> None:
+def test_a_param_as_a_text() -> None:
     report = analysed({"main.yml": FORCE}).report
-    assert [(each.code, each.help) for each in report] == [
-        ("SM304", "write `[params, seconds]` for the value of the param")
-    ]
+    assert [each.code for each in report] == ["SM306", "SM304"]
+    items, repair = shown(analysed({"main.yml": FORCE}))
+    assert len(items) == 1
+    assert repair is not None
+    assert [edit.text for edit in repair.edits] == ["[params, seconds]"]
 
 
 CALLS = """

@@ -37,9 +37,12 @@ def found(preset: str = NULL, code: str = HEAVY, out: str = "mass", old: str = "
     return reported({"main.yml": text, "templates/Lift.yml": LIFT.replace("OUT", out)})
 
 
-@pytest.mark.parametrize("preset", [NULL, "null"])
-def test_a_key_that_is_always_null(preset: str) -> None:
-    assert found(preset) == [("SM311", HEAVY, HELP)]
+@pytest.mark.parametrize(
+    ("preset", "help"),
+    [(NULL, HELP), ("null", "give it a value: the script sets it only to nothing (`null`)")],
+)
+def test_a_key_that_is_always_null(preset: str, help: str) -> None:
+    assert found(preset) == [("SM311", HEAVY, help)]
 
 
 @pytest.mark.parametrize(

@@ -12,161 +12,26 @@ from smachac.diagnostics.source import Source
 from smachac.driver import CODES
 from smachac.frontend.config import Project, read_project
 from tests.checks.test_first_scripts import reported
-from tests.trust.project_text import analysed
+from tests.repair.test_moved_fields import CHOOSE, JOIN
 
 Row = tuple[str, str, str | None]
 
-DOCK = """\
-name: docking
-outcomes: [docked, gave_up, stopped]
-states:
-  - LINE_UP:
-      template: ScriptedState
-      outcomes: [aligned, slipped]
-      transitions:
-        aligned: WAIT
-        exhausted: gave_up
-        preempted: stopped
-FIELD
-  - WAIT:
-      template: SleepState
-      TIME
-      transitions:
-        succeeded: docked
-        preempted: stopped
-REST
-"""
-RETRY = "retry: {on: [slipped], max: 3, delay: 500ms}"
-
-
-def dock(field: str, time: str = "time: 2", rest: str = "") -> list[Row]:
-    text = DOCK.replace("FIELD", field).replace("TIME", time).replace("REST", rest)
-    return reported({"main.yml": text})
-
-
-def test_fields_beside_the_transitions() -> None:
-    assert dock(f"      {RETRY}\n      tags: [moves]") == []
-
-
-def test_a_field_among_the_transitions_counts_as_a_field() -> None:
-    help = "write `retry` 2 columns further left, beside `transitions`"
-    assert dock(f"        {RETRY}") == [("SM004", "retry", help)]
-    help = "write `retry` and `tags` 2 columns further left, beside `transitions`"
-    assert dock(f"        {RETRY}\n        tags: [moves]") == [("SM004", "retry", help)]
-
-
-def test_a_variable_among_the_transitions_counts_as_a_variable() -> None:
-    help = "write `time` 2 columns further left, beside `transitions`"
-    found = dock(f"      {RETRY}", "tags: [rest]", "        time: 2")
-    assert found == [("SM004", "time", help)]
-
-
-def test_a_time_limit_among_the_transitions() -> None:
-    text = """\
+OUTCOMES_LIKE_FIELDS = """\
 name: sm
-outcomes: [done, late, stopped]
+outcomes: [done, late]
 states:
-  - WAIT:
-      template: SleepState
-      time: 2
-      transitions: {succeeded: done, timeout: late, preempted: stopped}
-"""
-    help = "write `timeout` after the `}` of `transitions`"
-    limit = text.replace("timeout: late", "timeout: late, timeout: 3s")
-    assert reported({"main.yml": limit}) == [("SM004", "timeout", help)]
-    limit = text.replace("timeout: late", "timeout: 3s, timeout: late")
-    assert reported({"main.yml": limit}) == [("SM004", "timeout", help)]
-    # An outcome may have the name of a field.
-    script = text.replace("SleepState", "ScriptedState").replace("time: 2", "outcomes: [retry, it]")
-    script = script.replace("succeeded: done, timeout: late, preempted: stopped", "retry: done,"
-                            " it: late").replace(", stopped", "")  # fmt: skip
-    assert reported({"main.yml": script}) == []
-
-
-def test_transitions_in_a_remapping() -> None:
-    rest = """\
-  - SHOW:
-      template: PrintUserdataState
-      input_keys: [pose]
-      remapping:
-        pose: target
-        transitions: {succeeded: docked}
-"""
-    found = dock(f"      {RETRY}", rest=rest)
-    help = "write `transitions` 2 columns further left, beside `remapping`"
-    assert ("SM004", "transitions", help) in found
-    assert {code for code, *_ in found} == {"SM004", "SM201"}
-
-
-CHOOSE = """\
-name: sm
-outcomes: [done, failed]
-userdata: {n: 1}
-states:
-  - CHOOSE:
-      template: ConditionalOutcomeState
-      outcomes: [low]
-      input_keys: [n]
-      callbacks:
-        low: 'lambda ud: ud.n < 3'
-      default_outcome: enough
-      transitions:
-        low: failed
-        enough: done
-"""
-JOIN = """\
-name: sm
-outcomes: [done, failed]
-states:
-  - BOTH:
-      template: Concurrence
-      outcomes: [moved, hit]
-      default_outcome: hit
-      outcome_map:
-        moved: {MOVE: succeeded}
-        hit: {WATCH: invalid}
-      join: any
-      transitions:
-        moved: done
-        hit: failed
-      states:
-        - MOVE: {template: SleepState, time: 3}
-        - WATCH: {template: MonitorState, topic: bumper, msg_type: std_msgs/Bool, cond_cb: 'lambda
-            ud, msg: msg.data'}
+  - WAIT: {template: ScriptedState, outcomes: [retry, it], transitions: {retry: done, it: late}}
 """
 
 
-@pytest.mark.parametrize(
-    ("text", "field", "after", "expected"),
-    [
-        (CHOOSE, "default_outcome: enough", "low: 'lambda ud: ud.n < 3'", "a condition in"),
-        (CHOOSE, "default_outcome: enough", "low: failed", "an outcome in `transitions`"),
-        (CHOOSE, "input_keys: [n]", "low: 'lambda ud: ud.n < 3'", "a key in `callbacks`"),
-        (CHOOSE, "outcomes: [low]", "low: 'lambda ud: ud.n < 3'", "a key in `callbacks`"),
-        (JOIN, "join: any", "hit: {WATCH: invalid}", "an outcome in `outcome_map`"),
-        (JOIN, "default_outcome: hit", "hit: {WATCH: invalid}", "an outcome in `outcome_map`"),
-        (JOIN, "join: any", "hit: failed", "an outcome in `transitions`"),
-    ],
-)
-def test_a_field_that_is_one_level_too_deep(
-    text: str, field: str, after: str, expected: str
-) -> None:
-    assert reported({"main.yml": text.replace("name: sm", "name: sm\ntemplate: ROSBase")}) == []
-    deep = text.replace(f"      {field}\n", "").replace(after, f"{after}\n        {field}")
-    (found,) = analysed(
-        {"main.yml": deep.replace("name: sm", "name: sm\ntemplate: ROSBase")}
-    ).report
-    word = field.partition(":")[0]
-    assert (found.code, found.span.text) == ("SM004", word)
-    assert found.message.startswith(f"`{word}` is a field of the state ")
-    assert expected in found.message
-    assert str(found.finding.help).startswith(f"write `{word}` 2 columns further left, beside ")
+def test_an_outcome_may_have_the_name_of_a_field() -> None:
+    assert reported({"main.yml": OUTCOMES_LIKE_FIELDS}) == []
 
 
 @pytest.mark.parametrize("value", ["any", "'lambda outcomes: True'", "first"])
 def test_the_callback_of_smach_in_place_of_join(value: str) -> None:
     text = JOIN.replace("join: any", f"child_termination_cb: {value}")
-    (row,) = reported({"main.yml": text.replace("name: sm", "name: sm\ntemplate: ROSBase")})
+    (row,) = reported({"main.yml": text})
     assert row[:2] == ("SM003", "child_termination_cb")
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.repair.slips import slip
 from tests.trust.project_text import analysed
 
 Row = tuple[str, str, str | None]
@@ -30,11 +31,17 @@ states:
         ("item: wp, in: waypoints", []),
         ("item: waypoints, in: wp",
          [("SM301", "waypoints", "swap them: write `for_each: {item: wp, in: waypoints}`")]),
-        ("item: wp, in: [waypoints]", [("SM305", "[waypoints]", "write `in: waypoints`")]),
     ],
 )  # fmt: skip
 def test_a_loop_over_a_key(fields: str, found: list[Row]) -> None:
     assert reported({"main.yml": LOOP.replace("FIELDS", fields)}) == found
+
+
+def test_a_list_of_the_name_of_a_key() -> None:
+    files = {"main.yml": LOOP.replace("FIELDS", "item: wp, in: waypoints")}
+    found = slip(files, "in: waypoints", "in: [waypoints]")
+    assert found.is_shown
+    assert found.is_restored
 
 
 TRAY = """\
@@ -178,12 +185,18 @@ states:
     ("items", "label", "found"),
     [
         ("tray", "part", []),
-        ("[tray]", "part", [("SM306", "[tray]", "write `it: tray`")]),
         ("part", "tray", [("SM301", "tray", "swap them: write `it_label: part` and `it: tray`")]),
     ],
 )
 def test_an_iterator_over_a_key(items: str, label: str, found: list[Row]) -> None:
     assert reported({"main.yml": TRAY.replace("ITEMS", items).replace("LABEL", label)}) == found
+
+
+def test_an_iterator_over_a_list_of_the_name_of_a_key() -> None:
+    files = {"main.yml": TRAY.replace("ITEMS", "tray").replace("LABEL", "part")}
+    found = slip(files, "it: tray", "it: [tray]")
+    assert found.is_shown
+    assert found.is_restored
 
 
 BINS = """\

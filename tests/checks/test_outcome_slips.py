@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import shown
 from tests.trust.project_text import analysed
 
 WATCH = """\
@@ -132,9 +133,13 @@ def test_a_state_with_two_transitions_to_its_wrong_name() -> None:
     script = script.replace("TRANSITIONS", "done: SPEAK, again: SPEAK, lost: aborted")
     found = analysed({"main.yml": script}).report
     assert [(item.code, item.span.text, item.help) for item in found] == [
-        ("SM101", "SPAEK", "did you mean `SPEAK`?")
+        ("SM101", "SPEAK", "did you mean `SPAEK`?")
     ]
-    assert [each.span.text for each in found[0].related] == ["SPEAK", "SPEAK"]
+    assert [each.span.text for each in found[0].related] == ["SPAEK", "SPEAK"]
+    items, repair = shown(analysed({"main.yml": script}))
+    assert len(items) == 1
+    assert repair is not None
+    assert [(edit.span.text, edit.text) for edit in repair.edits] == [("SPAEK", "SPEAK")]
 
 
 def test_the_only_variable_under_another_name() -> None:

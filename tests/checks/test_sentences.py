@@ -87,11 +87,11 @@ GRIPPER = """
 @pytest.mark.parametrize(
     ("states", "code", "token", "words"),
     [
-        (LOOP.format(it="parts", key="item"), "SM301", "item", "write `it_label: item`, or read"),
-        (LOOP.format(it="partz", key="part"), "SM301", "partz", "did you mean `parts`?"),
+        (LOOP.format(it="parts", key="item"), "SM301", "item", "`A` reads `item`, which nothing"),
+        (LOOP.format(it="partz", key="part"), "SM301", "partz", "`EACH` iterates over `partz`"),
         ("  - A: {template: PrintUserdataState, input_keys: [part],"
          " for_each: {item: part, in: partz}, transitions: {succeeded: succeeded}}\n",
-         "SM301", "partz", "did you mean `parts`?"),
+         "SM301", "partz", "`A` reads `partz`, which nothing"),
         (SEQUENCE.format(connector="suceeded"), "SM201", "suceeded", "did you mean `succeeded`?"),
         (RETRY, "SM102", "found", "`FIND` never ends with `found`"),
         (GRIPPER.format(name="arm"), "SM003", "arm", "its variables are `command`, `limb`"),

@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from smachac.diagnostics.diagnostic import Diagnostic
+from tests.trust.judged_repairs import printed
 from tests.trust.project_text import analysed
 
 MAIN = """\
@@ -106,12 +107,11 @@ def in_script(inputs: str, code: str) -> list[tuple[str, str, str]]:
 
 
 def test_the_only_input_is_read_under_another_name() -> None:
-    help = (
-        "write `current` in place of `amps`: it is the only input key of `SETUP` that its code does"
-        " not read"
-    )
-    assert in_script("current", "ud.amps * 1.1") == [("SM310", "amps", help)]
-    assert in_script("current, level", "ud.amps * ud.level") == [("SM310", "amps", help)]
+    for inputs, code in (("current", "ud.amps * 1.1"), ("current, level", "ud.amps * ud.level")):
+        text = SCRIPT.replace("INPUTS", inputs).replace("CODE", code)
+        found = [row for row in printed({"main.yml": text}) if row[0] != "SM305"]
+        assert [row[:2] for row in found] == [("SM310", "amps")]
+        assert found[0][2].startswith("did you mean `current`?")
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ states:
         ("tries", 'ud["tries"] < ud["max_tries"]',
          "write `input_keys: [tries, max_tries]` in `AGAIN`"),
         ("tries", "ud.limit < ud.tries", "write `input_keys: [tries, limit]` in `AGAIN`"),
-        ("max_tries", "ud.tries < 3", "did you mean `max_tries`?"),
+        ("max_tries", "ud.tries < 3", "write `input_keys: [max_tries, tries]` in `AGAIN`"),
         ("tries", "ud.tires < 3", "did you mean `tries`?"),
         ("tries, max_tries", "ud.tries < ud.max_tires", "did you mean `max_tries`?"),
     ],
@@ -179,7 +179,8 @@ def test_a_key_of_the_container_is_no_slip_of_another_one(
     [
         ("userdata.order + userdata.orders", "orders: [b]",
          "add `orders` to the `input_keys` of the interface `Detect` and of `__init__`"),
-        ("userdata.order + userdata.orders", "", "did you mean `order`?"),
+        ("userdata.order + userdata.orders", "",
+         "add `orders` to the `input_keys` of the interface `Detect` and of `__init__`"),
         ("userdata.orders", "orders: [b]", "did you mean `order`?"),
     ],
 )  # fmt: skip

@@ -400,8 +400,8 @@ states:
 def test_no_edit_where_a_declared_output_is_never_set(state: str, key: str) -> None:
     items = analysed({"main.yml": UNSET.replace("STATE", state)}).report
     (item,) = [item for item in items if item.code == "SM308"]
-    help = f"write `{key}` in place of `w` in the `output_keys` of `A`, or `w` in place of `{key}`"
-    assert item.finding.help == f"{help} here"
+    help = f"write `output_keys: [w, {key}]` in `A`; nothing in `A` sets `w`"
+    assert item.finding.help == help
     assert item.finding.edits == ()
     every = state.replace("set: {widht", "set: {w: 1, widht").replace("{total", "{w: 1, total")
     if "set:" in every:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import printed, shown
+from tests.trust.project_text import analysed
 
 Row = tuple[str, str, str | None]
 
@@ -306,8 +308,9 @@ params: {{suction: 0.4}}
 states:
   - A: {{template: SleepState, time: {written}, transitions: {{succeeded: done, preempted: done}}}}
 """
-    help = "write `[params, suction]` for the value of the param"
-    assert [row[2] for row in reported({"main.yml": text})] == [help]
+    _, repair = shown(analysed({"main.yml": text}))
+    assert repair is not None
+    assert [edit.text for edit in repair.edits] == ["[params, suction]"]
 
 
 def test_lost_brackets_around_a_list_in_braces() -> None:
@@ -358,7 +361,7 @@ states:
       - GRASP: {script: part, remapping: {sample: rock}, transitions: {done: done}}
 """
     found = reported({"main.yml": text, "pick.yml": pick, "part.yml": PART})
-    help = "write `sample: sample`: the remapping of `A` gives `rock` this name"
+    help = "add `rock` to the `input_keys` of `A`"
     assert [row for row in found if row[0] == "SM303"] == [("SM303", "sample", help)]
 
 
@@ -372,8 +375,34 @@ states:
   - B: {template: Hover, remapping: {offset: hover_offset}, transitions: {done: done}}
 """
     interface = "input_keys: {offset: Point}\noutcomes: {done: {}}\n"
-    found = reported({"main.yml": text, "templates/Hover.yml": interface})
+    found = printed({"main.yml": text, "templates/Hover.yml": interface})
     assert [row[2] for row in found] == ["write `remapping: {offset: hover_offset}` in `A`"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "expected"),
+    [
+        ("front: a, rear: b", ["front", "rear"]),
+        ("front: a, rear: 2", ["front"]),  # `rear` is no text
+        ("front: a, rear: b, left: c, right: d", []),  # too many
+    ],
+)
+def test_the_keys_that_a_key_of_an_interface_can_read(keys: str, expected: list[str]) -> None:
+    text = f"""\
+name: sm
+outcomes: [done]
+userdata: {{above: x, {keys}}}
+states:
+  - A: {{template: Log, remapping: {{spot: above}}, transitions: {{done: done}}}}
+"""
+    interface = "input_keys: {label: str, spot: str}\noutcomes: {done: {}}\n"
+    report = analysed({"main.yml": text, "templates/Log.yml": interface}).report
+    (finding,) = [item.finding for item in report if item.code == "SM301"]
+    new = [repair.edits[0].text for repair in finding.repairs]
+    assert new == [f", label: {key}" for key in expected]
+    if len(expected) == 2:
+        ways = [f"add `label: {key}` to the `remapping` of `A`" for key in expected]
+        assert finding.help == " or ".join(ways)
 
 
 def test_another_name_for_the_variable_of_a_meta_block() -> None:

@@ -105,6 +105,11 @@ def shown(analysis: Analysis) -> tuple[tuple[Diagnostic, ...], Repair | None]:
     return (*items,), found[0].repair if found else None
 
 
+def printed(files: Files) -> list[tuple[str, str, str]]:
+    """Code, text at the place, and help of each error and warning of a project as it is printed."""
+    return [(item.code, item.span.text, item.help or "") for item in shown(analysed(files))[0]]
+
+
 @dataclass(frozen=True, slots=True)
 class TwoFaults:
     """Two mutations of one file, and which of them a finding names."""

@@ -1,53 +1,13 @@
-"""States that are beside their concurrence, states past which a transition leads, and keys of one
-slip: one finding, with the text to write."""
+"""States past which a transition leads, and keys of one slip: one finding with the text."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import printed
 
 Row = tuple[str, str, str | None]
-
-BRANCH = """\
-name: sm
-outcomes: [done, failed]
-ON_ERROR
-states:
-  - BOTH:
-      template: Concurrence
-      outcomes: [done, failed]
-      default_outcome: failed
-      outcome_map: {done: {LEFT: ok, RIGHT: ok}}
-      transitions: {done: done, failed: failed}
-      states:
-        - LEFT: {template: ScriptedState, outcomes: [ok, lost]}
-RIGHT: {template: ScriptedState, outcomes: [ok, lost]TRANSITIONS}
-  - HALT: {template: ScriptedState, outcomes: [done], transitions: {done: failed}}
-"""
-
-
-def branch(
-    indent: str, transitions: str = "", on_error: str = ""
-) -> list[tuple[str, str, str | None]]:
-    text = BRANCH.replace("RIGHT: {", f"{indent}- RIGHT: {{").replace("TRANSITIONS", transitions)
-    text = text.replace("ON_ERROR", on_error or "doc: two arms")
-    if not on_error:
-        text = text.replace("  - HALT", "  # - HALT")
-    return reported({"main.yml": text})
-
-
-def test_a_branch_beside_its_concurrence() -> None:
-    assert branch(" " * 8) == []
-    help = "indent `RIGHT` by 6 more columns, as a state of `BOTH`"
-    assert branch("  ") == [("SM403", "RIGHT", help)]
-    assert branch("  ", on_error="on_error: HALT") == [("SM403", "RIGHT", help)]
-
-
-def test_a_state_with_transitions_is_no_branch() -> None:
-    found = branch("  ", ", transitions: {ok: done, lost: failed}")
-    assert ("SM403", "RIGHT", "use one of its states: `LEFT`") in found
-
 
 PATH = """\
 name: sm
@@ -169,7 +129,7 @@ states:
 """
     interface = "input_keys: {{speed: float<m/s>}}\noutcomes: {{done: {{}}}}\n".replace("{{", "{")
     files = {"main.yml": text, "templates/Drive.yml": interface.replace("}}", "}")}
-    found = [row for row in reported(files) if row[0] in ("SM301", "SM305")]
+    found = [row for row in printed(files) if row[0] in ("SM301", "SM305")]
     ((code, place, help),) = found
     assert (code, place) == ("SM301", "A")
     assert help is not None
