@@ -406,7 +406,10 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
         if fields and name != word
         if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
     ]
-    kinds = [name for name in schema.CONTAINERS if name != word and word in schema.CONTAINERS]
+    entries = [part for part in path if isinstance(part, Entry)][-1:]
+    is_own = any(each.value is state or each in state.entries for each in entries)
+    is_whole = is_own and word in schema.CONTAINERS
+    kinds = [name for name in schema.CONTAINERS if is_whole and name != word]
     for name in (*kinds, *(fitting if len(fitting) <= MOST_NEAR else ())):
         cost = 1.2 if name in kinds else 1.7
         yield candidate(cost, RENAME, Edit(span=entry.value.span, text=name))
@@ -415,14 +418,14 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
 def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
     """The lines of the innermost entry, moved out of the one or the two entries that it is in:
     behind that one, with its indentation."""
-    *outside, inner = [None, *(part for part in path if isinstance(part, Entry))]
-    text = source.text
-    if inner is None:
+    entries = [part for part in path if isinstance(part, Entry)]
+    if len(entries) < 2:
         return
+    inner, text = entries[-1], source.text
     start, end = _lines_of(inner, text)
     if text[start : _start(inner)].strip():
         return  # in braces
-    for outer in [part for part in outside if part is not None][:-3:-1]:
+    for outer in entries[-2:-4:-1]:
         first, last = _lines_of(outer, text)
         columns = inner.key.span.column - outer.key.span.column
         moved = re.sub(rf"(?m)^ {{{columns}}}", "", text[start:end])
