@@ -439,13 +439,10 @@ def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
 def _moved_states(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
     """The lines of the innermost state with another indentation: that of the states around its
     container if it is the last one in that, and that of the states of the container before it."""
-    lists = [
-        pair for pair in pairwise(path) if isinstance(pair[0], Seq) and pair[1] in pair[0].items
-    ]
+    lists = [(around, part) for around, part in pairwise(path) if isinstance(around, Seq)]
     if not lists:
         return
     items, state = lists[-1]
-    assert isinstance(items, Seq)
     at = next(number for number, each in enumerate(items.items) if each is state)
     others = [lists[-2][1]] if at + 1 == len(items.items) and len(lists) > 1 else []
     before = items.items[at - 1] if at > 0 else None
