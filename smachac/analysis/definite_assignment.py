@@ -273,7 +273,7 @@ def _reads(child: Node, scope: UserdataScope | None, raw: bool) -> tuple[str, ..
         own = leaf_reads(child, raw=raw)
     else:
         own = tuple(key for key in scope.inputs if key in scope.needed) if scope else ()
-    return tuple(dict.fromkeys(names[key] for key in own))
+    return tuple(dict.fromkeys([names[key] for key in own] if names else own))
 
 
 def child_writes(

@@ -42,7 +42,7 @@ from smachac.ir import nodes
 from smachac.ir.leaf import functions, key_names, variable_of
 from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Data, Expression, Key, Leaf, Machine, Node, Struct, Variable
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
 
 MOST_FLOWS = 64
@@ -170,14 +170,13 @@ class _Inference:
             self.literal(cell, held.value.data, held.value.span)
 
     def leaf(self, path: str, leaf: Leaf, around: _ContainerCells) -> None:
-        names = remapping(leaf)
         inputs: dict[str, Cell] = {}
         if leaf.open:
             self.open.append(around)
-        for key in leaf.inputs:
+        for key, outer in zip(leaf.inputs, outer_inputs(leaf), strict=True):
             cell = self.cell(path, key.name, "input", leaf, place_of(leaf, key))
             self.declare(cell, key.type, cell.span)
-            around.at(names[key.name]).links.append(cell)
+            around.at(outer).links.append(cell)
             inputs[key.name] = cell
         written = _written(leaf)
         received = received_types(leaf, self.definitions) if self.definitions else {}
@@ -185,9 +184,9 @@ class _Inference:
             # Its child writes every key as it is (docs/semantics.md, Iterator).
             for name in sorted(written.keys() - {key.name for key in leaf.outputs}):
                 self.unknown(around.at(name))
-        for key in leaf.outputs:
+        for key, outer in zip(leaf.outputs, outer_outputs(leaf), strict=True):
             cell = self.cell(path, key.name, "output", leaf, place_of(leaf, key))
-            cell.links.append(around.at(names[key.name]))
+            cell.links.append(around.at(outer))
             self.declare(cell, key.type, cell.span)
             if key.name in written:
                 for span, data in written[key.name]:
@@ -210,12 +209,11 @@ class _Inference:
         self, path: str, node: Container, around: _ContainerCells | None
     ) -> _ContainerCells:
         scope = _ContainerCells(self, path, node)
-        names = remapping(node)
-        for key in node.inputs:
+        for key, outer in zip(node.inputs, outer_inputs(node), strict=True):
             inner = scope.at(key.name, place_of(node, key))
             self.declare(inner, key.type, declaration_of(node, key))
             if around is not None:
-                around.at(names[key.name]).links.append(inner)
+                around.at(outer).links.append(inner)
             else:
                 self.unknown(inner)
         for preset in node.userdata:
@@ -224,11 +222,11 @@ class _Inference:
             if isinstance(preset.value.data, tuple):
                 self.preset_lists.add(preset.key)
             self.literal(cell, preset.value.data, preset.value.span)
-        for key in node.outputs:
+        for key, outer in zip(node.outputs, outer_outputs(node), strict=True):
             inner = scope.at(key.name, place_of(node, key))
             self.declare(inner, key.type, declaration_of(node, key))
             if around is not None:
-                inner.links.append(around.at(names[key.name]))
+                inner.links.append(around.at(outer))
         if isinstance(node, nodes.Iterator):
             self.iterator(node, scope)
         return scope

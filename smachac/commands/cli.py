@@ -158,6 +158,14 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
         """A parser whose messages name the known word that is nearest to an unknown one, and quote
         words that shells make of file names."""
 
+        given: Sequence[str] = ()
+        """The words that the parser reads."""
+
+        @property
+        def positionals(self) -> list[argparse.Action]:
+            """The arguments that are no options, in their order."""
+            return self._get_positional_actions()
+
         def error(self, message: str) -> NoReturn:
             from smachac.report.terminal import on_one_line
 
@@ -167,6 +175,7 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
             self, args: Any = None, namespace: Any = None
         ) -> Any:
             """Reports an unknown option before the arguments that are then missing."""
+            self.given = args
             for word in args:
                 name = word.partition("=")[0]
                 action = self._option_string_actions.get(name)
@@ -183,10 +192,19 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
 
         def _check_value(self, action: argparse.Action, value: Any) -> None:
             if action.choices is not None and value not in action.choices:
-                near = _near(str(value), map(str, action.choices))
+                near = _near(str(value), map(str, action.choices)) or self._right_order()
                 if near:
                     raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}")
             super()._check_value(action, value)
+
+        def _right_order(self) -> str:
+            """The end of a message that shows the words in another order; empty without one."""
+            from smachac.commands.swapped import command_text, in_right_order
+
+            options = any(word.startswith("-") for word in self.given)
+            words = None if options else in_right_order(self.positionals, self.given)
+            command = self.prog.split()[1:]
+            return f"; write `{command_text([*command, *words])}`" if words is not None else ""
 
     parser = Parser(
         prog="smachac",

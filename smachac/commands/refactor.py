@@ -12,6 +12,7 @@ from argparse import Namespace
 
 from smachac.commands.arguments import SCRIPT, as_path, colour, dry_run, search_folders
 from smachac.commands.output import FINDINGS, print_report, usage
+from smachac.commands.swapped import swapped_arguments
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -68,6 +69,8 @@ examples:
   smachac edit main.yml remove WAIT --to PARK --diff      show a patch
 
 {EXIT_CODES}"""
+
+NEEDS_QUOTES = "`{}` needs quotes in YAML: choose another name"
 
 EDITS = {
     "transition": ("STATE OUTCOME [TARGET]", ("outcome", "target"), 2),
@@ -150,15 +153,8 @@ def put(script: EditedScript, arguments: Namespace) -> int:
     return put_changes(texts, sources, arguments, "changed", new=frozenset(script.made))
 
 
-def perform(
-    arguments: Namespace,
-    command: str,
-    change: Callable[[EditedScript], object],
-    *words: str,
-) -> int:
-    """Run one of the commands below, and report why a change is refused; the exit code. `words` are
-    the arguments behind the script."""
-    from smachac.commands.swapped import swapped_argument
+def perform(arguments: Namespace, change: Callable[[EditedScript], object]) -> int:
+    """Run one of the commands below, and report why a change is refused; the exit code."""
     from smachac.diagnostics.diagnostic import Code, Diagnostic, Finding, Severity, has_errors
     from smachac.ir.recursion import deep_recursion
     from smachac.refactor.edited_script import EditedScript, HasErrorsError
@@ -170,7 +166,7 @@ def perform(
         try:
             change(script)
         except HasErrorsError:
-            if right := swapped_argument(arguments.script, words, [command]):
+            if right := swapped_arguments(arguments):
                 return usage(right)
             errors = [each for each in script.analysis.report if has_errors([each])]
             print_report(errors, arguments, sys.stderr)
@@ -180,6 +176,7 @@ def perform(
         except NotFoundError as error:
             return usage(str(error))
         except RefusedError as error:
+            command: str = arguments.command
             code = Code(code=command, name=command, severity=Severity.ERROR, explanation="")
             finding = Finding(span=error.span, message=error.message, help=error.help)
             refusal = Diagnostic(kind=code, severity=Severity.ERROR, finding=finding)
@@ -195,20 +192,14 @@ def extract_command(arguments: Namespace) -> int:
     name = arguments.to
     if name is not None and (name.suffix not in (".yml", ".yaml") or len(name.parts) != 1):
         return usage("--to needs the name of a file without a folder, such as `pick.yml`")
-    return perform(
-        arguments,
-        "extract",
-        lambda script: extract_state(script, arguments.state, name),
-        arguments.state,
-    )
+    return perform(arguments, lambda script: extract_state(script, arguments.state, name))
 
 
 def inline_command(arguments: Namespace) -> int:
     """Replace the call of a sub-script by its content; the exit code."""
     from smachac.refactor.refactorings import inline_state
 
-    state = arguments.state
-    return perform(arguments, "inline", lambda script: inline_state(script, state), state)
+    return perform(arguments, lambda script: inline_state(script, arguments.state))
 
 
 def rename_command(arguments: Namespace) -> int:
@@ -218,10 +209,8 @@ def rename_command(arguments: Namespace) -> int:
 
     path, new, kind = arguments.path, arguments.new, arguments.kind
     if not is_plain(new):
-        return usage(f"`{new}` needs quotes in YAML: choose another name")
-    return perform(
-        arguments, "rename", lambda script: rename_name(script, path, new, kind), path, new
-    )
+        return usage(swapped_arguments(arguments) or NEEDS_QUOTES.format(new))
+    return perform(arguments, lambda script: rename_name(script, path, new, kind))
 
 
 def contain_command(arguments: Namespace) -> int:
@@ -231,11 +220,8 @@ def contain_command(arguments: Namespace) -> int:
 
     name, type_, states = arguments.name, arguments.type, arguments.states
     if not is_plain(name):
-        return usage(f"`{name}` needs quotes in YAML: choose another name")
-    words = name, type_, *states
-    return perform(
-        arguments, "contain", lambda script: contain_states(script, name, type_, states), *words
-    )
+        return usage(swapped_arguments(arguments) or NEEDS_QUOTES.format(name))
+    return perform(arguments, lambda script: contain_states(script, name, type_, states))
 
 
 def edit_command(arguments: Namespace) -> int:
@@ -246,7 +232,8 @@ def edit_command(arguments: Namespace) -> int:
     form, names, least = EDITS[arguments.operation]
     words = arguments.words
     if not least <= len(words) <= 1 + len(names):
-        return usage(f"write: smachac edit SCRIPT {arguments.operation} {form}")
+        right = f"write: smachac edit SCRIPT {arguments.operation} {form}"
+        return usage(swapped_arguments(arguments) or right)
     given = dict(zip(names, words[1:], strict=False))
     for option, operation in (("after", "add"), ("on", "add"), ("to", "remove")):
         if (value := getattr(arguments, option)) is not None:
@@ -256,7 +243,7 @@ def edit_command(arguments: Namespace) -> int:
     edit = Edit(operation=arguments.operation, path=words[0], arguments=given)
     found: list[EditResult] = []
     try:
-        code = perform(arguments, "edit", lambda script: found.append(perform_edit(script, edit)))
+        code = perform(arguments, lambda script: found.append(perform_edit(script, edit)))
     except BadEditError as error:
         return usage(str(error))
     for result in found:

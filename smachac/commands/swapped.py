@@ -1,4 +1,4 @@
-"""Command lines with the script and another file in each other's place."""
+"""Command lines with their arguments in another order."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from argparse import Namespace
+    from argparse import Action, Namespace
     from collections.abc import Sequence
 
 
@@ -22,21 +22,55 @@ def swapped_option(arguments: Namespace, *options: str) -> str | None:
     return None
 
 
-def swapped_argument(
-    script: Path, others: Sequence[Path | str], command: Sequence[str]
-) -> str | None:
-    """What to write if an argument behind `script` is the script and `script` is none; otherwise
-    None. `command` are the words before the arguments."""
-    found = next((word for word in others if is_script(Path(word))), None)
-    if found is None or is_script(script):
+def swapped_arguments(arguments: Namespace) -> str | None:
+    """What to write if an argument behind `script` is the script and `arguments.script` is none;
+    otherwise None."""
+    if is_script(arguments.script):
         return None
-    rest = [word for word in others if word is not found]
-    return _words(found, script, [*command, found, script, *rest])
+    actions = arguments.parser.positionals
+    given: list[str] = []
+    for action in actions:
+        value = getattr(arguments, action.dest)
+        given += map(str, value if isinstance(value, list) else [value])
+    words = in_right_order(actions, given)
+    if words is None:
+        return None
+    script = next(word for word in words if is_script(Path(word)))
+    return _words(script, arguments.script, [arguments.command, *words])
+
+
+def in_right_order(actions: Sequence[Action], words: Sequence[str]) -> list[str] | None:
+    """The words of a command line, without options, in the order of its positional arguments: a
+    script for `script`, one of the choices for an argument with choices, the others as they are
+    written. None if there is no such word."""
+    left = [*words]
+    found: dict[str, str] = {}
+    for action in actions:
+        if action.dest != "script" and action.choices is None:
+            continue
+        fitting = (word for word in left if (word in action.choices if action.choices is not None
+                                             else is_script(Path(word))))  # fmt: skip
+        word = next(fitting, None)
+        if word is None:
+            return None
+        found[action.dest] = word
+        left.remove(word)
+    ordered = []
+    for action in actions:
+        if action.dest in found:
+            ordered.append(found[action.dest])
+        elif left:
+            ordered.append(left.pop(0))
+    return [*ordered, *left]
 
 
 def _words(script: Path | str, other: Path, words: Sequence[object]) -> str:
-    right = shlex.join(["smachac", *map(str, words)])
-    return f"`{script}` is a script and `{other}` is none: write `{right}`"
+    return f"`{script}` is a script and `{other}` is none: write `{command_text(words)}`"
+
+
+def command_text(words: Sequence[object]) -> str:
+    """A command as a shell reads it, with the words behind `smachac`."""
+    return shlex.join(["smachac", *map(str, words)])
 
 
 def is_script(path: Path) -> bool:

@@ -8,7 +8,7 @@ from argparse import Namespace
 
 from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, names, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
-from smachac.commands.swapped import swapped_argument
+from smachac.commands.swapped import swapped_arguments
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -86,8 +86,7 @@ def trace_command(arguments: Namespace) -> int:
     from smachac.verify.statistics_report import statistics_json, statistics_text
     from smachac.verify.trace_report import refusals, trace_json, trace_text, untaken
 
-    words = "trace", arguments.action
-    if right := swapped_argument(arguments.script, arguments.traces, words):
+    if right := swapped_arguments(arguments):
         return usage(right)
     machine = _machine(arguments)
     if machine is None:
@@ -126,7 +125,7 @@ def stats_command(arguments: Namespace) -> int:
     )
     from smachac.verify.trace_report import refusals
 
-    if right := swapped_argument(arguments.script, arguments.traces, ["stats"]):
+    if right := swapped_arguments(arguments):
         return usage(right)
     machine = _machine(arguments)
     if machine is None:

@@ -125,7 +125,7 @@ def _is_class(name: str) -> bool:
 
 def _attributes(module: Module, names: _Names) -> Iterator[tuple[MessageRef, Word]]:
     """The types that code takes from modules: `geometry_msgs.msg.Twist`."""
-    for node in ast.walk(module.text.tree) if names.modules else ():
+    for node in module.nodes if names.modules else ():
         if isinstance(node, ast.Attribute) and _is_class(node.attr):
             found = names.modules.get(ast.unparse(node.value))
             if found is not None:
@@ -137,17 +137,7 @@ def _attributes(module: Module, names: _Names) -> Iterator[tuple[MessageRef, Wor
 def _is_bound_again(module: Module, names: _Names) -> bool:
     """Whether a module gives one of the names of types another meaning."""
     known = {each.partition(".")[0] for each in (*names.types, *names.modules)}
-    for node in ast.walk(module.text.tree):
-        match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                pass
-            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
-                pass
-            case _:
-                continue
-        if name in known:
-            return True
-    return False
+    return not (known.isdisjoint(module.variables) and known.isdisjoint(module.definitions))
 
 
 def _callbacks(node: ast.ClassDef, names: _Names) -> Mapping[str, MessageRef]:

@@ -15,7 +15,7 @@ from typing import TypeAlias
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.python_functions import caught
-from smachac.frontend.python_modules import Module, OwnClass, is_smach_state, of_other_objects
+from smachac.frontend.python_modules import AttributeUse, Module, OwnClass, of_other_objects
 from smachac.ir.class_facts import ClassFault, FaultKind
 
 BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "__class__", "_"])
@@ -71,8 +71,7 @@ def undefined_names(
     `lists` are the outcomes and keys of the class, by parameter of `smach.State.__init__`."""
     if module.dynamic or not any(True for _ in _unbound(node, {*module.names, *BUILT_IN})):
         return []
-    every = [*ast.walk(module.text.tree)]
-    names = {each.id for each in every if isinstance(each, ast.Name)}
+    every, names = module.nodes, module.identifiers
     if not MAKE_NAMES.isdisjoint(names):
         return []
     anywhere = {name for each in every for name in _bound(each)} | BUILT_IN
@@ -162,7 +161,7 @@ class _Near:
         self.texts = USUAL_OUTCOMES.union(
             each.value
             for module, _ in own.classes
-            for each in ast.walk(module.text.tree)
+            for each in module.nodes
             if isinstance(each, ast.Constant) and isinstance(each.value, str)
         )
         self.is_state = own.root == "state"
@@ -320,24 +319,21 @@ def _evaluated(node: ast.AST) -> Iterator[ast.AST]:
 def undefined_methods(own: OwnClass) -> list[ClassFault]:
     """The methods that a class calls on `self` and that neither it nor its bases define, each
     once; also the attributes that nothing sets."""
-    every = [each for module, _ in own.classes for each in ast.walk(module.text.tree)]
-    names = {each.id for each in every if isinstance(each, ast.Name)}
-    defined = {name for names_ in own.names for name in names_}
-    if own.root == "unknown" or not DYNAMIC.isdisjoint(names) or not LATE.isdisjoint(defined):
+    modules = [*{id(module): module for module, _ in own.classes}.values()]
+    defined = {name for names in own.names for name in names}
+    if own.root == "unknown" or not LATE.isdisjoint(defined):
         return []
-    attributes = [each for each in every if isinstance(each, ast.Attribute)]
-    if not LATE.isdisjoint(each.attr for each in attributes):
+    if any(not DYNAMIC.isdisjoint(module.identifiers)
+           or not LATE.isdisjoint(module.attributes["any"]) for module in modules):  # fmt: skip
         return []
-    stored = [each for each in attributes if isinstance(each.ctx, ast.Store)]
-    others = _of_other_classes(own) if own.root == "state" else set()
-    defined |= {each.attr for each in stored if each not in others}
-    defined |= {each.left.attr for each in map(compared, every)
-                if each is not None and isinstance(each.left, ast.Attribute)}  # fmt: skip
-    quoted = {each.value for each in every if isinstance(each, ast.Constant)}
-    called = [each.func for each in every if isinstance(each, ast.Call)]
-    usual = sorted({*STATE_METHODS, *(name for name in defined if not name.startswith("__"))})
-    guess, found, unread = guesser(usual), list[ClassFault](), _only_unread(own, attributes)
+    defined |= {each.attr for _, node in own.classes for each in ast.walk(node)
+                if isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store)}  # fmt: skip
+    use: AttributeUse = "outside" if own.root == "state" else "stored"
+    elsewhere = [names for module in modules
+                 for names in (module.attributes[use], module.compared)]  # fmt: skip
+    usual = [*STATE_METHODS, *defined]
     defined |= INHERITED
+    found, unread = list[ClassFault](), _only_unread(own, modules)
     constructor = own.method("__init__")
     arguments = ast.walk(constructor[1].args) if constructor is not None else ()
     given = {each.arg for each in arguments if isinstance(each, ast.arg)}
@@ -346,19 +342,23 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
         for each in _evaluated(node):
             if not isinstance(each, ast.Attribute) or not _of_self(each) or each in others:
                 continue
+            if each.attr in defined or any(each.attr in names for names in elsewhere):
+                continue
             span = module.text.span(each)
-            if each.attr in defined or each.attr in quoted or module.text.is_filled(span):
+            quoted = any(each.attr in one.constants for one in modules)
+            if quoted or module.text.is_filled(span):
                 continue
             word = Word(each.attr, _end_of(span, each.attr))
+            defined.add(each.attr)
             if each.attr in given:
-                defined.add(each.attr)
                 found.append(ClassFault(kind="unset attribute", name=word))
                 continue
-            near = guess(each.attr)
-            calls = any(each is function for function in called)
+            known = {*usual, *(name for names in elsewhere for name in names)}
+            near = guesser(sorted(name for name in known if not name.startswith("__")
+                                  or name in STATE_METHODS))(each.attr)  # fmt: skip
+            calls = any(each in one.called for one in modules)
             if near is None and not calls:
                 near = unread
-            defined.add(each.attr)
             if near is not None or calls:
                 found.append(ClassFault(kind="undefined method", name=word, near=near))
             elif isinstance(each.ctx, ast.Load) and constructor and each not in caught(node):
@@ -367,27 +367,12 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     return found
 
 
-def _of_other_classes(own: OwnClass) -> set[ast.AST]:
-    """The attributes of `self` in the other states of the modules of a class, which do not set
-    attributes of its objects."""
-    mine = {node for _, node in own.classes}
-    return {
-        each
-        for module in {id(module): module for module, _ in own.classes}.values()
-        for node in module.text.tree.body
-        if isinstance(node, ast.ClassDef) and node not in mine
-        and len(node.bases) == 1 and is_smach_state(module, node.bases[0])
-        for each in ast.walk(node)
-        if isinstance(each, ast.Attribute) and _of_self(each)
-    }  # fmt: skip
-
-
 def _meant_value(module: Module, attribute: str) -> str:
     """The value that another class of a module gives to an attribute of the same name, or the call
     of a class with that name; `...` without one."""
     given = {
         " ".join(module.text.span(each.value).text.split())
-        for each in ast.walk(module.text.tree)
+        for each in module.nodes
         if isinstance(each, ast.Assign) and isinstance(each.targets[0], ast.Attribute)
         and each.targets[0].attr == attribute and isinstance(each.value, ast.Call)
     }  # fmt: skip
@@ -399,15 +384,17 @@ def _meant_value(module: Module, attribute: str) -> str:
     return f"{names[0]}(...)" if len(names) == 1 else "..."
 
 
-def _only_unread(own: OwnClass, attributes: Iterable[ast.Attribute]) -> str | None:
-    """The only attribute that the constructor of a class sets and that no code reads."""
+def _only_unread(own: OwnClass, modules: Iterable[Module]) -> str | None:
+    """The only attribute that the constructor of a class sets and that no code of its modules
+    reads."""
     found = own.method("__init__")
     if found is None:
         return None
-    read = {each.attr for each in attributes if isinstance(each.ctx, ast.Load)}
     kept = {each.attr for each in ast.walk(found[1]) if isinstance(each, ast.Attribute)
-            and _of_self(each) and isinstance(each.ctx, ast.Store)} - read  # fmt: skip
-    return min(kept) if len(kept) == 1 else None
+            and _of_self(each) and isinstance(each.ctx, ast.Store)}  # fmt: skip
+    unread = [name for name in kept
+              if not any(name in module.attributes["read"] for module in modules)]  # fmt: skip
+    return unread[0] if len(unread) == 1 else None
 
 
 def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:
@@ -432,18 +419,6 @@ def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:
             near = "__init__" if plain else guesser(usual)(name)
             word = Word(name, _end_of(span, name))
             yield ClassFault(kind="undefined method", name=word, near=near)
-
-
-def compared(node: ast.AST) -> ast.Compare | None:
-    """The comparison `x == y` that is a statement of its own, in place of `x = y`."""
-    match node:
-        case ast.Expr(
-            value=ast.Compare(
-                left=ast.Attribute() | ast.Subscript() | ast.Name(), ops=[ast.Eq()]
-            ) as found
-        ):
-            return found
-    return None
 
 
 def _of_self(node: ast.Attribute) -> bool:

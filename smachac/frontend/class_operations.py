@@ -295,7 +295,7 @@ def _table(module: Module, name: str) -> tuple[Word, ...] | None:
             pass
         case _:
             return None
-    every = [*ast.walk(module.text.tree)]
+    every = module.nodes
     uses = [each for each in every if isinstance(each, ast.Name) and each.id == name]
     looked_up = {each.value for each in every
                  if isinstance(each, ast.Subscript) and isinstance(each.ctx, ast.Load)}  # fmt: skip

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.class_names import SMACH_CLASSES, STATE_METHODS, compared
+from smachac.frontend.class_names import SMACH_CLASSES, STATE_METHODS
 from smachac.frontend.library_names import methods_of_objects
-from smachac.frontend.python_modules import Module, OwnClass, of_other_objects
+from smachac.frontend.python_modules import Module, OwnClass, compared, of_other_objects
 from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import ClassFault, FaultKind
 

@@ -129,21 +129,12 @@ def missing_attributes(
     used = [(name, each) for name, each in attributes(node) if _is_plain(module, name)]
     if not used:
         return
-    every = [*ast.walk(module.text.tree)]
-    bound = {each.id for each in every
-             if isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load)}  # fmt: skip
-    bound |= {each.arg for each in every if isinstance(each, ast.arg)}
-    quoted = {each.value for each in every if isinstance(each, ast.Constant)}
-    quoted |= {each.attr for each in every
-               if isinstance(each, ast.Attribute)
-               and not isinstance(each.ctx, ast.Load)}  # fmt: skip
-    tried = {inner for each in every if isinstance(each, ast.Try)
-             for line in each.body for inner in ast.walk(line)}  # fmt: skip
     done = set[tuple[str, str]]()
     for name, each in used:
         span = module.text.span(each)
-        other = each.attr in quoted or each in tried or (name, each.attr) in done
-        if other or name.partition(".")[0] in bound or module.text.is_filled(span):
+        set_here = each.attr in module.constants or each.attr in module.attributes["changed"]
+        other = set_here or each in module.tried or (name, each.attr) in done
+        if other or name.partition(".")[0] in module.variables or module.text.is_filled(span):
             continue
         meant = missing_name(name, each.attr)
         if meant is not None and not is_shadowed(name, library):

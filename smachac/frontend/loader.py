@@ -49,7 +49,8 @@ class Library:
     packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
     `expand(file, arguments, packages)` returns the URDF text of a xacro file; it raises XacroError.
     `settings_read` is
-    False if the project file or its search folders could not be read.
+    False if the project file or its search folders could not be read. `modules` are the modules of
+    Python that were read (`python_modules.load_module`), by path and text.
     """
 
     script: Callable[[str, str], Source | None]
@@ -71,6 +72,9 @@ class Library:
     mesh: Callable[[str, str, Packages], Path | None] = lambda name, urdf, packages: Path(name)
     expand: Callable[[str, Mapping[str, str], Packages], str] = no_xacro
     settings_read: bool = True
+    modules: dict[tuple[str, Source], object] = field(
+        default_factory=dict, compare=False, repr=False
+    )
 
     def folder_with(self, name: str, suffixes: Iterable[str], searched: Collection[str]) -> str:
         """A folder that has a file of a name and is not among those that were searched; empty

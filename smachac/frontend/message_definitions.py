@@ -12,7 +12,9 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import NOWHERE, Source, Span
+from smachac.frontend.errors.script import unreadable_file
 from smachac.frontend.loader import Library
 from smachac.frontend.script import State
 from smachac.frontend.standard_messages import (
@@ -89,9 +91,11 @@ def type_name(text: str, kind: DefinitionKind) -> TypeName | None:
     return None
 
 
-def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple[Definition, ...]:
+def find_definitions(
+    text: str, kind: DefinitionKind, library: Library, report: Report | None = None
+) -> tuple[Definition, ...]:
     """All definitions of a name, in the order of the searched folders; none if the text is not a
-    name or a file of that name is not valid.
+    name or a file of that name is not valid, which is reported.
 
     ROS 1 names an action after its message: `actionlib/TestAction` is in `Test.action`.
     """
@@ -109,7 +113,8 @@ def find_definitions(text: str, kind: DefinitionKind, library: Library) -> tuple
         path = f"{word.package}/{kind}/{name}.{kind}"
         sources = library.definitions(path)
         if sources:
-            read = [read_definition(each, TypeName(word.package, name), kind) for each in sources]
+            own = TypeName(word.package, name)
+            read = [read_definition(each, own, kind, report) for each in sources]
             found = tuple(each for each in read if each is not None)
             return found if len(found) == len(read) else ()
     return ()
@@ -138,22 +143,24 @@ def _without_places(definition: Definition) -> Definition:
     return replace(definition, messages=tuple(messages), span=NOWHERE)
 
 
-def definitions_of(base: State, classes: Iterable[ClassFacts], library: Library) -> Definitions:
+def definitions_of(
+    base: State, classes: Iterable[ClassFacts], library: Library, report: Report
+) -> Definitions:
     """The definitions of the types that the states of a script and the classes of their types name,
-    and those of the messages in their fields."""
+    and those of the messages in their fields. A file that is not valid is reported."""
     found: dict[tuple[DefinitionKind, str], tuple[Definition, ...]] = {}
     todo: list[tuple[DefinitionKind, str]] = list(_named_types(base))
     for facts in classes:
         for kind, text, _ in _readings(facts):
             todo.append((kind, text))
     for text, name in _called_messages(base, library).items():
-        found["msg", text] = find_definitions(name, "msg", library)
+        found["msg", text] = find_definitions(name, "msg", library, report)
         for each in found["msg", text]:
             todo.extend(("msg", nested) for nested in _nested(each))
     while todo:
         kind, text = todo.pop()
         if (kind, text) not in found:
-            found[kind, text] = find_definitions(text, kind, library)
+            found[kind, text] = find_definitions(text, kind, library, report)
             for each in found[kind, text]:
                 todo.extend(("msg", name) for name in _nested(each))
     return {key: each for key, each in found.items() if each}
@@ -327,10 +334,34 @@ def _names_in(package: str, kind: DefinitionKind, library: Library) -> list[str]
     return standard_package(package, library.ros).names(kind) if is_listed(package, library) else []
 
 
-def read_definition(source: Source, name: TypeName, kind: DefinitionKind) -> Definition | None:
-    """The definition in a text; None if the text is not valid."""
+class _BadDefinitionError(Exception):
+    """A text is no definition; `span` is the line, `help` what to write."""
+
+    def __init__(self, span: Span, message: str, help: str) -> None:
+        super().__init__(message)
+        self.span, self.help = span, help
+
+
+def read_definition(
+    source: Source, name: TypeName, kind: DefinitionKind, report: Report | None = None
+) -> Definition | None:
+    """The definition in a text; None if the text is not valid, with SM007 at the first wrong line
+    in the report."""
+    try:
+        return _definition(source, name, kind)
+    except _BadDefinitionError as error:
+        if report is not None:
+            place = ("definition", source.name)
+            found = unreadable_file(error.span, str(error), error.help, arguments=place,
+                                    severity=Severity.WARNING)  # fmt: skip
+            report += [found] if found not in report else []
+    return None
+
+
+def _definition(source: Source, name: TypeName, kind: DefinitionKind) -> Definition:
     if len(source.text) > LONGEST:
-        return None
+        help = "write a shorter definition"
+        raise _BadDefinitionError(Span(source, 0, 0), f"the `.{kind}` file is too long", help)
     parts: list[list[tuple[str, Span]]] = [[]]
     for line, span in _lines(source):
         if line == "---":
@@ -338,13 +369,14 @@ def read_definition(source: Source, name: TypeName, kind: DefinitionKind) -> Def
         elif line and not line.startswith("#"):
             parts[-1].append((line, span))
     if len(parts) != len(PARTS[kind]):
-        return None
-    messages = []
-    for part, lines in zip(PARTS[kind], parts, strict=True):
-        message = _message(str(name) if kind == "msg" else f"{name}.{part}", name.package, lines)
-        if message is None:
-            return None
-        messages.append(message)
+        number = f"{len(parts)} part{'s' * (len(parts) > 1)}"
+        message = f"the file has {number}; a `.{kind}` file has {len(PARTS[kind])}"
+        help = "write `---` on a line of its own between the parts"
+        raise _BadDefinitionError(Span(source, 0, 0), message, help)
+    messages = [
+        _message(str(name) if kind == "msg" else f"{name}.{part}", name.package, lines)
+        for part, lines in zip(PARTS[kind], parts, strict=True)
+    ]
     return Definition(
         package=name.package,
         name=name.name,
@@ -363,20 +395,24 @@ def _lines(source: Source) -> Iterator[tuple[str, Span]]:
         yield line.strip(), Span(source, begin, begin + len(line.strip()))
 
 
-def _message(name: str, package: str, lines: list[tuple[str, Span]]) -> Message | None:
+def _message(name: str, package: str, lines: list[tuple[str, Span]]) -> Message:
+    """The message of some lines. Raises _BadDefinitionError."""
     fields: list[MessageField] = []
     constants: list[MessageConstant] = []
+    names: set[str] = set()
     for line, span in lines:
         item = _declaration(line, span, package)
         if item is None:
-            return None
+            help = "write `TYPE NAME`, such as `float64 width`, or a constant `TYPE NAME=VALUE`"
+            raise _BadDefinitionError(span, "this line declares no field and no constant", help)
+        if item.name in names:
+            message = f"`{item.name}` is declared twice"
+            raise _BadDefinitionError(item.span, message, "write another name")
+        names.add(item.name)
         if isinstance(item, MessageField):
             fields.append(item)
         else:
             constants.append(item)
-    names = [each.name for each in fields] + [each.name for each in constants]
-    if len(set(names)) != len(names):
-        return None
     return Message(name=name, fields=tuple(fields), constants=tuple(constants))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -18,6 +18,7 @@ from smachac.frontend.python_modules import (
     OwnClass,
     file_of,
     find_function,
+    first_name,
     load_module,
     module_name,
     source_module,
@@ -36,39 +37,19 @@ def module_slips(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     do not have, each once."""
     done = set[str]()
     for module, node in own.classes:
-        every = [*ast.walk(module.text.tree)]
-        bound = _bound(every, {*module.text.tree.body})
-        tried = {inner for each in every if isinstance(each, ast.Try)
-                 for line in each.body for inner in ast.walk(line)}  # fmt: skip
-        found = [*_uncalled(module, node, bound, tried, library)]
-        found += _missing(module, node, every, bound | done, tried, library)
+        found = [*_uncalled(module, node, module.rebound, module.tried, library)]
+        found += _missing(module, node, done, library)
         for fault in found:
             if fault.name.text not in done and not module.text.is_filled(fault.name.span):
                 done.add(fault.name.text)
                 yield fault
 
 
-def _bound(every: list[ast.AST], top: set[ast.stmt]) -> set[str]:
-    """The names of a module that anything but a definition or an import at its top binds."""
-    found = set[str]()
-    for each in every:
-        match each:
-            case ast.arg(arg=name) | ast.Name(id=name, ctx=ast.Store() | ast.Del()):
-                found.add(name)
-            case ast.FunctionDef(name=name) | ast.ClassDef(name=name) if each not in top:
-                found.add(name)
-            case ast.Import(names=names) | ast.ImportFrom(names=names) if each not in top:
-                found |= {alias.asname or alias.name.partition(".")[0] for alias in names}
-            case ast.Attribute(value=owner, ctx=ast.Store() | ast.Del()):
-                found |= {head} if (head := _head(owner)) is not None else set()
-    return found
-
-
 # --- functions that are not called
 
 
 def _uncalled(
-    module: Module, node: ast.ClassDef, bound: set[str], tried: set[ast.AST], library: Library
+    module: Module, node: ast.ClassDef, bound: Set[str], tried: Set[ast.AST], library: Library
 ) -> Iterator[ClassFault]:
     """The functions of the project whose name without `()` is used as a number or a truth value, is
     kept in the userdata, or is a line."""
@@ -78,7 +59,7 @@ def _uncalled(
         values = {id(each): each for each in _values(function, tried)}
         kept = _kept(function, values)
         for each in (*values.values(), *kept):
-            head = _head(each)
+            head = first_name(each)
             if head is None or head in bound or not _may_be_function(module, each, library):
                 continue
             found = find_function(module, each, library)
@@ -89,13 +70,6 @@ def _uncalled(
             needed = len(given.posonlyargs) + len(given.args) > len(given.defaults)
             near = f"{span.text}({'...' if needed or None in given.kw_defaults else ''})"
             yield ClassFault(kind="function not called", name=Word(span.text, span), near=near)
-
-
-def _head(node: ast.expr) -> str | None:
-    """The first name of a dotted name."""
-    while isinstance(node, ast.Attribute):
-        node = node.value
-    return node.id if isinstance(node, ast.Name) else None
 
 
 def _may_be_function(module: Module, node: _Reference, library: Library) -> bool:
@@ -123,7 +97,7 @@ def _texts(dotted: str | None, library: Library) -> list[str]:
     return [source.text for source in sources if source is not None]
 
 
-def _values(function: ast.AST, tried: set[ast.AST]) -> Iterator[_Reference]:
+def _values(function: ast.AST, tried: Set[ast.AST]) -> Iterator[_Reference]:
     """The names in a function whose value is a number, a truth value or a value of the userdata,
     or that are alone in a line."""
     for each in ast.walk(function):
@@ -172,33 +146,27 @@ def _kept(function: ast.AST, values: dict[int, _Reference]) -> Iterator[_Referen
 
 
 def _missing(
-    module: Module,
-    node: ast.ClassDef,
-    every: list[ast.AST],
-    bound: set[str],
-    tried: set[ast.AST],
-    library: Library,
+    module: Module, node: ast.ClassDef, done: Set[str], library: Library
 ) -> Iterator[ClassFault]:
-    """The attributes of imported modules of the project that these do not define. A module is
-    parsed only if its text does not contain the name."""
+    """The attributes of imported modules of the project that these do not define; `done` are names
+    that have a fault. A module is parsed only if its text does not contain the name."""
     words: dict[str, tuple[str, set[str]]] = {}
-    quoted = {each.value for each in every if isinstance(each, ast.Constant)}
-    quoted |= {each.attr for each in every
-               if isinstance(each, ast.Attribute)
-               and not isinstance(each.ctx, ast.Load)}  # fmt: skip
     for each in ast.walk(node):
         match each:
             case ast.Attribute(value=ast.Name() | ast.Attribute() as owner, attr=name):
-                head = _head(owner)
+                head = first_name(owner)
             case _:
                 continue
-        if head is None or head not in module.names or head in bound or each in tried:
+        if head is None or head not in module.names or head in done or each in module.tried:
+            continue
+        if head in module.rebound:
             continue
         written = ast.unparse(owner)
         if written not in words:
             words[written] = _words(module, written, library)
         dotted, known = words[written]
-        if not dotted or name in known or name in quoted or name.startswith("__"):
+        set_here = name in module.constants or name in module.attributes["changed"]
+        if not dotted or name in known or set_here or name.startswith("__"):
             continue
         fault = _absent(dotted, name, module, library)
         if fault is not None:

@@ -33,16 +33,15 @@ def missing_members(own: OwnClass, library: Library) -> Iterator[ClassFault]:
     objects = Objects(own, library)
     done = set[tuple[str, str]]()
     for module, node in own.classes:
-        every = [*ast.walk(module.text.tree)]
-        set_here = {each.attr for each in every if isinstance(each, ast.Attribute)
-                    and not isinstance(each.ctx, ast.Load)}  # fmt: skip
-        quoted = {each.value for each in every if isinstance(each, ast.Constant)}
+        set_here = module.attributes["changed"]
         for use in objects.uses(module, node, ast.walk(node)):
             if (use.name, use.member) in done:
                 continue
             names, methods = members_of(use.definition)
             member = use.member
-            if member in names | set_here or member in quoted or hasattr(object, member):
+            if member in names or member in set_here or member in module.constants:
+                continue
+            if hasattr(object, member):
                 continue
             done.add((use.name, member))
             place = Word(member, Span(use.span.source, use.span.end - len(member), use.span.end))
@@ -198,7 +197,7 @@ def _of_module(module: Module, name: str, library: Library) -> _Entry | None:
     match module.names.get(name, ()):
         case (ast.Assign(targets=[ast.Name() as target], value=ast.Call() as value) as line,):
             shared = any(isinstance(each, ast.Global) and name in each.names
-                         for each in ast.walk(module.text.tree))  # fmt: skip
+                         for each in module.nodes)  # fmt: skip
             if line in module.text.tree.body and not shared:
                 return module, value, module.text.span(target)
     return None
@@ -232,8 +231,7 @@ def shows_all(module: Module, name: str, other: Module, node: ast.ClassDef) -> b
     used |= {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)}
     bound = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
     late = {"setattr", "vars", "__dict__", "locals", "exec", "globals"} & used
-    trees = {id(one.text.tree): one.text.tree for one in (module, other)}.values()
-    outside = any(_sets(each, name) for tree in trees for each in ast.walk(tree))
+    outside = any(_sets(each, name) for one in (module, other) for each in one.nodes)
     return not (late or outside or LATE & bound)
 
 

@@ -45,10 +45,7 @@ def member(module: Module, owner: str, name: str, library: Library) -> Member | 
 
 def _is_assigned(module: Module, name: str) -> bool:
     """Whether code of a module assigns an attribute of a name, of any object."""
-    return any(
-        isinstance(each, ast.Attribute) and each.attr == name and not isinstance(each.ctx, ast.Load)
-        for each in ast.walk(module.text.tree)
-    )
+    return name in module.attributes["changed"]
 
 
 def table(module: Module, name: str) -> ast.Dict | None:
@@ -60,7 +57,7 @@ def table(module: Module, name: str) -> ast.Dict | None:
             pass
         case _:
             return None
-    for each in ast.walk(module.text.tree):
+    for each in module.nodes:
         match each:
             case ast.Subscript(value=ast.Name(id=owner), ctx=ast.Store() | ast.Del()):
                 changed = owner == name

@@ -12,7 +12,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from smachac.diagnostics.source import Span, Word
-from smachac.frontend.class_names import compared
 from smachac.frontend.loader import Library
 from smachac.frontend.path_ends import PathEnds
 from smachac.frontend.python_constants import entries, member, table
@@ -25,7 +24,7 @@ from smachac.frontend.python_functions import (
     is_plain,
     returns_of,
 )
-from smachac.frontend.python_modules import Module, OwnClass, constant_node, find_function
+from smachac.frontend.python_modules import Module, OwnClass, compared, constant_node, find_function
 from smachac.frontend.python_source import PythonText, name_span
 from smachac.frontend.skipped_writes import Paths, SkippedWrites
 from smachac.ir.class_facts import Ending

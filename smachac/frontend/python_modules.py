@@ -10,7 +10,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
@@ -24,17 +24,21 @@ MOST_STEPS = 10
 Root: TypeAlias = Literal["state", "object", "unknown"]
 """The class at the end of a chain of base classes: `smach.State`, none, or one that is not read."""
 
+AttributeUse: TypeAlias = Literal["any", "read", "changed", "stored", "outside"]
+"""The uses of attributes in a module; `changed` is stored or deleted."""
+
 Names: TypeAlias = Mapping[str, tuple[ast.AST, ...]]
 """The statements that bind each name of a module or a class."""
 
 _INNER = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Module:
     """A module with the names that it binds; `dynamic`: it can bind others.
 
-    `name` is its dotted name, empty for a template; `package`: it is the file of a package.
+    `name` is its dotted name, empty for a template; `package`: it is the file of a package. What
+    each of its classes needs of the whole module is computed once.
     """
 
     text: PythonText
@@ -42,6 +46,101 @@ class Module:
     package: bool
     names: Names
     dynamic: bool
+
+    @cached_property
+    def nodes(self) -> tuple[ast.AST, ...]:
+        """All nodes, in the order of `ast.walk`."""
+        return (*ast.walk(self.text.tree),)
+
+    @cached_property
+    def identifiers(self) -> frozenset[str]:
+        """The names that it reads, binds or deletes anywhere."""
+        return frozenset(node.id for node in self.nodes if isinstance(node, ast.Name))
+
+    @cached_property
+    def constants(self) -> frozenset[object]:
+        """The values of all constants."""
+        return frozenset(node.value for node in self.nodes if isinstance(node, ast.Constant))
+
+    @cached_property
+    def called(self) -> frozenset[ast.expr]:
+        """The expressions that are called."""
+        return frozenset(node.func for node in self.nodes if isinstance(node, ast.Call))
+
+    @cached_property
+    def tried(self) -> frozenset[ast.AST]:
+        """The nodes in the bodies of `try`."""
+        bodies = (line for node in self.nodes if isinstance(node, ast.Try) for line in node.body)
+        return frozenset(inner for line in bodies for inner in ast.walk(line))
+
+    @cached_property
+    def attributes(self) -> Mapping[AttributeUse, frozenset[str]]:
+        """The names of attributes by their use, of any object. `outside` are those that are stored
+        elsewhere than on the `self` of a state of SMACH at the top of the module."""
+        found: dict[AttributeUse, set[str]] = {use: set() for use in get_args(AttributeUse)}
+        own = self._of_states
+        for node in self.nodes:
+            if isinstance(node, ast.Attribute):
+                found["any"].add(node.attr)
+                if isinstance(node.ctx, ast.Load):
+                    found["read"].add(node.attr)
+                    continue
+                found["changed"].add(node.attr)
+                if isinstance(node.ctx, ast.Store):
+                    found["stored"].add(node.attr)
+                    if node not in own:
+                        found["outside"].add(node.attr)
+        return {use: frozenset(names) for use, names in found.items()}
+
+    @cached_property
+    def _of_states(self) -> set[ast.AST]:
+        """The attributes of `self` in the states of SMACH at the top of the module."""
+        return {
+            part
+            for node in self.text.tree.body
+            if isinstance(node, ast.ClassDef)
+            and len(node.bases) == 1 and is_smach_state(self, node.bases[0])
+            for part in ast.walk(node)
+            if isinstance(part, ast.Attribute) and _is_self(part.value)
+        }  # fmt: skip
+
+    @cached_property
+    def compared(self) -> frozenset[str]:
+        """The attributes in comparisons that are statements of their own (`compared`)."""
+        found = filter(None, map(compared, self.nodes))
+        return frozenset(each.left.attr for each in found if isinstance(each.left, ast.Attribute))
+
+    @cached_property
+    def variables(self) -> frozenset[str]:
+        """The names of parameters, and of what is assigned or deleted anywhere."""
+        found = set[str]()
+        for node in self.nodes:
+            match node:
+                case ast.arg(arg=name) | ast.Name(id=name, ctx=ast.Store() | ast.Del()):
+                    found.add(name)
+        return frozenset(found)
+
+    @cached_property
+    def definitions(self) -> frozenset[str]:
+        """The names of functions and classes anywhere."""
+        kinds = ast.FunctionDef | ast.ClassDef
+        return frozenset(node.name for node in self.nodes if isinstance(node, kinds))
+
+    @cached_property
+    def rebound(self) -> frozenset[str]:
+        """The names that anything but a definition or an import at its top binds."""
+        found = {*self.variables}
+        top = {*self.text.tree.body}
+        for node in self.nodes:
+            match node:
+                case ast.FunctionDef(name=name) | ast.ClassDef(name=name) if node not in top:
+                    found.add(name)
+                case ast.Import(names=names) | ast.ImportFrom(names=names) if node not in top:
+                    found |= {alias.asname or alias.name.partition(".")[0] for alias in names}
+                case ast.Attribute(value=owner, ctx=ast.Store() | ast.Del()):
+                    head = first_name(owner)
+                    found |= {head} if head is not None else set()
+        return frozenset(found)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +196,25 @@ def _is_self(node: ast.expr) -> bool:
     return isinstance(node, ast.Name) and node.id == "self"
 
 
+def first_name(node: ast.expr) -> str | None:
+    """The name at the start of `tools.math.pi`; None where it starts with another expression."""
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else None
+
+
+def compared(node: ast.AST) -> ast.Compare | None:
+    """The comparison `x == y` that is a statement of its own, in place of `x = y`."""
+    match node:
+        case ast.Expr(
+            value=ast.Compare(
+                left=ast.Attribute() | ast.Subscript() | ast.Name(), ops=[ast.Eq()]
+            ) as found
+        ):
+            return found
+    return None
+
+
 def of_other_objects(node: ast.ClassDef) -> set[ast.AST]:
     """The nodes in a class whose `self` is another object: those of inner classes, and of functions
     in a method that have a parameter of this name."""
@@ -125,12 +243,22 @@ def load_module(name: str, library: Library) -> Module | ClassFault | None:
         source = library.code(file)
         if source is None:
             continue
-        text = python_text(source, template=False)
-        if text is not None:
-            return _module(text, name, package=package)
-        error = syntax_error(source)
-        return ClassFault(kind="syntax", name=error, file=file) if error is not None else None
+        key = file, source
+        if key not in library.modules:
+            library.modules[key] = _read(source, name, file, package=package)
+        found = library.modules[key]
+        assert found is None or isinstance(found, Module | ClassFault)
+        return found
     return None
+
+
+def _read(source: Source, name: str, file: str, *, package: bool) -> Module | ClassFault | None:
+    """The module in a text; a fault if it cannot be parsed."""
+    text = python_text(source, template=False)
+    if text is not None:
+        return _module(text, name, package=package)
+    error = syntax_error(source)
+    return ClassFault(kind="syntax", name=error, file=file) if error is not None else None
 
 
 def file_of(module: Module) -> str:

@@ -219,7 +219,7 @@ class _Resolver:
         known = [each for each in self.types.values() if each is not None]
         classes = [each.class_facts for each in known if each.class_facts is not None]
         library = replace(self.library, definition_names=cache(self.library.definition_names))
-        definitions = definitions_of(base, classes, library)
+        definitions = definitions_of(base, classes, library, self.report)
         return Script(
             base=base,
             sources=tuple(self.sources),

@@ -150,7 +150,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
             found += _names_of_interface(item, text, around.read(interface))
             found += _other_classes(_type_of(path), around.read(interface), around.types)
         found += _turned_pairs(path)
-        found += _exchanged_values(path)
+        found += _exchanged_values(path, item.span)
         found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
         found += _other_types(path, around.types)
         found += _moved_out(path, span.source)
@@ -351,20 +351,27 @@ def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
             return
 
 
-def _exchanged_values(path: list[Tree | Entry]) -> Iterator[Candidate]:
-    """The value of the innermost entry, exchanged with the others of its mapping. Lists and
-    mappings too: a slip puts them where a word must be. What is not on one line stays."""
+def _exchanged_values(path: list[Tree | Entry], found: Span) -> Iterator[Candidate]:
+    """The value of the innermost entry, exchanged with the others of its mapping. A list or a
+    mapping is exchanged only if the finding is about the whole value: then its shape can be the
+    fault."""
     for around, entry in reversed([*pairwise(path)]):
         if not isinstance(around, Map) or not isinstance(entry, Entry):
             continue
         own = entry.value.span
-        for other in around.entries if _fits_anywhere(entry.value) else ():
+        fits = _fits_anywhere if own == found else _is_word
+        for other in around.entries if fits(entry.value) else ():
             value = other.value.span
-            if _fits_anywhere(other.value) and value.text != own.text:
+            if fits(other.value) and value.text != own.text:
                 edits = (Edit(span=own, text=value.text), Edit(span=value, text=own.text))
                 names = f"`{entry.key.value}` and `{other.key.value}`"
                 yield candidate(1.8, f"exchange the values of {names}", *edits)
         return
+
+
+def _is_word(value: Tree) -> bool:
+    """Whether a value is a single one that is written."""
+    return isinstance(value, Scalar) and bool(value.span.text)
 
 
 def _fits_anywhere(value: Tree) -> bool:

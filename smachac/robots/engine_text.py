@@ -4,7 +4,8 @@ The engine reads no URDF file of the user. It gets a text that is printed from t
 `robots.urdf` has read and checked, because PyBullet 3.2.7 reads some valid files otherwise than the
 specification: `<limit>` of a continuous joint limits it, a missing `upper` is -1 and not 0,
 `quat_xyzw` has no effect, planar joints break its solvers, a line is cut after 1,023 characters,
-and packages are not looked up. The checker prints the text too: what it accepts can be loaded.
+a link without `<inertial>` has 1 kg and not 0, and packages are not looked up. The checker prints
+the text too: what it accepts can be loaded.
 """
 
 from __future__ import annotations
@@ -80,6 +81,7 @@ class _Printer:
         self, robot: Urdf, find: Callable[[str], Path | None], left_out: Collection[str]
     ) -> None:
         self.robot, self.find, self.left_out = robot, find, left_out
+        self.fixed = {joint.child for joint in robot.joints.values() if not joint.is_moved}
         self.text: list[str] = []
         self.lines: list[int] = []
         self.meshes: list[Path] = []
@@ -136,9 +138,19 @@ class _Printer:
             seen.add(child.tag)
             if not self._is_left_out(child):
                 yield child
+        if element.tag == "link" and "inertial" not in seen:
+            yield from self._no_mass(element)
         if element.tag == "joint":
             joint = self.robot.joints[element.attributes["name"]]
             yield from _axis_and_limit(element, joint, self.robot.text)
+
+    def _no_mass(self, link: Element) -> Iterator[Element]:
+        """The mass of a link without `<inertial>`: 0, as in the specification. A link that a joint
+        moves has to have one for the engine, which sets 1 kg."""
+        if link.attributes["name"] in self.fixed:
+            place = link.start, link.line
+            parts = [Element("mass", {"value": "0"}, *place), Element("inertia", {}, *place)]
+            yield Element("inertial", {}, *place, children=parts)
 
     def _is_left_out(self, element: Element) -> bool:
         name = element.attributes.get("name", "")

@@ -59,8 +59,10 @@ def read_event(line: str) -> Event:
         raise _BadLineError(f"this line has more than {LONGEST_LINE:,} characters")
     try:
         event = json.loads(line)
-    except (ValueError, RecursionError):
+    except ValueError:
         raise _BadLineError("this line is not JSON") from None
+    except RecursionError:
+        raise _BadLineError("this line has too many brackets in brackets") from None
     if not isinstance(event, dict) or not isinstance(event.get("event"), str):
         raise _BadLineError("this line is not an event of a trace")
     kind = event["event"]

@@ -94,7 +94,8 @@ def test_deep_json_is_refused(
     for command in ("trace check", "trace stats", "stats"):
         code, printed = ended(f"{command} main.yml run.jsonl", capsys)
         assert code == 1
-        assert f"run.jsonl:{len(trace.splitlines()) + 1}: " in printed
+        reason = "this line has too many brackets in brackets"
+        assert f"run.jsonl:{len(trace.splitlines()) + 1}: {reason}" in printed
         assert len(printed) < 10_000
     for text in (deep, f'{{"version": 2, "findings": {deep}}}'):
         (project / "known.json").write_text(text)
@@ -160,3 +161,39 @@ def test_a_message_without_fields_has_a_help(
     code, printed = ended("check ros.yml", capsys)
     assert code == 1
     assert "help: it has no fields" in printed
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "place", "message"),
+    [
+        ("msg/Part.msg", "int32 pin\nin32[ pin\n", "2:1", "this line declares no field"),
+        ("msg/Part.msg", "int32\n", "1:1", "this line declares no field and no constant"),
+        ("msg/Part.msg", "# a part\n\n  int32 1pin\n", "3:3", "this line declares no field"),
+        ("msg/Part.msg", "int32 pin\nfloat64 pin\n", "2:9", "`pin` is declared twice"),
+        ("msg/Part.msg", "int32 pin\n---\n", "1:1", "the file has 2 parts; a `.msg` file has 1"),
+        ("srv/Grasp.srv", "float64 width\n", "1:1", "the file has 1 part; a `.srv` file has 2"),
+        ("srv/Grasp.srv", "float64 width\n---\nbool=1\n", "3:1", "this line declares no field"),
+        (
+            "action/Tidy.action",
+            "string room\n---\n---\nfloat32 done;\n",
+            "4:1",
+            "this line declares",
+        ),
+        ("action/Tidy.action", "string room\n---\n\n---\n", "", ""),
+        ("msg/Part.msg", "int32[] pin\nint32 PIN=1\n", "", ""),
+    ],
+)
+def test_a_definition_of_a_message_that_is_not_valid_is_a_warning(
+    project: Path,
+    capsys: pytest.CaptureFixture[str],
+    file: str,
+    text: str,
+    place: str,
+    message: str,
+) -> None:
+    (project / "cell_msgs" / file).write_text(text)
+    for command in ("check ros.yml", "check ."):
+        _, printed = ended(command, capsys)
+        assert printed.count("SM007") == bool(place)
+        assert not place or f"warning[SM007]: {message}" in printed
+        assert not place or f"cell_msgs/{file}:{place}" in printed

@@ -40,6 +40,10 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ("inline WORK main.yml", "inline main.yml WORK"),
         ("trace check run.jsonl main.yml", "trace check main.yml run.jsonl"),
         ("stats run.jsonl main.yml", "stats main.yml run.jsonl"),
+        ("rename WORK DO ./main.yml", "rename ./main.yml WORK DO"),
+        ("edit WORK transition main.yml done", "edit main.yml transition WORK done"),
+        ("edit WORK remove main.yml", "edit main.yml remove WORK"),
+        ("edit sm add NEW main.yml SleepState", "edit main.yml add sm NEW SleepState"),
     ],
 )
 def test_the_right_call_is_named(
@@ -50,6 +54,40 @@ def test_the_right_call_is_named(
     assert printed.err.endswith(f"is none: write `smachac {right}`\n")
     assert not printed.out
     assert Path("main.yml").read_text() == SCRIPT
+
+
+@pytest.mark.parametrize(
+    ("written", "right"),
+    [
+        ("edit transition main.yml WORK done", "edit main.yml transition WORK done"),
+        ("edit main.yml WORK remove", "edit main.yml remove WORK"),
+        ("edit remove WORK main.yml", "edit main.yml remove WORK"),
+        ("trace main.yml check run.jsonl", "trace check main.yml run.jsonl"),
+        ("trace run.jsonl main.yml stats", "trace stats main.yml run.jsonl"),
+        ("contain main.yml LOOP WORK StateMachine", "contain main.yml LOOP StateMachine WORK"),
+        ("main.yml check", "check main.yml"),
+    ],
+)
+def test_a_word_in_place_of_a_choice(
+    written: str, right: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(written.split())
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.endswith(f"; write `smachac {right}`\n")
+    assert Path("main.yml").read_text() == SCRIPT
+
+
+@pytest.mark.parametrize(
+    "written",
+    ["edit transition WORK done", "edit s.yml WORK remove", "trace run.jsonl check --format json"],
+)
+def test_words_in_an_order_that_is_not_known(
+    written: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(written.split())
+    assert "; write" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("written", ["run main.yml --mock s.yml", "rename main.yml WORK DO"])

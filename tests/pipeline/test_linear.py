@@ -82,3 +82,54 @@ def test_twice_the_input_takes_about_twice_the_lines(
         counts.append(lines(arguments))
     _, one, two = counts
     assert two / one < MOST, counts
+
+
+STATE = """\
+class C{0}(smach.State):
+    def __init__(self, speed):
+        super().__init__(outcomes=["done"], input_keys=["a{0}"], output_keys=["b{0}"])
+        self.speed = speed
+        self.times = helper()
+
+    def execute(self, userdata):
+        self.times += 1
+        userdata.b{0} = userdata.a{0} * self.speed + math.sqrt(self.{1})
+        return "done"
+
+"""
+INTERFACE = """\
+name: C{0}
+variables: {{speed: float}}
+input_keys: {{a{0}: float}}
+output_keys: {{b{0}: float}}
+outcomes: {{done: {{}}}}
+code: {{python: "cell:C{0}"}}
+"""
+USE = (
+    "  - S{0}: {{template: C{0}, speed: 1.0, remapping: {{a{0}: x, b{0}: x}},"
+    " transitions: {{done: {1}}}}}\n"
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("attribute", ["times", "timez"])
+def test_the_classes_of_one_module(
+    attribute: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counts = []
+    for size in (2, 15, 30):
+        folder = tmp_path / str(size)
+        (folder / "templates").mkdir(parents=True)
+        monkeypatch.chdir(folder)
+        head = "import math\nfrom smachac.runtime import smach\ndef helper(): return 1\n"
+        classes = [STATE.format(at, attribute if at == 1 else "times") for at in range(size)]
+        Path("cell.py").write_text(head + "\n".join(classes))
+        for at in range(size):
+            Path(f"templates/C{at}.yml").write_text(INTERFACE.format(at))
+        uses = (USE.format(at, f"S{at + 1}" if at + 1 < size else "done") for at in range(size))
+        start = "name: sm\ntemplate: Base\noutcomes: [done]\nuserdata: {x: 1.0}\nstates:\n"
+        Path("main.yml").write_text(start + "".join(uses))
+        counts.append(lines(["check", "main.yml"]))
+    assert main(["check", "main.yml"]) == 0
+    _, one, two = counts
+    assert two / one < MOST, counts

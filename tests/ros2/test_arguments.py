@@ -29,6 +29,12 @@ WRONG = [
      "-p patience:=010"),
     (2, "ROS 2 cannot start: '-p /patrol:patience:=08': ", "--param /patrol:patience:=08"),
     (2, "ROS 2 cannot start: '-p patience:=-07': ", "-p patience:=-07"),
+    (2, "ROS 2 cannot start: '-p patience:=[1,010]': ", "-p patience:=[1,010]"),
+    (2, "ROS 2 cannot start: '-p patience:=[08]': ", "-p patience:=[08]"),
+    (2, "ROS 2 cannot start: '-p patience:=0' and '-p patience:=0.5': ROS 2 does not take the last"
+     " of two values of different types", "-p patience:=0 -p patience:=0.5"),
+    (2, "ROS 2 cannot start: '-p patience:=[1]' and '-p patience:=[1.5]': ",
+     "-p patience:=[1] --param patience:=[1.5]"),
 ]  # fmt: skip
 """The exit code, the begin of the line, and the arguments."""
 

@@ -408,3 +408,50 @@ def test_a_seed_in_another_turn_is_answered_in_that_turn() -> None:
     assert kinematics.solve(limb, pose, seed) == pytest.approx(
         [0.2, 0.5, -1.0, 0.3 + 4 * math.pi], abs=2e-4
     )
+
+
+# Links without a mass
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        "",
+        '<visual><geometry><sphere radius="0.01"/></geometry></visual>',
+        '<collision><geometry><box size="0.01 0.01 0.01"/></geometry></collision>',
+    ],
+)
+def test_a_frame_without_inertial_weighs_nothing(tmp_path: Path, inside: str) -> None:
+    """1 kg at 0.6 m would need 5.9 N m."""
+    weak = '<limit lower="-2" upper="2" effort="2" velocity="1"/>'
+    names = ("tool", "camera", "tip")
+    parts = (
+        link("base"),
+        '<link name="arm"><inertial><mass value="0.1"/><inertia ixx="0.001" ixy="0" ixz="0"'
+        ' iyy="0.001" iyz="0" izz="0.001"/></inertial></link>',
+        *(f'<link name="{name}">{inside}</link>' for name in names),
+        joint("turn", "revolute", "base", "arm", weak, axis="0 1 0"),
+        joint("to_tool", "fixed", "arm", "tool", "", xyz="0.6 0 0"),
+        joint("to_camera", "fixed", "tool", "camera", "", xyz="0 0.1 0"),
+        joint("to_tip", "fixed", "camera", "tip", "", xyz="0 -0.1 0"),
+    )
+    limb = sim.robots.Limb(name="arm", joints=("turn",), tip="tip", home=(0.0,))
+    made = sim.robots.from_urdf(robot(tmp_path, *parts), limbs=(limb,))
+    with sim.World(robot=made) as world:
+        arm = world.arm()
+        masses = [world.engine.getDynamicsInfo(arm.body, number)[0] for number in range(4)]
+        assert masses == [0.1, 0.0, 0.0, 0.0]
+        for angle in (-0.5, 0.5, 0.0):
+            assert arm.move_to_joints([angle]).outcome == "succeeded"
+            reached = world.engine.getJointState(arm.body, 0)[0]
+            assert reached == pytest.approx(angle, abs=2e-3)
+
+
+def test_a_link_that_moves_has_a_mass(tmp_path: Path) -> None:
+    parts = (link("base"), '<link name="hand"/>', joint("j", "revolute", "base", "hand"))
+    limb = sim.robots.Limb(name="arm", joints=("j",), tip="hand", home=(0.0,))
+    made = sim.robots.from_urdf(robot(tmp_path, *parts), limbs=(limb,))
+    with sim.World(robot=made) as world:
+        arm = world.arm()
+        assert world.engine.getDynamicsInfo(arm.body, 0)[0] == 1.0
+        assert arm.move_to_joints([1.0]).outcome == "succeeded"

@@ -34,7 +34,7 @@ def start_node(
 def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
     """Initialize rclpy as `start_node` does, and start the node that `make` returns."""
     arguments = sys.argv if args is None else args
-    _refuse_leading_zeros(arguments)
+    _refuse_misread(arguments)
     handler = None
     if threading.current_thread() is threading.main_thread():
         handler = PreemptHandler(ros.rclpy.get_default_context())
@@ -55,18 +55,45 @@ def start(make: Callable[[], Any], args: list[str] | None = None) -> Any:
     return node
 
 
-def _refuse_leading_zeros(args: list[str]) -> None:
-    """End the program with exit code 2 if a number of a parameter begins with 0: ROS 2 reads 010 as
-    8, 07 as 7, and 08 as a float."""
+def _refuse_misread(args: list[str]) -> None:
+    """End the program with exit code 2 for parameters from which ROS 2 reads other values than the
+    ones that are written.
+
+    It reads 010 as 8, 07 as 7, and 08 as a float. Of values of one parameter it takes the last one
+    if all have one type; else the one whose type comes first in its own order: 0 of `-p x:=0 -p
+    x:=0.5`.
+    """
+    given: dict[str, tuple[str, object]] = {}
     for before, rule in pairwise(args):
-        value = rule.partition(":=")[2]
-        if before in ("-p", "--param") and re.fullmatch(r"[-+]?0[0-9]+", value):
-            print(
-                f"ROS 2 cannot start: '-p {rule}': a number that begins with 0 is read as octal "
-                f"or as a float; write it without the 0, or in quotes if it is a text",
-                file=sys.stderr,
-            )
-            raise SystemExit(2)
+        name, _, value = rule.partition(":=")
+        if before not in ("-p", "--param"):
+            continue
+        items = value.strip("[]").split(",") if value.startswith("[") else [value]
+        if any(re.fullmatch(r"[-+]?0[0-9]+", item.strip()) for item in items):
+            reason = "a number that begins with 0 is read as octal or as a float; write it without"
+            _refuse(f"'-p {rule}': {reason} the 0, or in quotes if it is a text")
+        kind = _type_of(value)
+        first, known = given.setdefault(name, (rule, kind))
+        if kind != known:
+            reason = "ROS 2 does not take the last of two values of different types"
+            _refuse(f"'-p {first}' and '-p {rule}': {reason}; write one of them")
+
+
+def _refuse(reason: str) -> None:
+    print(f"ROS 2 cannot start: {reason}", file=sys.stderr)
+    raise SystemExit(2)
+
+
+def _type_of(value: str) -> object:
+    """The type of the value of a parameter, with that of the items of a list; None if it is no
+    YAML."""
+    import yaml  # rclpy has it
+
+    try:
+        data = yaml.safe_load(value)
+    except yaml.YAMLError:
+        return None
+    return frozenset(map(type, data)) if isinstance(data, list) else type(data)
 
 
 @contextmanager
@@ -83,8 +110,7 @@ def _ended_by_errors() -> Iterator[None]:
         reason = str(error).partition(", at ")[0].removeprefix("failed to initialize rcl: ")
     else:
         return
-    print(f"ROS 2 cannot start: {reason}", file=sys.stderr)
-    raise SystemExit(2)
+    _refuse(reason)
 
 
 @contextmanager
