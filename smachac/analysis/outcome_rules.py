@@ -10,11 +10,10 @@ child is required by some rule.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from smachac.analysis.control_flow import is_open
-from smachac.diagnostics.spelling import guesser
 from smachac.ir.nodes import Concurrence, Node, OutcomeRule
 from smachac.ir.outcome_names import PREEMPTED, fails, good_first
 from smachac.ir.traversal import outcome_names
@@ -174,9 +173,8 @@ Space = dict[str, tuple[str, ...]]
 
 
 @dataclass(frozen=True, slots=True)
-class CorrectedConcurrence:
-    """A concurrence, at its path, whose rules have no fault of their own: misspelt names are put
-    right."""
+class SoundConcurrence:
+    """A concurrence, at its path, whose rules have no fault of their own."""
 
     path: str
     node: Concurrence
@@ -207,9 +205,9 @@ class CorrectedConcurrence:
         return [number for number in found if len(self.rules.conditions[number]) == most]
 
 
-def corrected_concurrence(path: str, node: Concurrence) -> CorrectedConcurrence | None:
-    """The rules of a concurrence with misspelt names corrected; None if it has no states, two
-    states of one name, or a rule that cannot be corrected."""
+def sound_concurrence(path: str, node: Concurrence) -> SoundConcurrence | None:
+    """The rules of a concurrence; None if it has no states, two states of one name, or a rule with
+    an unknown name."""
     children = {child.name: child for child in node.children}
     if not children or len(children) < len(node.children):
         return None
@@ -217,14 +215,10 @@ def corrected_concurrence(path: str, node: Concurrence) -> CorrectedConcurrence 
         name: None if is_open(child) else frozenset(outcome_names(child))
         for name, child in children.items()
     }
-    written = []
-    for rule in node.rules:
-        understood = rule if _is_sound(rule, ends) else _understood(rule, children)
-        if understood is None:
-            return None
-        written.append(understood)
-    conditions = ({one.child: one.outcome for one in rule.when} for rule in written)
-    return CorrectedConcurrence(path, node, children, tuple(written), Rules(conditions))
+    if not all(_is_sound(rule, ends) for rule in node.rules):
+        return None
+    conditions = ({one.child: one.outcome for one in rule.when} for rule in node.rules)
+    return SoundConcurrence(path, node, children, node.rules, Rules(conditions))
 
 
 def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> bool:
@@ -236,27 +230,7 @@ def _is_sound(rule: OutcomeRule, ends: Mapping[str, frozenset[str] | None]) -> b
     return 0 < len({condition.child for condition in rule.when}) == len(rule.when)
 
 
-def _understood(rule: OutcomeRule, children: Mapping[str, Node]) -> OutcomeRule | None:
-    when = []
-    for condition in rule.when:
-        name = condition.child
-        if name not in children:
-            name = guesser(children)(name) or ""
-        if not name:
-            return None
-        outcomes = outcome_names(children[name])
-        outcome = condition.outcome
-        if outcome not in outcomes and not is_open(children[name]):
-            outcome = guesser(outcomes)(outcome) or ""
-        if not outcome:
-            return None
-        when.append(replace(condition, child=name, outcome=outcome))
-    understood = replace(rule, when=tuple(when))
-    once = len({condition.child for condition in when}) == len(when)
-    return understood if when and once else None
-
-
-def space(concurrence: CorrectedConcurrence, known: OutcomesByPath) -> Space:
+def space(concurrence: SoundConcurrence, known: OutcomesByPath) -> Space:
     """The possible outcomes of each branch. Under `join: any` a branch that never ends has an
     unknown outcome here; SM407 reports that it never ends."""
     asked: dict[str, list[str]] = {}
@@ -279,7 +253,7 @@ def space(concurrence: CorrectedConcurrence, known: OutcomesByPath) -> Space:
 
 
 def unstopped_spaces(
-    concurrence: CorrectedConcurrence, ever: OutcomesByPath, unstopped: OutcomesByPath
+    concurrence: SoundConcurrence, ever: OutcomesByPath, unstopped: OutcomesByPath
 ) -> Iterator[tuple[Space, str]]:
     """The possible outcomes of the branches without a request to stop from outside, and for
     `join: any` the branch that ends first. The other branches are preempted: one with the outcome

@@ -14,10 +14,10 @@ from smachac.analysis.control_flow import (
 )
 from smachac.analysis.outcome_rules import (
     OTHER,
-    CorrectedConcurrence,
+    SoundConcurrence,
     Space,
     UndecidedError,
-    corrected_concurrence,
+    sound_concurrence,
     space,
     unstopped_spaces,
     without_other,
@@ -66,7 +66,7 @@ def _ever(path: str, node: Node, known: OutcomesByPath) -> tuple[str, ...]:
         case Leaf():
             return (*outcome_names(node), *(OTHER,) * node.open)
         case Concurrence():
-            concurrence = corrected_concurrence(path, node)
+            concurrence = sound_concurrence(path, node)
             spaces = [space(concurrence, known)] if concurrence else []
             return _declared(node, [*results(node, concurrence, spaces), PREEMPTED])
     return _of_container(path, node, known, asked=True)
@@ -77,7 +77,7 @@ def _unstopped(path: str, node: Node, found: Endings) -> tuple[str, ...]:
         case Leaf():
             return tuple(name for name in found.ever[path] if name != PREEMPTED)
         case Concurrence():
-            concurrence = corrected_concurrence(path, node)
+            concurrence = sound_concurrence(path, node)
             spaces = (
                 [each for each, _ in unstopped_spaces(concurrence, *found)] if concurrence else []
             )
@@ -157,7 +157,7 @@ def _only(node: Node, names: Sequence[str]) -> tuple[nodes.Outcome, ...]:
 
 
 def results(
-    node: Concurrence, concurrence: CorrectedConcurrence | None, spaces: Sequence[Space]
+    node: Concurrence, concurrence: SoundConcurrence | None, spaces: Sequence[Space]
 ) -> set[str]:
     """The results of the rules that can win, and of the default if none has to hold."""
     if concurrence is None:
@@ -185,7 +185,7 @@ class Judged(NamedTuple):
     """
 
     path: str
-    concurrence: CorrectedConcurrence
+    concurrence: SoundConcurrence
     endings: Endings
     whole: Space
     unstopped: list[tuple[Space, str]]
@@ -201,7 +201,7 @@ def judged(containers: Iterable[tuple[str, Container]], known: Endings) -> list[
         seen.add(path)
         if not is_first or not isinstance(container, Concurrence) or container.sugar:
             continue
-        concurrence = corrected_concurrence(path, container)
+        concurrence = sound_concurrence(path, container)
         if concurrence is not None:
             spaces = unstopped_spaces(concurrence, *known)
             unstopped = [(without_other(each), first) for each, first in spaces]

@@ -7,9 +7,9 @@ from functools import cached_property, partial
 from typing import NamedTuple
 
 from smachac.analysis.outcome_rules import (
-    CorrectedConcurrence,
+    SoundConcurrence,
     UndecidedError,
-    corrected_concurrence,
+    sound_concurrence,
     space,
     unstopped_spaces,
 )
@@ -80,9 +80,7 @@ class Routes:
 
 def _possible_edges(known: Endings, path: str, container: Container) -> Iterator[Edge]:
     """The edges of a container; those of a concurrence as far as they can be taken."""
-    concurrence = (
-        corrected_concurrence(path, container) if isinstance(container, Concurrence) else None
-    )
+    concurrence = sound_concurrence(path, container) if isinstance(container, Concurrence) else None
     if concurrence is None:
         yield from edges(container)
         return
@@ -96,7 +94,7 @@ def _possible_edges(known: Endings, path: str, container: Container) -> Iterator
 
 
 def _results(
-    concurrence: CorrectedConcurrence, ends: Endings, child: str, outcome: str
+    concurrence: SoundConcurrence, ends: Endings, child: str, outcome: str
 ) -> Iterable[str]:
     """The results of a concurrence that are possible when a child ends with an outcome: without a
     preempt request, else with one; all results where that cannot be decided."""

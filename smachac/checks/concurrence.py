@@ -8,7 +8,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.control_flow import is_open, outcome_of_one_meaning
 from smachac.analysis.outcome_rules import (
     Combination,
-    CorrectedConcurrence,
+    SoundConcurrence,
     Space,
     UndecidedError,
     bits,
@@ -24,7 +24,7 @@ from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Condition, Leaf, Node, OutcomeRule
+from smachac.ir.nodes import Concurrence, Leaf, Node, OutcomeRule
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
@@ -134,22 +134,8 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 )
         if not entry.when:
             yield _without_conditions(path, container, entry)
-        swapped = _swapped_outcomes(entry, children)
-        if swapped:
-            first, second = swapped
-            text = f"{first.child}: {second.outcome}, {second.child}: {first.outcome}"
-            yield Finding(
-                span=place_of_value(first.span, first.outcome),
-                message=f"`{first.child}` has no outcome `{first.outcome}`, and `{second.child}` no"
-                f" `{second.outcome}`: the two are swapped",
-                arguments=(entry.outcome, first.child, first.outcome),
-                help=f"write `{text}`",
-                effect=UNKNOWN_BRANCH,
-                related=calls(container, first.span),
-                node=path,
-            )
         for condition in entry.when:
-            if not condition.child or condition in swapped:
+            if not condition.child:
                 continue  # a rule of a wrong shape: SM004
             child, span = children.get(condition.child), condition.span
             if child is None:
@@ -185,26 +171,6 @@ def has_dead_rule(container: Concurrence) -> bool:
         for rule in container.rules
         for condition in rule.when
     )
-
-
-def _swapped_outcomes(
-    entry: OutcomeRule, children: Mapping[str, Node]
-) -> tuple[Condition, Condition] | tuple[()]:
-    """Two conditions of a rule, each with an outcome that only the state of the other one has."""
-    wrong = [
-        each
-        for each in entry.when
-        if (child := children.get(each.child)) is not None
-        and not is_open(child)
-        and each.outcome not in outcome_names(child)
-    ]
-    if len(wrong) != 2:
-        return ()
-    first, second = wrong
-    crosswise = second.outcome in outcome_names(children[first.child]) and (
-        first.outcome in outcome_names(children[second.child])
-    )
-    return (first, second) if crosswise else ()
 
 
 def _example(container: Concurrence) -> str:
@@ -516,7 +482,7 @@ def _missed(each: Judged) -> Combination | None:
         return None
 
 
-def _unexceptional(concurrence: CorrectedConcurrence, space: Space) -> Space:
+def _unexceptional(concurrence: SoundConcurrence, space: Space) -> Space:
     return {name: concurrence.neutral(name, ends) for name, ends in space.items()}
 
 
@@ -595,7 +561,7 @@ def _overlaps(each: Judged, spaces: list[Space]) -> Iterator[Finding]:
 
 
 def _tie(
-    concurrence: CorrectedConcurrence, spaces: list[Space], first: int, second: int
+    concurrence: SoundConcurrence, spaces: list[Space], first: int, second: int
 ) -> Combination | None:
     """A combination in which the two rules tie and frameworks differ, if there is one.
 
@@ -615,7 +581,7 @@ def _tie(
     return None
 
 
-def _ends(concurrence: CorrectedConcurrence, combination: Combination) -> tuple[int, int]:
+def _ends(concurrence: SoundConcurrence, combination: Combination) -> tuple[int, int]:
     """The first and the last of the rules that win."""
     winners = concurrence.winners(combination)
     return winners[0], winners[-1]

@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeAlias
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.failure_paths import starts_failure
-from smachac.analysis.outcome_rules import Combination, CorrectedConcurrence, Space, UndecidedError
+from smachac.analysis.outcome_rules import Combination, SoundConcurrence, Space, UndecidedError
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.concurrence import written
 from smachac.checks.messages import calls, other_place, own_name
@@ -155,7 +155,7 @@ def _ignored(entry: OutcomeRule, children: Collection[str]) -> Iterator[str]:
 
 
 def _good_results(
-    concurrence: CorrectedConcurrence, around: Container, spaces: list[Space]
+    concurrence: SoundConcurrence, around: Container, spaces: list[Space]
 ) -> frozenset[str]:
     """The outcomes of a concurrence in a container that are successes, as SM404 defines them."""
     node = concurrence.node
@@ -183,7 +183,7 @@ def _is_bad(node: Node, name: str) -> bool:
     return fails(node, name) or name == PREEMPTED
 
 
-def _unfailed_outcomes(concurrence: CorrectedConcurrence, space: Space) -> Space:
+def _unfailed_outcomes(concurrence: SoundConcurrence, space: Space) -> Space:
     """The outcomes of each child when nothing fails: those of success; of a child without any, the
     neutral ones, and without these `preempted`."""
     found: Space = {}
@@ -198,7 +198,7 @@ def _unfailed_outcomes(concurrence: CorrectedConcurrence, space: Space) -> Space
 
 
 def _hidden_failures(
-    concurrence: CorrectedConcurrence,
+    concurrence: SoundConcurrence,
     spaces: list[tuple[Space, str]],
     given: Combination,
     avoided: int,

@@ -413,7 +413,10 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
         if fields and name != word
         if all(re.search(rf"\b{re.escape(field)}\b", text) for field in fields)
     ]
-    kinds = [name for name in schema.CONTAINERS if name != word and word in schema.CONTAINERS]
+    entries = [part for part in path if isinstance(part, Entry)][-1:]
+    is_own = any(each.value is state or each in state.entries for each in entries)
+    is_whole = is_own and word in schema.CONTAINERS
+    kinds = [name for name in schema.CONTAINERS if is_whole and name != word]
     for name in (*kinds, *(fitting if len(fitting) <= MOST_NEAR else ())):
         cost = 1.2 if name in kinds else 1.7
         yield candidate(cost, RENAME, Edit(span=entry.value.span, text=name))
@@ -422,14 +425,14 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
 def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
     """The lines of the innermost entry, moved out of the one or the two entries that it is in:
     behind that one, with its indentation."""
-    *outside, inner = [None, *(part for part in path if isinstance(part, Entry))]
-    text = source.text
-    if inner is None:
+    entries = [part for part in path if isinstance(part, Entry)]
+    if len(entries) < 2:
         return
+    inner, text = entries[-1], source.text
     start, end = _lines_of(inner, text)
     if text[start : _start(inner)].strip():
         return  # in braces
-    for outer in [part for part in outside if part is not None][:-3:-1]:
+    for outer in entries[-2:-4:-1]:
         first, last = _lines_of(outer, text)
         columns = inner.key.span.column - outer.key.span.column
         moved = re.sub(rf"(?m)^ {{{columns}}}", "", text[start:end])
@@ -443,13 +446,10 @@ def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
 def _moved_states(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
     """The lines of the innermost state with another indentation: that of the states around its
     container if it is the last one in that, and that of the states of the container before it."""
-    lists = [
-        pair for pair in pairwise(path) if isinstance(pair[0], Seq) and pair[1] in pair[0].items
-    ]
+    lists = [(around, part) for around, part in pairwise(path) if isinstance(around, Seq)]
     if not lists:
         return
     items, state = lists[-1]
-    assert isinstance(items, Seq)
     at = next(number for number, each in enumerate(items.items) if each is state)
     others = [lists[-2][1]] if at + 1 == len(items.items) and len(lists) > 1 else []
     before = items.items[at - 1] if at > 0 else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import PATROL, reported
+from tests.repair.slips import slip
 
 GRAB = "transitions: {held: BOTH, slipped: LET_GO}"
 RULE = "outcome_map: {ready: {LIGHT: done, DRIVE: done}}"
@@ -38,10 +39,11 @@ def test_outcomes_of_two_branches_that_are_swapped() -> None:
     branches = "- LIGHT: {template: ScriptedState, outcomes: [done]}"
     assert branches in PATROL
     main = PATROL.replace(branches, branches.replace("done", "lit, dark")).replace(
-        RULE, "outcome_map: {ready: {LIGHT: done, DRIVE: lit}}"
+        RULE, "outcome_map: {ready: {LIGHT: lit, DRIVE: done}}"
     )
-    (found,) = (each for each in reported({"main.yml": main}) if each[0] == "SM403")
-    assert found == ("SM403", "done", "write `LIGHT: lit, DRIVE: done`")
+    found = slip({"main.yml": main}, "LIGHT: lit, DRIVE: done", "LIGHT: done, DRIVE: lit")
+    assert found.is_shown
+    assert found.is_restored
 
 
 def test_transitions_of_a_branch_are_one_finding() -> None:
