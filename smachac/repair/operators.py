@@ -333,9 +333,15 @@ def _near(word: str, text: Text) -> list[tuple[float, str]]:
     found = [
         (cost - 0.01 * min(text.counts[name], 9), name)
         for name, cost in ranked.items()
-        if name != word and not are_unlike(word, name)
+        if name != word and not are_unlike(word, name) and not _are_of_two_kinds(word, name)
     ]
     return sorted(found)[:MOST_NEAR]
+
+
+def _are_of_two_kinds(word: str, name: str) -> bool:
+    """Whether one of two names begins with a capital letter, as those of types and states do, and
+    the other one is not the same name without it."""
+    return word[0].isupper() != name[0].isupper() and word.casefold() != name.casefold()
 
 
 def _turned_pairs(path: list[Tree | Entry]) -> Iterator[Candidate]:
@@ -446,12 +452,16 @@ def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
 def _moved_states(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:
     """The lines of the innermost state with another indentation: that of the states around its
     container if it is the last one in that, and that of the states of the container before it."""
-    lists = [(around, part) for around, part in pairwise(path) if isinstance(around, Seq)]
+    lists = [
+        (around, part)
+        for around, part in pairwise(path)
+        if isinstance(around, Seq) and isinstance(part, Map)
+    ]
     if not lists:
         return
     items, state = lists[-1]
     at = next(number for number, each in enumerate(items.items) if each is state)
-    others = [lists[-2][1]] if at + 1 == len(items.items) and len(lists) > 1 else []
+    others: list[Tree] = [lists[-2][1]] if at + 1 == len(items.items) and len(lists) > 1 else []
     before = items.items[at - 1] if at > 0 else None
     fields = before.entries[0].value if isinstance(before, Map) and before.entries else None
     inner = fields.get("states") if isinstance(fields, Map) else None

@@ -206,11 +206,26 @@ def _proof(
         left = _marks(after.report)
         if unknown(after) > before or left - marks or left[_mark(item)] >= marks[_mark(item)]:
             continue
+        if _leaves_its_type(item, candidate, analysis.machine, after.machine):
+            continue
         if best is None or left.total() < best.left.total():
             best = Proof(item, candidate, left)
         if not left:
             break
     return best
+
+
+def _leaves_its_type(
+    item: Diagnostic, candidate: Candidate, before: Machine | None, after: Machine | None
+) -> bool:
+    """Whether a finding is gone because a script no longer uses a state type of the project: the
+    finding is in another file than the edits, and the files of that type are not read any more."""
+    if before is None or after is None:
+        return False
+    if any(edit.span.source.name == item.span.source.name for edit in candidate.repair.edits):
+        return False
+    left = before.state_types.keys() - after.state_types.keys()
+    return any(not before.state_types[name].built_in for name in left)
 
 
 def _proposals(item: Diagnostic, around: Around) -> Sequence[Candidate]:
