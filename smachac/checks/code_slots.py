@@ -612,9 +612,9 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
             continue
         if facts.reads and not swapped(facts.parameters, slot.arguments):  # SM317
             calls_of.setdefault(slot.code.text, []).append(call)
-    for used in calls_of.values():
-        known = {key.name for _, node, _, _ in used for key in (*node.inputs, *node.outputs)}
-        path, node, slot, facts = used[0]
+    for places in calls_of.values():
+        known = {key.name for _, node, _, _ in places for key in (*node.inputs, *node.outputs)}
+        path, node, slot, facts = places[0]
         used = {word.text for word in facts.reads}
         guess = guesser(key.name for key in node.inputs if key.name not in used)
         for word in {each.text: each for each in reversed(facts.reads)}.values():
