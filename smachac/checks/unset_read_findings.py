@@ -81,7 +81,7 @@ def unset_read(
         elif unread is not None:
             help, related = unread.help, other_place(unread.place, f"nothing reads `{unread.key}`")
         elif fitting:
-            help = " or ".join(added_remapping(reader.node, reader.key, key) for key in fitting)
+            help = ", or ".join(added_remapping(reader.node, reader.key, key) for key in fitting)
         related += _item_place(scope.container, reader.node)
     return Finding(
         span=reader.span,
@@ -111,22 +111,25 @@ MOST_PROPOSED = 3
 
 def _fitting_keys(missing: Missing, witness: Witness, types: Types) -> list[str]:
     """The keys that a state can read in place of a key of its interface which nothing sets: those
-    that nothing reads and that can have its type, and those that are known to have it. The search
-    itself proposes near names."""
+    that are known to have its type, or else those that nothing reads and that can have it. The
+    search itself proposes near names."""
     scope, reader = missing.scope, witness.reader
     declared = next((key for key in reader.node.inputs if key.name == missing.key), None)
     if declared is None or declared.span.source is reader.node.span.source:
         return []
     near, own = guesser([missing.key]), outer_inputs(reader.node)
     wanted = types.inputs.get((reader.path, reader.key), ANY)
-    found = []
+    if witness.inner is not None and is_open(wanted):
+        wanted = types.inputs.get((witness.inner.path, witness.inner.key), ANY)
+    known, unread = [], []
     for key in sorted(scope.uses.provided.difference(own)):
-        given = types.keys.get((scope.path, key), ANY)
-        is_known = not is_open(given) and not is_open(wanted)
-        is_unread = key not in scope.uses.read and key not in scope.outputs
-        is_meant = near(key) is None if is_unread else is_known
-        if is_meant and may_be(types, scope, key, wanted):
-            found.append(key)
+        if not may_be(types, scope, key, wanted):
+            continue
+        if not is_open(wanted) and not is_open(types.keys.get((scope.path, key), ANY)):
+            known.append(key)
+        elif key not in scope.uses.read and key not in scope.outputs and near(key) is None:
+            unread.append(key)
+    found = known or unread
     return found if len(found) <= MOST_PROPOSED else []
 
 
