@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
@@ -21,6 +21,7 @@ from smachac.frontend.suppressions import Suppression
 from smachac.frontend.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outer_inputs, outer_outputs
+from smachac.records import dataclass, field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

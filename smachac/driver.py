@@ -6,7 +6,7 @@ Every command and the public API pass through these functions. Only this module 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -36,6 +36,7 @@ from smachac.frontend.script import Script
 from smachac.frontend.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
+from smachac.records import dataclass, field
 from smachac.targets import BuildContext, Files, Target, errors, load_target
 from smachac.targets.hiding_files import hiding_files
 from smachac.targets.interface_check import (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
@@ -14,6 +13,7 @@ from smachac.diagnostics.diagnostic import Finding, Problem, Report, Severity, p
 from smachac.ir.leaf import key_names, variable_of
 from smachac.ir.nodes import Data, Leaf, Machine, Node, is_number
 from smachac.ir.traversal import remapping
+from smachac.records import dataclass
 
 Numbers: TypeAlias = "list[Numbers] | float"
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
+from smachac.records import dataclass
 
 LONGEST = 200_000
 """The length of the longest header that is read, in characters."""

@@ -18,7 +18,6 @@ from smachac.frontend.script import Keys, Pairs, Rules
 from smachac.frontend.values import as_value
 from smachac.frontend.yaml_errors import JOINED, spaced
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong, known_wrong
-from smachac.ir.makers import make_outcome
 from smachac.ir.nodes import Outcome, Preset, Value
 from smachac.ir.types import ANY, parse_type
 
@@ -279,7 +278,7 @@ def as_outcomes(tree: Tree, report: Report) -> tuple[Outcome, ...]:
     """Outcomes, each once: `[a, b]`, or with what they mean, `{a: {}, b: {failure: true}}`."""
     if not isinstance(tree, Map):
         words = as_names(tree, report, "outcomes")
-        return tuple([make_outcome(name=word.text, span=word.span) for word in words])
+        return tuple([Outcome(name=word.text, span=word.span) for word in words])
     if _is_list_in_braces(tree):
         return tuple(Outcome(name=each.text, span=each.span)
                      for each in _listed(tree, "outcomes", report))  # fmt: skip

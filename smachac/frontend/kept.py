@@ -9,7 +9,7 @@ kept that has a finding.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Report
@@ -21,6 +21,7 @@ from smachac.frontend.state_types import find_state_type
 from smachac.frontend.unused import Uses
 from smachac.frontend.yaml_tree import Entry
 from smachac.ir.nodes import Preset, StateType
+from smachac.records import dataclass, field
 
 Answers: TypeAlias = "list[object]"
 """The answers of a library: texts, each equal to itself alone, and names of files."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -13,6 +12,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import Tree, parse
+from smachac.records import dataclass, field
 from smachac.robots.files import Packages
 from smachac.robots.xacro_files import EXPAND, XacroError
 

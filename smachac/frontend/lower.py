@@ -15,7 +15,6 @@ from smachac.frontend.desugar import desugared
 from smachac.frontend.script import ANY_OUTCOME, ERROR, Keys, Pairs, Script, State
 from smachac.ir import nodes
 from smachac.ir.graph import is_unread
-from smachac.ir.makers import make_key, make_leaf, make_outcome, make_transition
 from smachac.ir.nodes import (
     Concurrence,
     Condition,
@@ -103,7 +102,7 @@ def _keys(
     keys = {key.name: key for key in known}
     for word, type_ in listed:
         declared = keys.get(word.text)
-        keys[word.text] = make_key(
+        keys[word.text] = Key(
             name=word.text,
             type=type_ or (declared.type if declared else ANY),
             doc=declared.doc if declared else "",
@@ -138,7 +137,7 @@ def _interface(state: State) -> dict[str, Any]:
         ),
         "transitions": tuple(
             [
-                make_transition(
+                Transition(
                     outcome=key.text, target=target.text, span=key.span, target_span=target.span
                 )
                 for key, target in state.transitions
@@ -194,7 +193,7 @@ def _leaf(state: State) -> Leaf:
         declared = outcomes.setdefault(given.name, given)
         if given.failure is not None:
             outcomes[given.name] = replace(declared, failure=given.failure)
-    leaf = make_leaf(
+    leaf = Leaf(
         **_interface(state),
         outcomes=tuple(outcomes.values()),
         variables=(*state.variables, *_defaults(state)) if type_.variables else state.variables,
@@ -240,7 +239,7 @@ def _given_outcomes(state: State) -> list[Outcome]:
 
 
 def _outcome(word: Word) -> Outcome:
-    return make_outcome(name=word.text, span=word.span)
+    return Outcome(name=word.text, span=word.span)
 
 
 def _defaults(state: State) -> Iterable[Variable]:
@@ -370,7 +369,7 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
         return child
     own = {transition.outcome for transition in child.transitions}
     implied = [
-        make_transition(outcome=name, target=name, origin="implicit", span=child.span)
+        Transition(outcome=name, target=name, origin="implicit", span=child.span)
         for name in names
         if name not in own
     ]

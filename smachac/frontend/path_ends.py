@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from smachac.frontend.python_modules import Names
 from smachac.ir.code_slips import texts_of
+from smachac.records import dataclass
 
 _STOPS = ("abort", "assert_never", "exit", "_exit", "fail", "quit")
 """Functions that do not return, by their usual names: `sys.exit()`, `self.fail()`."""

@@ -6,10 +6,10 @@ Where a name can have another value, because the module changes it, the answer i
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
 
 from smachac.frontend.loader import Library
 from smachac.frontend.python_modules import Module, constant, find_class, names_of
+from smachac.records import dataclass
 
 MUTATORS = frozenset(["clear", "pop", "popitem", "setdefault", "update"])
 """The methods that change a dictionary."""

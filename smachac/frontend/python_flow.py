@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from smachac.diagnostics.source import Span, Word
 from smachac.frontend.loader import Library
@@ -28,6 +28,7 @@ from smachac.frontend.python_modules import Module, OwnClass, compared, constant
 from smachac.frontend.python_source import PythonText, name_span
 from smachac.frontend.skipped_writes import Paths, SkippedWrites
 from smachac.ir.class_facts import Ending
+from smachac.records import dataclass
 
 NONE: frozenset[str] = frozenset()
 

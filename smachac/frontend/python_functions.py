@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
+
+from smachac.records import dataclass
 
 WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
 """Exceptions that a missing attribute raises."""

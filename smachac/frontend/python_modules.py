@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, TypeAlias, get_args
 
@@ -17,6 +16,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
 from smachac.frontend.python_source import PythonText, python_text, syntax_error
 from smachac.ir.class_facts import ClassFault
+from smachac.records import dataclass
 
 MOST_STEPS = 10
 """The most imports, and the most base classes, that are followed."""

@@ -9,11 +9,11 @@ from __future__ import annotations
 import ast
 import re
 import warnings
-from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.jinja_tags import meta_block, replaced, tags
 from smachac.ir.python_code import parse_module
+from smachac.records import dataclass
 
 ASSIGNED = "Maybe you meant '==' instead of '='?"
 """The end of the message of Python for `=` in a comparison."""

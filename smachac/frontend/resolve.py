@@ -7,7 +7,7 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import PurePath
 from typing import Literal
@@ -92,6 +92,7 @@ from smachac.frontend.yaml_tree import (
     known_wrong,
 )
 from smachac.ir.nodes import FixedParam, Preset, StateType
+from smachac.records import dataclass, field
 
 MAX_STATES = 1_000_000
 """The most states of a script with its sub-scripts."""

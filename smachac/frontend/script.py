@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import Source, Span, Word
@@ -26,6 +25,7 @@ from smachac.ir.nodes import (
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import Type
+from smachac.records import dataclass, field
 
 Pairs: TypeAlias = tuple[tuple[Word, Word], ...]
 """Names with names: transitions, remapping."""

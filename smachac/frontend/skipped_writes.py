@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
 
 from smachac.diagnostics.source import Word
 from smachac.frontend.path_ends import PathEnds
+from smachac.records import dataclass, field
 
 NONE: frozenset[str] = frozenset()
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Span, Word
@@ -17,6 +16,7 @@ from smachac.frontend.values import as_value
 from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Key, Outcome, StateKind, Value
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b")
 _BODY_TEXT = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)

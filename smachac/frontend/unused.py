@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Report, has_errors
@@ -13,6 +12,7 @@ from smachac.frontend.params import look_ups
 from smachac.frontend.type_annotations import TYPED, type_words, words_of
 from smachac.frontend.yaml_tree import Entry, Map, Scalar, Tree
 from smachac.ir.nodes import StateType, Unused
+from smachac.records import dataclass, field
 
 Mark: TypeAlias = tuple[int, int, int]
 """A position in the reading of a script: look-ups, unknown uses and diagnostics so far."""

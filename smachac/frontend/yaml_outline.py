@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
 
 from smachac.frontend.schema import CONTAINERS, INTERFACE_FIELDS, LONG, REQUIRED, VARIABLES
+from smachac.records import dataclass, field
 
 
 class Row(NamedTuple):

@@ -12,7 +12,6 @@ from __future__ import annotations
 import gc
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
@@ -28,6 +27,7 @@ from smachac.frontend.yaml_errors import (
     syntax_error,
     too_deep_at,
 )
+from smachac.records import dataclass, field
 from smachac.robots.core_schema import WORDS, value_of
 
 MAX_CHARACTERS = 10_000_000

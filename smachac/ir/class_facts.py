@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.function_facts import ArgumentUses
 from smachac.ir.message_types import PARTS, DefinitionKind
+from smachac.records import dataclass
 
 FaultKind = Literal[
     "no module",

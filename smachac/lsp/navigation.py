@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
 
 from smachac.diagnostics.source import Source, Span
@@ -14,6 +13,7 @@ from smachac.ir.nodes import Machine, StateType
 from smachac.ir.script_paths import ScriptPath, walk_script
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import FIELD, ITEM, KEY, STATE, VALUE, Body, Place
+from smachac.records import dataclass
 from smachac.refactor.cst import UnsupportedYamlError
 from smachac.refactor.editor import RefusedError, ScriptEditor
 from smachac.refactor.refactorings import RENAME

@@ -10,7 +10,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from smachac.analysis.context import Context
@@ -30,6 +30,7 @@ from smachac.frontend.yaml_tree import Map, Seq, Tree
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.lsp.repair import repaired
+from smachac.records import dataclass
 
 
 @contextmanager

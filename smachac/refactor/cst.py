@@ -7,12 +7,12 @@ comment belongs to an item: `leading` above it, `trailing` behind it, `tail` bel
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any, TypeAlias
 
 from smachac.diagnostics.source import Source
 from smachac.frontend.yaml_tree import events
+from smachac.records import dataclass, field
 
 _COMMENT = re.compile(r"(?:^|(?<=\s))#.*")
 _BLOCK = re.compile(r"(?:[&!]\S*\s+)*[|>]")

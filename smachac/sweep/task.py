@@ -7,7 +7,6 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,6 +20,7 @@ from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Checked, Leaf
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import walk
+from smachac.records import dataclass, field
 from smachac.robots.faults import Fault
 from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.sweep.play import FailedError, play

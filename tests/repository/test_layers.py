@@ -11,7 +11,7 @@ import networkx as nx
 import pytest
 
 LAYERS = (
-    ("robots",),
+    ("robots", "records"),
     ("sim", "runtime", "grammars", "diagnostics", "version"),
     ("ir",),
     ("analysis", "interpreter", "frontend"),
@@ -29,7 +29,7 @@ LAYERS = (
 
 PACKAGES: Mapping[str, frozenset[str]] = {
     "runtime": frozenset(
-        {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs"}
+        {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs", "yaml"}
     ),
     "robots": frozenset({"yaml", "xacro"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),

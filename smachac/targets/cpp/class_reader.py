@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
@@ -18,6 +18,7 @@ from smachac.frontend.other_modules import file_with
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.nodes import Key, StateType
 from smachac.ir.types import STRUCTS, unknown_words
+from smachac.records import dataclass
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.member_faults import member_faults, signature_faults
 from smachac.targets.cpp.types import UnportableError
