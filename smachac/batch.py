@@ -17,8 +17,8 @@ from smachac.driver import CODES, Analysis, MachineCheck, Previous, analyse, rea
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
-from smachac.frontend.suppressions import Suppression
-from smachac.frontend.yaml_tree import Seq
+from smachac.frontend.text.suppressions import Suppression
+from smachac.frontend.text.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outer_inputs, outer_outputs
 from smachac.records import dataclass, field

@@ -28,12 +28,12 @@ from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
-from smachac.frontend.kept import Kept
 from smachac.frontend.loader import ROS_VERSIONS, Library
-from smachac.frontend.lower import KeptNodes, lower
-from smachac.frontend.resolve import resolve
-from smachac.frontend.script import Script
-from smachac.frontend.suppressions import Suppression, suppress
+from smachac.frontend.resolved_script import Script
+from smachac.frontend.script.kept import Kept
+from smachac.frontend.script.lower import KeptNodes, lower
+from smachac.frontend.script.resolve import resolve
+from smachac.frontend.text.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.records import dataclass, field

@@ -42,13 +42,20 @@ def _with_options(options: dict[str, bool]) -> Callable[[type], type]:
         missing = methods.keys() - own
         new: Any = dataclasses.dataclass(cls, repr=False, eq=False, **options)
         names = [field.name for field in dataclasses.fields(new) if field.compare]
-        # Of one name, attrgetter returns the value itself; of the same name twice, a tuple.
-        new._compared = attrgetter(*(names if len(names) > 1 else 2 * (names or ["__class__"])))
+        new._compared = _values_of(names)
         for name in missing:
             setattr(new, name, methods[name])
         return new  # type: ignore[no-any-return]
 
     return made
+
+
+def _values_of(names: list[str]) -> Any:
+    """A function of an object that returns the tuple of these attributes, as a static method."""
+    if len(names) > 1:
+        return staticmethod(attrgetter(*names))
+    # attrgetter returns no tuple of a single name.
+    return staticmethod(lambda item: tuple([getattr(item, name) for name in names]))
 
 
 def _eq(self: Any, other: Any) -> object:

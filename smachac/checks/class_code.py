@@ -1,6 +1,6 @@
 """Rules on the code of state types: the Python class of a type against its interface.
 
-The facts about a class are read from its text (frontend/class_reader.py); it is never run. A fault
+The facts about a class are read from its text (pysource/class_reader.py); it is never run. A fault
 of a class is reported once, with the first state of its type as a related place.
 """
 

@@ -15,7 +15,7 @@ from smachac.checks.edits import listing
 from smachac.checks.messages import calls, did_you_mean, other_place
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.unquoted import is_name
+from smachac.frontend.text.unquoted import is_name
 
 
 def empty_remap_findings(context: Context) -> Iterator[Finding]:

@@ -14,7 +14,7 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, words_of
-from smachac.frontend.yaml_tree import Map, Seq, parse
+from smachac.frontend.text.yaml_tree import Map, Seq, parse
 from smachac.ir.class_facts import ClassFacts, Ending
 from smachac.ir.nodes import Leaf, StateType
 

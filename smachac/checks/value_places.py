@@ -23,7 +23,7 @@ from smachac.analysis.type_lattice import (
     present,
 )
 from smachac.diagnostics.source import Source, Span
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.code_places import attribute_place, node_place, python_tree
 from smachac.ir.expressions import print_expression
 from smachac.ir.nodes import Data, Expression, Struct

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.frontend.yaml_tree import Map, Scalar, Seq
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq
 from smachac.ir.nodes import Leaf
 from smachac.ir.traversal import containers
 from smachac.ir.types import ANY

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from smachac.frontend import schema
 from smachac.frontend.schema import CONTAINERS, FieldOwner
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.records import dataclass
 
 

@@ -9,8 +9,8 @@ from pathlib import PurePath
 
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES
-from smachac.frontend.file_kinds import FileKind
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.frontend.text.file_kinds import FileKind
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.lsp.repair import with_mark
 from smachac.lsp.session import View
 from smachac.lsp.word import Completion

@@ -14,7 +14,7 @@ from smachac.diagnostics.diagnostic import has_errors
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse_script, compile_script
 from smachac.frontend.files import module_folders
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.yaml_tree import parse
 from smachac.interpreter.interpreter import MAX_STEPS
 from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Checked, Leaf

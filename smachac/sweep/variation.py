@@ -14,7 +14,7 @@ from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.records import dataclass
 from smachac.robots.scene import AXES
 

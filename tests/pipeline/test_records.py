@@ -100,3 +100,22 @@ def test_methods_are_shared() -> None:
     """They are what takes the time of `dataclasses`: one function for each class and method."""
     assert vars(_Named)["__eq__"] is vars(_Empty)["__eq__"]
     assert vars(_Named)["__hash__"] is vars(_Empty)["__hash__"]
+
+
+@records.dataclass(slots=True, unsafe_hash=True)
+class _Link:
+    inner: Any
+
+
+def test_a_deep_value_takes_linear_time() -> None:
+    """A field is compared and hashed once: twice would be 2 to the power of the depth."""
+    one, other = (deep(200) for _ in range(2))
+    assert one == other
+    assert hash(one) == hash(other)
+
+
+def deep(levels: int) -> _Link:
+    link = _Link(None)
+    for _ in range(levels):
+        link = _Link(link)
+    return link

@@ -14,6 +14,7 @@ LAYERS = (
     ("robots", "records"),
     ("sim", "runtime", "grammars", "diagnostics", "version"),
     ("ir",),
+    ("pysource",),
     ("analysis", "interpreter", "frontend"),
     ("targets", "checks"),
     ("driver", "report"),
@@ -180,11 +181,11 @@ def test_our_modules_load_no_heavy_package_when_imported(ours: Tree) -> None:
     [
         ("smachac/commands/cli.py", "import smachac\nfrom smachac import driver, load"),
         ("smachac/targets/__init__.py", "from smachac.version import __version__"),
-        ("smachac/driver.py", "from smachac.frontend.lower import lower"),
+        ("smachac/driver.py", "from smachac.frontend.script.lower import lower"),
         ("smachac/ir/graph.py", "from .nodes import Leaf\nfrom .. import diagnostics"),
         ("smachac/targets/runner.py", "import smachac.sim.world"),
         ("smachac/sim/world.py", "def step():\n    import numpy, time"),
-        ("smachac/frontend/lower.py", "from smachac.frontend.resolve import Script"),
+        ("smachac/frontend/script/lower.py", "from smachac.frontend.script.resolve import Script"),
     ],
 )
 def test_imports_from_lower_layers_are_fine(path: str, text: str) -> None:
@@ -211,13 +212,13 @@ def test_imports_from_lower_layers_are_fine(path: str, text: str) -> None:
         ),
         ("smachac/driver.py", "from smachac import load", "1: driver > __init__"),
         (
-            "smachac/frontend/lower.py",
+            "smachac/frontend/script/lower.py",
             "import importlib\nimportlib.import_module('smachac.checks')",
             "2: frontend > checks",
         ),
         ("smachac/runtime/trace.py", "from ..sim import world", "1: runtime > sim"),
         ("smachac/runtime/trace.py", "import smachac.diagnostics", "1: runtime > diagnostics"),
-        ("smachac/frontend/lower.py", "import smachac.novelty", "1: frontend > novelty"),
+        ("smachac/frontend/script/lower.py", "import smachac.novelty", "1: frontend > novelty"),
     ],
 )
 def test_imports_against_the_order_are_found(path: str, text: str, fault: str) -> None:

@@ -12,7 +12,7 @@ from typing import Literal
 
 from smachac.diagnostics.source import Span
 from smachac.frontend.schema import LONG
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.records import dataclass
 from smachac.targets.python.smacha_context import is_dotted_or_call
 

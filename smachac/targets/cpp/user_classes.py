@@ -5,7 +5,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Iterable, Sequence
 
-from smachac.frontend.unquoted import parameters
+from smachac.frontend.text.unquoted import parameters
 from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.traversal import PREEMPTED
 from smachac.ir.types import Type

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.cpp_text import without_literals
+from smachac.pysource.cpp_text import without_literals
 from smachac.records import dataclass, field
 
 _TOKEN = re.compile(
