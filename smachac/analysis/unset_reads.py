@@ -10,14 +10,13 @@ from typing import Literal, NamedTuple
 from smachac.analysis.accesses import NOTHING
 from smachac.analysis.def_use import Reached, Search, around, search, way_to
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope, child_writes
-from smachac.analysis.uses import place_of
 from smachac.diagnostics.diagnostic import PathStep
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Node
 from smachac.ir.script_paths import name_in_script
-from smachac.ir.traversal import inputs_from, outcome_names, remapping
+from smachac.ir.traversal import outcome_names, remapping
 from smachac.records import dataclass
 
 MOST_LEVELS = 50
@@ -279,10 +278,10 @@ def reader_at(scope: UserdataScope, vertex: Vertex, key: str) -> Reader:
         span = node.span if span.source is NOWHERE.source else span
         return Reader(scope.path, node, key, span, f"`{node.name}` iterates over `{key}`")
     node = scope.children[vertex]
-    own = next(iter(inputs_from(node, key)), None)
-    span = node.span if own is None else place_of(node, own)
+    use = scope.uses.by_reader.get((vertex, key))
+    span = node.span if use is None else use.span
     called = f"`{key}`"
-    name = key if own is None else own.name
+    name = key if use is None else use.key
     if name != key:
         called = f"`{name}` (`{key}` in {container_name(scope, span)})"
     words = f"`{name_in_script(node)}` reads {called}"

@@ -82,6 +82,11 @@ class KeyUses:
         return found
 
     @cached_property
+    def by_reader(self) -> Mapping[tuple[str, str], Use]:
+        """The uses that read a key, by the name of the state and the key of the container."""
+        return {(use.node.name, use.outer): use for use in reversed(self.all) if use.reads}
+
+    @cached_property
     def read(self) -> frozenset[str]:
         """The keys that something in the container reads."""
         return frozenset([use.outer for use in self.all if use.reads])

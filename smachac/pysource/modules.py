@@ -123,8 +123,9 @@ class Module:
     @cached_property
     def definitions(self) -> frozenset[str]:
         """The names of functions and classes anywhere."""
-        kinds = ast.FunctionDef | ast.ClassDef
-        return frozenset(node.name for node in self.nodes if isinstance(node, kinds))
+        return frozenset(
+            node.name for node in self.nodes if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        )
 
     @cached_property
     def rebound(self) -> frozenset[str]:

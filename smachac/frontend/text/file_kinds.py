@@ -54,5 +54,7 @@ def kind_of_tree(tree: Tree | None) -> FileKind:
     if not _INTERFACE_FIELDS.isdisjoint(names):
         return "interface"
     if {"outcomes", "o"}.isdisjoint(names):
-        return next((_DATA_FIELDS[name] for name in names if name in _DATA_FIELDS), "script")
+        for name in names:
+            if name in _DATA_FIELDS:
+                return _DATA_FIELDS[name]
     return "script"
