@@ -96,6 +96,7 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
         results.append(("`default_outcome` is", container.default_outcome, container.default_span))
     declared = frozenset(outcome_names(container))
     guess = places_of(container)
+    transposed = transposed_rules(container)
     inverted = inverted_rules(container)
     if inverted:
         yield _inverted(path, container, inverted)
@@ -107,21 +108,35 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
                 span=span,
                 message=f"{source} `{name}`, which is not an outcome of `{container.name}`",
                 arguments=(own_name(container, span), name),
-                help=did_you_mean(meant if meant in declared else None) or _added(container, name),
+                help=transposed.get(name)
+                or did_you_mean(meant if meant in declared else None)
+                or _added(container, name),
                 related=calls(container, span),
                 node=path,
             )
 
 
 def _added(container: Container, name: str) -> str:
-    """The help that adds an outcome to a container, with a transition where it has others."""
+    """The help that adds an outcome to a container, and to its transitions where it has some."""
     help = f"add `{name}` to the outcomes of `{container.name}`"
-    target = next((step.target for step in reversed(container.transitions) if step.target), "")
-    return (
-        f"{help}, and `{name}: {target}` to its transitions"
-        if target and name != PREEMPTED
-        else help
-    )
+    return f"{help} and to its transitions" if container.transitions else help
+
+
+def transposed_rules(container: Concurrence) -> dict[str, str]:
+    """The rules of an outcome map in which the outcome of the concurrence and that of the states
+    have changed places, by the outcome that they begin with, and how they are written right."""
+    declared = frozenset(outcome_names(container))
+    children = {child.name: outcome_names(child) for child in container.children}
+    found = {}
+    for entry in container.rules:
+        results = {part.outcome for part in entry.when}
+        if entry.outcome in declared or len(results) != 1 or not results <= declared:
+            continue
+        if all(entry.outcome in children.get(part.child, ()) for part in entry.when):
+            states = ", ".join(f"{part.child}: {entry.outcome}" for part in entry.when)
+            found[entry.outcome] = f"write `{results.pop()}: {{{states}}}`: a rule begins with an" \
+                f" outcome of `{container.name}`"
+    return found
 
 
 class Inverted(NamedTuple):
