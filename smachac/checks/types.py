@@ -161,12 +161,18 @@ def _without_items(context: Context) -> Iterator[Finding]:
             continue
         origins = {alike[0].origin: None for alike in cell.flows.values()}
         type_ = cell.holds or cell.declared
+        cells = {other.name: context.types.cells.get((path, other.name))
+                 for other in container.inputs}  # fmt: skip
+        lists = [name for name, other in cells.items()
+                 if other is not None and kinds(other.holds or other.declared) == {"list"}]  # fmt: skip
         yield Finding(
             span=container.items_span,
             message=f"`{container.name}` needs a list of items in `{key}`, but `{key}` is"
             f" {in_words(type_)}",
             arguments=(key, str(widened(type_)), "list"),
-            help=f"write a list for `{key}`, such as `[1, 2, 3]`",
+            help=f"did you mean `{lists[0]}`, the only list here?"
+            if len(lists) == 1
+            else f"write a list for `{key}`, such as `[1, 2, 3]`",
             related=(
                 *(place for each in origins for place in other_place(each.span, written(each))),
                 *calls(container, container.items_span),
