@@ -30,7 +30,7 @@ from smachac.ir.nodes import (
     OutcomeRule,
     Transition,
 )
-from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, failures_of, successes
+from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, failures_of, is_failure, successes
 from smachac.ir.traversal import outcome_names
 
 
@@ -117,9 +117,14 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
 
 
 def _added(container: Container, name: str) -> str:
-    """The help that adds an outcome to a container, and to its transitions where it has some."""
+    """The help that adds an outcome to a container, and to its transitions where it has some. No
+    target is chosen but a failure."""
     help = f"add `{name}` to the outcomes of `{container.name}`"
-    return f"{help} and to its transitions" if container.transitions else help
+    target = next((step.target for step in reversed(container.transitions) if step.target), "")
+    if name == PREEMPTED or not target:
+        return help
+    transition = f", and `{name}: {target}` to its transitions"
+    return f"{help}{transition if is_failure(target) else ' and to its transitions'}"
 
 
 def transposed_rules(container: Concurrence) -> dict[str, str]:

@@ -539,7 +539,9 @@ def _help(clash: Clash) -> str:
     if given.name == "none":
         return f"give it a value, or declare it as `{wanted}?` where it is read"
     if given.name == "optional" and fits(inside(given), wanted):
-        return f"declare it as `{given}` where it is read, because it can be absent"
+        cell = clash.flow.origin.cell
+        first = f"set `{cell.key}` on each path to the read, or " if cell.role == "scope" else ""
+        return f"{first}declare it as `{given}` where it is read, because it can be absent"
     if given.name == "float" and wanted.name == "int":
         value = clash.flow.origin.value
         if isinstance(value, float) and math.isfinite(value):

@@ -431,7 +431,7 @@ states:
             "        gas: {GAS: methane, CAMERA: clear}\n",
             "",
             "write a `default_outcome` for all combinations without a rule, or add a rule, as in"
-            " `gas: {CAMERA: clear, GAS: methane}`",
+            " `gas: {GAS: methane}`",
         ),
         (
             "blind",
