@@ -471,7 +471,8 @@ def _covering(node: Concurrence, needed: Mapping[str, str]) -> str:
         f"remove `{left[0].child}: {left[0].outcome}` from the rule for `{entry.outcome}`"
         for entry in node.rules
         if needed
-        and len(left := [part for part in entry.when if needed.get(part.child) != part.outcome]) == 1
+        and len(left := [part for part in entry.when if needed.get(part.child) != part.outcome])
+        == 1
         and len(entry.when) > 1
     ]
     if wider and not bad:

@@ -17,8 +17,8 @@ from smachac.analysis.message_code import (
     message_code,
     nested_messages,
 )
-from smachac.analysis.type_lattice import fits, present
 from smachac.analysis.type_inference import TypeFlow
+from smachac.analysis.type_lattice import fits, present
 from smachac.checks.class_messages import faults_in_classes
 from smachac.checks.edits import listing
 from smachac.checks.message_calls import CHECK_FIELDS, call_faults, message_calls

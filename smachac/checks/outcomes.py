@@ -30,7 +30,15 @@ from smachac.ir.nodes import (
     OutcomeRule,
     Transition,
 )
-from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, failures_of, is_failure, successes
+from smachac.ir.outcome_names import (
+    GOOD,
+    PREEMPTED,
+    SUCCESSES,
+    fails,
+    failures_of,
+    is_failure,
+    successes,
+)
 from smachac.ir.traversal import outcome_names
 
 
@@ -139,8 +147,10 @@ def transposed_rules(container: Concurrence) -> dict[str, str]:
             continue
         if all(entry.outcome in children.get(part.child, ()) for part in entry.when):
             states = ", ".join(f"{part.child}: {entry.outcome}" for part in entry.when)
-            found[entry.outcome] = f"write `{results.pop()}: {{{states}}}`: a rule begins with an" \
+            found[entry.outcome] = (
+                f"write `{results.pop()}: {{{states}}}`: a rule begins with an"
                 f" outcome of `{container.name}`"
+            )
     return found
 
 
@@ -320,10 +330,26 @@ def _targets(
             free.remove(choice)
     for outcome in rest[:MOST_EXPLAINED]:
         if outcome not in found:
-            found[outcome] = _target(container, child, outcome, outcome in sure)
+            is_good = outcome in sure or (good == [outcome] and _is_only_good(child, outcome))
+            found[outcome] = _target(container, child, outcome, is_good)
     last = found[rest[:MOST_EXPLAINED][-1]]
     found |= dict.fromkeys(rest[MOST_EXPLAINED:], last)
     return {name: found[name] for name in rest}
+
+
+def _is_only_good(child: Node, outcome: str) -> bool:
+    """Whether all other outcomes of a state are failures or a stop, and one is a failure."""
+    others = [name for name in outcome_names(child) if name not in (outcome, PREEMPTED)]
+    return bool(others) and all(fails(child, name) for name in others)
+
+
+def _before_detour(container: Linear, child: Node, target: str) -> str:
+    """The only state that leads to a state, if another of its outcomes leads to `target`, which is
+    meant for a success of that state: it may have to run again. Empty without one."""
+    before = {each.name: {step.target for step in each.transitions} for each in container.children
+              if each is not child and any(step.target == child.name for step in each.transitions)}  # fmt: skip
+    (name, targets), *more = [*before.items()] or [("", set[str]())]
+    return name if not more and target in targets else ""
 
 
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
@@ -482,6 +508,8 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         )
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
+    again = _before_detour(container, child, target) if not fails(child, outcome.name) else ""
+    again = f", or `{outcome.name}: {again}` to run `{again}` again" if again else ""
     field = _field_that_adds(child, outcome.name)
     origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
     why = ""
@@ -494,7 +522,7 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{outcome.name}: {target}` to the transitions of `{child.name}`",
+        help=f"{why}add `{outcome.name}: {target}` to the transitions of `{child.name}`{again}",
         related=(
             *(other_place(outcome.span, origin) if inside else ()),
             *calls(child, child.span),

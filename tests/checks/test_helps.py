@@ -467,9 +467,7 @@ def test_no_outcome_is_chosen_for_a_combination_but_a_failure(
         ),
     ],
 )
-def test_a_transposed_rule_is_one_finding(
-    tmp_path: Path, old: str, new: str, help: str
-) -> None:
+def test_a_transposed_rule_is_one_finding(tmp_path: Path, old: str, new: str, help: str) -> None:
     report = _report(tmp_path, SENSE.replace(old, new))
     assert [item.help for item in report if item.code == "SM103"] == [help]
     assert "SM403" not in [item.code for item in report]
