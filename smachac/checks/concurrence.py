@@ -467,14 +467,12 @@ def _covering(node: Concurrence, needed: Mapping[str, str]) -> str:
         rule = f"outcome_map: {{OUTCOME: {{{rule}}}}}"
         return f"write rules for its outcomes, as in `{rule}`, and {default}"
     every = f"write {default} for all combinations without a rule"
-    wider = [
-        f"remove `{left[0].child}: {left[0].outcome}` from the rule for `{entry.outcome}`"
-        for entry in node.rules
-        if needed
-        and len(left := [part for part in entry.when if needed.get(part.child) != part.outcome])
-        == 1
-        and len(entry.when) > 1
-    ]
+    wider = []
+    for entry in node.rules if needed else ():
+        others = [part for part in entry.when if needed.get(part.child) != part.outcome]
+        if len(others) == 1 and len(entry.when) > 1:
+            condition = f"{others[0].child}: {others[0].outcome}"
+            wider.append(f"remove `{condition}` from the rule for `{entry.outcome}`")
     if wider and not bad:
         return f"{', or '.join(wider[:MOST_WIDENED])}; or {every}"
     free = _without_rule(node)

@@ -346,10 +346,13 @@ def _is_only_good(child: Node, outcome: str) -> bool:
 def _before_detour(container: Linear, child: Node, target: str) -> str:
     """The only state that leads to a state, if another of its outcomes leads to `target`, which is
     meant for a success of that state: it may have to run again. Empty without one."""
-    before = {each.name: {step.target for step in each.transitions} for each in container.children
-              if each is not child and any(step.target == child.name for step in each.transitions)}  # fmt: skip
-    (name, targets), *more = [*before.items()] or [("", set[str]())]
-    return name if not more and target in targets else ""
+    before = [
+        state for state in container.children
+        if state is not child and any(step.target == child.name for step in state.transitions)
+    ]  # fmt: skip
+    if len(before) != 1 or all(step.target != target for step in before[0].transitions):
+        return ""
+    return before[0].name
 
 
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:

@@ -161,10 +161,12 @@ def _without_items(context: Context) -> Iterator[Finding]:
             continue
         origins = {alike[0].origin: None for alike in cell.flows.values()}
         type_ = cell.holds or cell.declared
-        cells = {other.name: context.types.cells.get((path, other.name))
-                 for other in container.inputs}  # fmt: skip
-        lists = [name for name, other in cells.items()
-                 if other is not None and kinds(other.holds or other.declared) == {"list"}]  # fmt: skip
+        lists = [
+            name
+            for name in (each.name for each in container.inputs)
+            if (other := context.types.cells.get((path, name))) is not None
+            and kinds(other.holds or other.declared) == {"list"}
+        ]
         yield Finding(
             span=container.items_span,
             message=f"`{container.name}` needs a list of items in `{key}`, but `{key}` is"

@@ -237,8 +237,9 @@ def _wrong_counts(code: MethodCode) -> Iterator[ClassFault]:
             free = [name for name in by_name if name not in passed and name != "self"]
             near = guesser(free)(unknown[0]) or (free[0] if len(free) == 1 else None)
             keyword = next(each for each in call.keywords if each.arg == unknown[0])
-            at = module.text.span(keyword)
-            word = Word(unknown[0], Span(at.source, at.start, at.start + len(unknown[0])))
+            start = module.text.offset(keyword.lineno, keyword.col_offset)
+            place = Span(module.text.source, start, start + len(unknown[0]))
+            word = Word(unknown[0], place)
             yield ClassFault(kind="unknown keyword", name=word, near=near, owner=head)
             continue
         if len(call.args) > len(names) and taken.vararg is None:

@@ -297,8 +297,8 @@ _DECIMALS = re.compile(r"[0-9]+ ?[A-Za-zµ%]*")
 
 
 def number_before(word: Word) -> str:
-    """The digits before a comma in front of a word of digits, also with a unit: `0` in `{time: 0,5}`
-    and `{time: 0,5s}`, where YAML reads an entry `5`. Empty without them."""
+    """The digits before a comma in front of a word of digits, also with a unit: `0` in
+    `{time: 0,5s}`, where YAML reads an entry `5s`. Empty without them."""
     start = word.span.start
     text = word.span.source.text[max(0, start - _LONGEST_NUMBER) : start]
     before = text.removesuffix(",")
