@@ -22,7 +22,7 @@ from smachac.checks.timeouts import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
-from smachac.diagnostics.wording import both, either, listed
+from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, reachable, stopped_endings
 from smachac.ir.nodes import (
@@ -444,8 +444,8 @@ def _copied_target(container: Linear, wanted: str) -> str | None:
     if len(fitting) == 1 and (is_failure or (others and all(others))):
         return f"write `{fitting[0]}: {wanted}` in the transitions of `{child.name}`"
     return (
-        f"write `{wanted}` as the target of {either(outcomes)} of `{child.name}`, which both lead"
-        f" to `{target}`"
+        f"add a transition to `{wanted}`, for example in `{child.name}`, which leads"
+        f" {both(outcomes)} to `{target}`"
     )
 
 
