@@ -445,7 +445,7 @@ def _items(context: Context, path: str, name: str) -> Iterator[_Literal]:
     loop, node = (context.routes.nodes.get(each) for each in (around, path))
     if not isinstance(loop, nodes.Iterator) or not loop.items_key or node is None:
         return
-    if remapping(node).get(name) != loop.item_key:
+    if remapping(node)[name] != loop.item_key:
         return
     for flow, _, items in _flows(context, around, loop.items_key):
         for number, item in enumerate(items if isinstance(items, tuple) else ()):

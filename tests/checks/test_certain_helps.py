@@ -1,4 +1,4 @@
-"""Helps for slips of people: they name what is meant where that is certain, and choose nothing where
+"""Helps for slips of people: they name what is meant where it is certain, and choose nothing where
 it is not."""
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ initial: LOOK
          "write `picked: GOOD` in the transitions of `PICK`, or remove `GOOD`"),
         # Nothing else leads to BAD: nothing is chosen.
         ("picked: BAD, aborted: BAD", "seen: PICK, aborted: failed",
-         "add a transition to `GOOD`, for example in `PICK`, which leads `picked` and `aborted` to"
+         "add a transition to `GOOD`, for example in `PICK`, which leads `aborted` and `picked` to"
          " `BAD`, or remove `GOOD`"),
         # Two states have a copied target.
         ("picked: BAD, aborted: BAD", "seen: PICK, aborted: PICK",
