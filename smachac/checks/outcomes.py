@@ -355,6 +355,10 @@ def _before_detour(container: Linear, child: Node, target: str) -> str:
     return before[0].name
 
 
+UNDECIDED = "..."
+"""In a help in place of a target that is not certain."""
+
+
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
     """The target that an outcome probably needs: that of the other failures of the state, the state
     after a stop request, that of the same outcome of other states, a failure of the container or
@@ -378,8 +382,10 @@ def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str
         targets = [*names[names.index(child.name) + 1 :], *successes(container)]
     else:
         used = {step.target for each in container.children for step in each.transitions}
-        targets = [name for name in ends if name not in used and name != PREEMPTED]
-        targets += [*others, *failed]
+        unused = [name for name in ends if name not in used and name != PREEMPTED]
+        targets = [*(unused if len(unused) == 1 else ()), *others, *failed]
+        if not targets and len(ends) + len(names) > 2:
+            return UNDECIDED
     plain = [name for name in ends if name != PREEMPTED]
     return next(iter([*targets, *reversed(plain), *ends, *names]))
 
