@@ -7,7 +7,7 @@ import copy
 import json
 import math
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -417,7 +417,7 @@ def _not_found(name: str, machine: Machine, leaves: _Leaves) -> tuple[str, str |
     return f"there is no state `{name}`", did_you_mean(name, names)
 
 
-def _name_help(name: str, known: Sequence[str]) -> str | None:
+def _name_help(name: str, known: Collection[str]) -> str | None:
     """The known name that is meant, or all of them."""
     return did_you_mean(name, known) or (f"use one of {listed(known)}" if known else None)
 

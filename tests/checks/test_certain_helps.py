@@ -298,3 +298,43 @@ states:
       transitions: {{exhausted: failed, preempted: failed}}
 """
     assert helps({"main.yml": script}, "SM003") == [help]
+
+
+# --- containers
+
+SENSE = """\
+name: sm
+outcomes: [safe, gas]
+states:
+  - SENSE:
+      FIELDS
+      outcomes: [safe, gas]
+      transitions: {safe: safe, gas: gas}
+      states:
+        - CAMERA: {template: ScriptedState, outcomes: [clear, dusty]}
+        - GAS: {template: ScriptedState, outcomes: [clean, methane]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("fields", "kind", "field"),
+    [
+        ("outcome_map: {safe: {CAMERA: clear}}", "Concurrence", "outcome_map"),
+        ("default_outcome: gas\n      outcome_map: {safe: {CAMERA: clear}}", "Concurrence",
+         "default_outcome"),
+        ("connector_outcome: clear", "Sequence", "connector_outcome"),
+        ("it: [1, 2]", "Iterator", "it"),
+    ],
+)  # fmt: skip
+def test_a_container_without_a_template(fields: str, kind: str, field: str) -> None:
+    (help,) = helps({"main.yml": SENSE.replace("FIELDS", fields)}, "SM005")[:1]
+    assert help is not None
+    assert help.startswith(f"add `template: {kind}`: only a {kind} has `{field}`")
+
+
+def test_no_target_is_chosen_for_outcomes_of_unknown_meaning() -> None:
+    found = helps({"main.yml": SENSE.replace("FIELDS", "template: StateMachine")}, "SM104")
+    assert found == [
+        "write `transitions: {clear: GAS, dusty: ...}` in `CAMERA`",
+        "write `transitions: {clean: ..., methane: ...}` in `GAS`",
+    ]
