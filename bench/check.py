@@ -184,9 +184,9 @@ def phases(path: str) -> dict[str, float]:
     from smachac.diagnostics.severities import apply_severities
     from smachac.driver import CODES
     from smachac.frontend.files import disk_library, read_source
-    from smachac.frontend.lower import lower
-    from smachac.frontend.resolve import resolve
-    from smachac.frontend.suppressions import apply_suppressions, suppressions_in
+    from smachac.frontend.script.lower import lower
+    from smachac.frontend.script.resolve import resolve
+    from smachac.frontend.text.suppressions import apply_suppressions, suppressions_in
     from smachac.ir.recursion import deep_recursion
     from smachac.ir.traversal import walk
 

@@ -31,7 +31,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import build, check, read_machine
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library, memory_library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.targets.cpp import TARGET
 from smachac.targets.cpp.user_classes import interface_hash
 

@@ -14,7 +14,7 @@ from collections import Counter
 from pathlib import Path
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.lsp.completion import complete
 from smachac.lsp.place import FIELD, STATE, VALUE, Place, place_at
 from smachac.lsp.session import Session

@@ -23,6 +23,6 @@ echo "lowest versions: ${lowest[*]}"
 tests=("$@")
 # What uses PyYAML, networkx and jinja2; of the rules the examples of all codes, which
 # are checked and built. The other tests of rules see only the graph.
-((${#tests[@]})) || tests=(tests/frontend tests/ir tests/analysis tests/targets tests/report tests/refactor
+((${#tests[@]})) || tests=(tests/frontend tests/pysource tests/ir tests/analysis tests/targets tests/report tests/refactor
   tests/pipeline tests/checks/test_examples.py tests/checks/test_graph_laws.py)
 PYTHONPATH=$PWD "$venv/bin/python" -m pytest -q -n 2 -m "not slow and not nightly and not ros and not ros2 and not browser" "${tests[@]}"

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
@@ -17,10 +17,11 @@ from smachac.driver import CODES, Analysis, MachineCheck, Previous, analyse, rea
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
-from smachac.frontend.suppressions import Suppression
-from smachac.frontend.yaml_tree import Seq
+from smachac.frontend.text.suppressions import Suppression
+from smachac.frontend.text.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outer_inputs, outer_outputs
+from smachac.records import dataclass, field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,7 +6,7 @@ Every command and the public API pass through these functions. Only this module 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -28,14 +28,15 @@ from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
-from smachac.frontend.kept import Kept
 from smachac.frontend.loader import ROS_VERSIONS, Library
-from smachac.frontend.lower import KeptNodes, lower
-from smachac.frontend.resolve import resolve
-from smachac.frontend.script import Script
-from smachac.frontend.suppressions import Suppression, suppress
+from smachac.frontend.resolved_script import Script
+from smachac.frontend.script.kept import Kept
+from smachac.frontend.script.lower import KeptNodes, lower
+from smachac.frontend.script.resolve import resolve
+from smachac.frontend.text.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine
 from smachac.ir.recursion import deep_recursion
+from smachac.records import dataclass, field
 from smachac.targets import BuildContext, Files, Target, errors, load_target
 from smachac.targets.hiding_files import hiding_files
 from smachac.targets.interface_check import (

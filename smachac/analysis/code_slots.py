@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
 from smachac.analysis.accesses import USERDATA, fields_of
@@ -24,6 +23,7 @@ from smachac.ir.nodes import (
     Value,
     VariableRole,
 )
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from smachac.analysis.accesses import (
@@ -45,6 +44,7 @@ from smachac.ir.nodes import (
     OutcomeRule,
 )
 from smachac.ir.traversal import PREEMPTED, containers, ends_preempted, outcome_names, remapping
+from smachac.records import dataclass
 
 T = TypeVar("T")
 

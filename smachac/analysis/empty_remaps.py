@@ -3,7 +3,6 @@ keys. The others are unset reads (unset_reads.py)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 
 from smachac.analysis.def_use import around
@@ -11,6 +10,7 @@ from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.unset_reads import Missing, provided_keys
 from smachac.ir import nodes
 from smachac.ir.nodes import Node, Remap
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

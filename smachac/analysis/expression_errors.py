@@ -11,7 +11,7 @@ import itertools
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Literal, NamedTuple, TypeAlias
 
@@ -53,6 +53,7 @@ from smachac.ir.expressions import (
 )
 from smachac.ir.nodes import Expression
 from smachac.ir.types import Type
+from smachac.records import dataclass
 
 FaultKind: TypeAlias = Literal["operation", "comparison", "unit", "doubt"]
 """The operation fails; the result of the comparison is always the same; the units differ; a number

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from smachac.analysis.code_slots import code_of
 from smachac.analysis.expression_errors import Fault, expression_faults, function_faults
@@ -18,6 +17,7 @@ from smachac.ir.leaf import functions
 from smachac.ir.nodes import Expression, Leaf, Node, StateType, Struct, VariableType
 from smachac.ir.traversal import OuterNames, expressions, expressions_in, outcome_names, remapping
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass, field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

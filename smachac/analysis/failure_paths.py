@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Literal
 
 from smachac.analysis.successors import Arrival, Routes
@@ -15,6 +15,7 @@ from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
 from smachac.ir.script_paths import steps_in_script
 from smachac.ir.traversal import outcome_names
+from smachac.records import dataclass, field
 
 Answer = Literal["caught", "repeated", "ignored", "not caught", "lost"]
 """What becomes of a failure: another state follows than after a success; the state, or one that

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 from smachac.analysis.accesses import fields_of, function_body
@@ -18,6 +18,7 @@ from smachac.analysis.expression_types import Names, parsed, type_of
 from smachac.analysis.type_lattice import inside, item_of
 from smachac.ir.expressions import Expr
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass
 
 OVER_ITEMS = frozenset(["max", "min", "sorted"])
 """Functions with a function of an item as their argument `key`."""

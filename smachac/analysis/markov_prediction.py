@@ -11,7 +11,6 @@ measured outcomes of the container itself are used.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
 from itertools import product
 from math import prod
 
@@ -22,6 +21,7 @@ from smachac.ir.concurrence_rules import outcome_of
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import leads_to_child, walk
+from smachac.records import dataclass, field
 
 Probabilities = Mapping[str, float]
 """The probability of each outcome of one state."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.code_slots import (
@@ -29,6 +28,7 @@ from smachac.ir.message_types import (
     Message,
 )
 from smachac.ir.nodes import DEFINITION_KINDS, Leaf
+from smachac.records import dataclass
 
 MOST_CODE = 10_000
 """The longest function that is read, in characters."""

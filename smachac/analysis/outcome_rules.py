@@ -10,13 +10,13 @@ child is required by some rule.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from smachac.analysis.control_flow import is_open
 from smachac.ir.nodes import Concurrence, Node, OutcomeRule
 from smachac.ir.outcome_names import PREEMPTED, fails, good_first
 from smachac.ir.traversal import outcome_names
+from smachac.records import dataclass
 
 Combination = dict[str, str]
 """Children with the outcome each has ended with."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
@@ -22,6 +21,7 @@ from smachac.ir import nodes
 from smachac.ir.graph import START, Event, Vertex
 from smachac.ir.nodes import Leaf, Preset, Sequence, StateMachine, is_number
 from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.records import dataclass
 
 if TYPE_CHECKING:
     import networkx as nx

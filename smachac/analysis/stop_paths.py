@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field
 from functools import partial
 from typing import NamedTuple
 
@@ -37,6 +36,7 @@ from smachac.ir.graph import START, edges, stopped_endings
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD, PREEMPTED, fails, successes
 from smachac.ir.traversal import outcome_names
+from smachac.records import dataclass, field
 
 MOST_VISITS = 1_000_000
 """Limit on the states that the search for ways back visits in one container. After it, a finding

@@ -12,13 +12,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.control_flow import Linear, children_names
 from smachac.ir.nodes import Leaf, Node, Transition
 from smachac.ir.outcome_names import fails, successes
 from smachac.ir.traversal import leads_to_child
+from smachac.records import dataclass
 
 UnstoppedOutcomes = Callable[[Node], AbstractSet[str]]
 """The outcomes with which a child can end without a request to stop."""

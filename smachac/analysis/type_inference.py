@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import reduce
 from typing import Literal, TypeAlias
 
@@ -44,6 +43,7 @@ from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Data, Expression, Key, Leaf, Machine, Node, Struct, Variable
 from smachac.ir.traversal import outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass, field
 
 MOST_FLOWS = 64
 """The most values of one type that are distinguished in one cell."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 from functools import cache
 from typing import Literal, NamedTuple
 
@@ -19,6 +18,7 @@ from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Concurrence, Node
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import inputs_from, outcome_names, remapping
+from smachac.records import dataclass
 
 MOST_LEVELS = 50
 """The most containers outwards in which a key that is no output is searched."""

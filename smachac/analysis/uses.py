@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -12,6 +11,7 @@ from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Container, Expression, Key, Leaf, Node, Preset
 from smachac.ir.traversal import remapping
+from smachac.records import dataclass, field
 
 UseKind = Literal["presets", "items", "reads", "writes", "copies in", "copies out"]
 """How a key is used: the container holds it before it starts; an iterator puts its items there; a

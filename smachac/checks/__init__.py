@@ -6,38 +6,26 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from smachac.analysis.context import Context
-from smachac.checks import (
-    bodies,
-    class_code,
-    code_slots,
-    concurrence,
+from smachac.checks.classes import class_code
+from smachac.checks.code import code_slots, expressions
+from smachac.checks.concurrence import concurrence, races
+from smachac.checks.names import names
+from smachac.checks.outcomes import failures, outcomes, reachability
+from smachac.checks.properties import properties
+from smachac.checks.robot import bodies, grip, motion, open_grip, robot, workspace
+from smachac.checks.ros import message_fields
+from smachac.checks.rule import Rule
+from smachac.checks.timing import loops, stops, timeouts
+from smachac.checks.types import types, values
+from smachac.checks.userdata import (
     declarations,
-    expressions,
-    failures,
-    grip,
     initial_values,
-    loops,
-    message_fields,
-    motion,
-    names,
-    open_grip,
-    outcomes,
-    properties,
-    races,
-    reachability,
-    robot,
     stale_keys,
-    stops,
     stores,
-    timeouts,
-    types,
     undeclared_keys,
     unset_outputs,
     userdata,
-    values,
-    workspace,
 )
-from smachac.checks.rule import Rule
 from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnostic
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import steps_in_script

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Code, Finding, Severity
+from smachac.records import dataclass
 
 RuleFunction: TypeAlias = Callable[[Context], Iterator[Finding]]
 """Finds the faults of one kind in a machine."""

@@ -115,7 +115,7 @@ def check_command(arguments: Namespace) -> int:
 
 def _wrong_usage() -> tuple[type[Exception], ...]:
     """The exceptions that mean wrong usage."""
-    from smachac.checks.workspace import NoSimulationError
+    from smachac.checks.robot.workspace import NoSimulationError
     from smachac.commands.git import GitError
     from smachac.diagnostics.baseline import BaselineError
     from smachac.frontend.discovery import NothingFoundError
@@ -134,7 +134,7 @@ def _check_once(
     """Check once; the exit code. The real paths of all files that were read go into `used`.
     `previous`: see `check_scripts`."""
     from smachac.batch import check_scripts
-    from smachac.checks.workspace import unreachable
+    from smachac.checks.robot.workspace import unreachable
     from smachac.commands.git import changed_since
     from smachac.diagnostics.diagnostic import Severity
     from smachac.frontend.discovery import scripts_of

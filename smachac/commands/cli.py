@@ -150,8 +150,8 @@ def _run(words: Sequence[str]) -> int:
     return code
 
 
-def command_line(*complete: str) -> argparse.ArgumentParser:
-    """The parser of all commands; only those of `complete` have their arguments."""
+def _parser_class() -> type[argparse.ArgumentParser]:
+    """The class of the parsers. argparse is imported late."""
     import argparse
 
     class Parser(argparse.ArgumentParser):
@@ -182,7 +182,7 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
                 is_last = word == "--" or (
                     action is not None and action.nargs == argparse.REMAINDER
                 )
-                if is_last or (self is parser and word in COMMANDS):
+                if is_last or (self.prog == "smachac" and word in COMMANDS):
                     break
                 known = any(option.startswith(name) for option in self._option_string_actions)
                 if word.startswith("--") and not known:
@@ -206,7 +206,12 @@ def command_line(*complete: str) -> argparse.ArgumentParser:
             command = self.prog.split()[1:]
             return f"; write `{command_text([*command, *words])}`" if words is not None else ""
 
-    parser = Parser(
+    return Parser
+
+
+def command_line(*complete: str) -> argparse.ArgumentParser:
+    """The parser of all commands; only those of `complete` have their arguments."""
+    parser = _parser_class()(
         prog="smachac",
         description="Checks robot task state machines in YAML and generates code from them.",
         epilog=EPILOG,

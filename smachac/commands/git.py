@@ -14,11 +14,11 @@ import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import IO
 
 from smachac.frontend.files import TooBigError, lies_inside, read_bytes
+from smachac.records import dataclass
 
 _OFF = {
     "core.fsmonitor": "false",

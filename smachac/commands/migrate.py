@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.diagnostic import Diagnostic, Report
     from smachac.diagnostics.source import Source, Span
     from smachac.frontend.files import Disk
-    from smachac.frontend.yaml_tree import Tree
+    from smachac.frontend.text.yaml_tree import Tree
     from smachac.refactor.smacha.report import File, MigrationItem
     from smachac.refactor.smacha.script_differences import SmachaDifference
 
@@ -124,7 +124,7 @@ def _files(
 
     from smachac.diagnostics.diagnostic import Severity, in_order
     from smachac.frontend.files import disk_library
-    from smachac.frontend.yaml_tree import Seq
+    from smachac.frontend.text.yaml_tree import Seq
     from smachac.refactor.smacha.report import File
     from smachac.refactor.smacha.template_differences import template_differences, top_level_sets
 
@@ -229,7 +229,7 @@ def _near(path: Path, files: Iterable[Path]) -> list[Path]:
 def _keys(tree: Tree) -> Iterator[str]:
     """The names of all variables in a script, in their long form."""
     from smachac.frontend.schema import LONG
-    from smachac.frontend.yaml_tree import Map, Seq
+    from smachac.frontend.text.yaml_tree import Map, Seq
 
     todo = [tree]
     while todo:
@@ -243,7 +243,7 @@ def _keys(tree: Tree) -> Iterator[str]:
 
 def _types(tree: Tree) -> Iterator[str]:
     """The templates that a script names."""
-    from smachac.frontend.yaml_tree import Map, Scalar, Seq
+    from smachac.frontend.text.yaml_tree import Map, Scalar, Seq
 
     todo = [tree]
     while todo:

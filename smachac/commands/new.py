@@ -110,7 +110,7 @@ def _state(name: str, arguments: Namespace) -> int:
     )
     from smachac.diagnostics.diagnostic import has_errors
     from smachac.frontend.files import disk_library
-    from smachac.frontend.state_types import find_state_type
+    from smachac.frontend.types.state_types import find_state_type
 
     language: str = arguments.target
     if not is_type_name(name):

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Span
     from smachac.driver import Analysis
-    from smachac.frontend.yaml_tree import Tree
+    from smachac.frontend.text.yaml_tree import Tree
     from smachac.interpreter.result import InterpreterResult
     from smachac.interpreter.scenario import Scenario, ScenarioProblem
     from smachac.ir.nodes import Machine
@@ -165,7 +165,7 @@ def _analysis(arguments: Namespace) -> Analysis | str:
     if not arguments.set or analysis.machine is None:
         return analysis
     from smachac.frontend.files import module_folders
-    from smachac.frontend.yaml_tree import parse
+    from smachac.frontend.text.yaml_tree import parse
     from smachac.sweep.inputs import scene_bodies
     from smachac.sweep.variation import VariationError, edited, fixed, poses
 
@@ -552,8 +552,8 @@ def read_fault_file(path: Path, machine: Machine, report: Report) -> tuple[Fault
     that the machine does not have. A simulation knows states by their full paths."""
     from dataclasses import replace
 
-    from smachac.frontend.data_files import plain, span_at
     from smachac.frontend.errors.script import wrong_shape
+    from smachac.frontend.text.data_files import plain, span_at
     from smachac.interpreter.scenario import leaves_named
     from smachac.robots.faults import read_file
     from smachac.robots.fields import DataError
@@ -582,9 +582,9 @@ def read_scenario_file(
 ) -> tuple[Scenario | None, Mapping[str, Span]]:
     """The scenario of a file, and the places of the last steps of its states, by full path; None,
     with findings in the report, if it has faults."""
-    from smachac.frontend.data_files import plain
     from smachac.frontend.errors.script import wrong_shape
-    from smachac.frontend.yaml_tree import Map, Seq
+    from smachac.frontend.text.data_files import plain
+    from smachac.frontend.text.yaml_tree import Map, Seq
     from smachac.interpreter.scenario import read_scenario
 
     tree = _read_tree(path, report, NO_SCENARIO)
@@ -614,7 +614,7 @@ def _read_tree(path: Path, report: Report, effect: str) -> Tree | None:
     from smachac.diagnostics.source import Span
     from smachac.frontend.errors.script import wrong_shape
     from smachac.frontend.files import read_source
-    from smachac.frontend.yaml_tree import parse
+    from smachac.frontend.text.yaml_tree import parse
 
     source = read_source(path, report)
     tree = parse(source, report) if source is not None else None
@@ -626,7 +626,7 @@ def _read_tree(path: Path, report: Report, effect: str) -> Tree | None:
 
 def _place(problem: ScenarioProblem, tree: Tree) -> Span:
     """The place of a fault in the text of a scenario: a step, the name of a state, or all of it."""
-    from smachac.frontend.yaml_tree import Map, Seq
+    from smachac.frontend.text.yaml_tree import Map, Seq
 
     states = tree.get("states") if isinstance(tree, Map) else None
     if states is None or not isinstance(states.value, Map):

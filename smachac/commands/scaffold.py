@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from keyword import iskeyword
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.ir.nodes import StateType
 from smachac.ir.types import WORDS, Type, parse_type, unknown_words
+from smachac.records import dataclass
 from smachac.report.terminal import on_one_line
 
 LANGUAGES = ("python", "cpp")

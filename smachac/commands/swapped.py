@@ -77,7 +77,7 @@ def is_script(path: Path) -> bool:
     """Whether a file is a mapping with a list `states`, as every script is; in a scenario `states`
     is a mapping."""
     from smachac.frontend.files import read_source
-    from smachac.frontend.yaml_tree import Map, Seq, parse
+    from smachac.frontend.text.yaml_tree import Map, Seq, parse
 
     if path.suffix.lower() not in (".yml", ".yaml"):
         return False

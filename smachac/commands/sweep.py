@@ -252,7 +252,7 @@ def _variations(
 ) -> tuple[Variation, ...] | str:
     """The variations of the command line, or what is wrong with them."""
     from smachac.diagnostics.source import Source
-    from smachac.frontend.yaml_tree import parse
+    from smachac.frontend.text.yaml_tree import parse
     from smachac.sweep.inputs import scene_bodies
     from smachac.sweep.variation import VariationError, check_values, read_variation
 

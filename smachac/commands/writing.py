@@ -10,8 +10,9 @@ import signal
 import stat
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
+
+from smachac.records import dataclass
 
 SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 """Signals that are delivered after the writing."""

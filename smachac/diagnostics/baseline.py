@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import PurePath
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, fingerprint
 from smachac.diagnostics.severities import is_firm
+from smachac.records import dataclass
 
 VERSION, OLDEST = 3, 2
 """The version of the fingerprints, which increases when they are computed in another way or from

@@ -3,10 +3,9 @@ report itself decides about severities, suppressions, baselines and exit codes."
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.repair import Repair
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from enum import Enum
 from functools import lru_cache
 from pathlib import PurePath
@@ -20,6 +20,7 @@ from smachac.diagnostics.negation import are_unlike
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.wording import listed
+from smachac.records import dataclass, field
 
 P = ParamSpec("P")
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import Enum
 
 from smachac.diagnostics.source import Source, Span
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity
+from smachac.records import dataclass, field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

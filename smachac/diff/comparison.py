@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Literal
 
@@ -12,6 +11,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diff.matching import corresponding, renamed_words
 from smachac.diff.states import Fact, State, States, states_of, translated, value_text
 from smachac.driver import Analysis
+from smachac.records import dataclass, field
 
 Kind = Literal["added", "removed", "changed", "renamed", "moved"]
 

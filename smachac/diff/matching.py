@@ -10,9 +10,9 @@ directions.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from dataclasses import dataclass, field
 
 from smachac.diff.states import State, StateName, States, value_text
+from smachac.records import dataclass, field
 
 Key = Callable[["_Side", str], Hashable]
 """What a state has in common with one that corresponds to it; None: it corresponds to none."""

@@ -7,7 +7,6 @@ the path that the script shows.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import Span
@@ -17,6 +16,7 @@ from smachac.ir.printer import print_data
 from smachac.ir.properties import in_words
 from smachac.ir.script_paths import role, role_in_words, sugared_child, walk_script
 from smachac.ir.traversal import leads_to_child
+from smachac.records import dataclass, field
 
 FactKind = Literal[
     "field", "param", "property", "outcome", "input", "output", "variable", "userdata", "remapping",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import DEFAULT_ROS, ROS_VERSIONS, Ros
+from smachac.records import dataclass, field
 
 SETTINGS: Mapping[str, str] = {
     "scripts": "Folders with sub-scripts, relative to this file.",

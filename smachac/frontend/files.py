@@ -29,8 +29,8 @@ from smachac.frontend.config import (
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
 from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library, Ros
-from smachac.frontend.yaml_mends import parse_mended
-from smachac.frontend.yaml_tree import Tree
+from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_tree import Tree
 from smachac.robots import xacro_files
 from smachac.robots.files import Packages, find_mesh, installed_packages
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -12,7 +11,9 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import Tree, parse
+from smachac.frontend.text.yaml_tree import Tree, parse
+from smachac.pysource.user_code import UserCode
+from smachac.records import dataclass, field
 from smachac.robots.files import Packages
 from smachac.robots.xacro_files import EXPAND, XacroError
 from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
@@ -37,14 +38,11 @@ ROBOT_FILES = (".urdf", XACRO_SUFFIX)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Library:
+class Library(UserCode):
     """Access to files by functions, so that resolving works without a disk.
 
     `script(name, caller)` returns the text of a sub-script that the source `caller` names;
-    `template(file)` an interface or a template by file name (`MoveTo.yml`, `MoveTo.tpl.py`);
-    `own_template(file)` the same, but no built-in one; `code(file)` a module or header of the user
-    by path (`my_robot/grasp.hpp`); `code_names(folder)` the names of files and folders in a folder
-    of such code; `definitions(path)` all message definitions of ROS with a path, such as
+    `definitions(path)` all message definitions of ROS with a path, such as
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders; `definition_names(folder)` the
     names of the files in all folders with a path, such as `std_srvs/srv`; `folders_with(files)` the
     folders below that of the main script that have one of these files. The lists of folders and
@@ -53,16 +51,10 @@ class Library:
     description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
     packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
     `expand(file, arguments, packages)` returns the URDF text of a xacro file; it raises XacroError.
-    `settings_read` is
-    False if the project file or its search folders could not be read. `modules` are the modules of
-    Python that were read (`python_modules.load_module`), by path and text.
+    `settings_read` is False if the project file or its search folders could not be read.
     """
 
     script: Callable[[str, str], Source | None]
-    template: Callable[[str], Source | None]
-    own_template: Callable[[str], Source | None] = lambda file: None
-    code: Callable[[str], Source | None] = lambda file: None
-    code_names: Callable[[str], Sequence[str]] = lambda folder: ()
     definitions: Callable[[str], Sequence[Source]] = lambda path: ()
     definition_names: Callable[[str], Sequence[str]] = lambda folder: ()
     folders_with: Callable[[Collection[str]], Sequence[str]] = lambda files: ()
@@ -78,9 +70,6 @@ class Library:
     mesh: Callable[[str, str, Packages], Path | None] = lambda name, urdf, packages: Path(name)
     expand: Callable[[str, Mapping[str, str], Packages], str] = no_xacro
     settings_read: bool = True
-    modules: dict[tuple[str, Source], object] = field(
-        default_factory=dict, compare=False, repr=False
-    )
 
     def folder_with(self, name: str, suffixes: Iterable[str], searched: Collection[str]) -> str:
         """A folder that has a file of a name and is not among those that were searched; empty

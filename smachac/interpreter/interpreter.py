@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from itertools import islice
 from operator import eq
@@ -53,6 +53,7 @@ from smachac.ir.nodes import (
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import PREEMPTED, containers, leads_to_child, outcome_names, walk
+from smachac.records import dataclass
 from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.writer import SECRET
 

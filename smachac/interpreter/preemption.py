@@ -4,7 +4,8 @@ Preemption)."""
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
-from dataclasses import dataclass, field
+
+from smachac.records import dataclass, field
 
 
 @dataclass(slots=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from smachac.diagnostics.source import Span
 from smachac.interpreter.userdata import Userdata, UserdataErrorKind
 from smachac.ir.nodes import Leaf
+from smachac.records import dataclass, field
 
 Event: TypeAlias = dict[str, Any]
 """One event of a trace: `seq`, `event`, `path`; then `outcome`, `to`, `key`, `value` or `message`,

@@ -8,7 +8,7 @@ import json
 import math
 import random
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
@@ -21,6 +21,7 @@ from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Iterator, Leaf, Machine
 from smachac.ir.script_paths import walk_script
 from smachac.ir.traversal import PREEMPTED, enclosing, outcome_names, walk
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

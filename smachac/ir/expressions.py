@@ -11,12 +11,12 @@ import keyword
 import re
 import unicodedata
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from smachac.diagnostics.source import assert_never
 from smachac.grammars import load
+from smachac.records import dataclass
 
 if TYPE_CHECKING:
     from smachac.grammars.standalone.lalr import Lark

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span, Word
+from smachac.records import dataclass
 
 
 class Part(NamedTuple):

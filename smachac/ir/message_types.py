@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, TypeAlias
 
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass, field
 
 DefinitionKind: TypeAlias = Literal["msg", "srv", "action"]
 """The ending of the file of a definition, which is also the name of its folder."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import ClassVar, Literal, NamedTuple, NewType, TypeAlias, TypeGuard
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
@@ -19,6 +18,7 @@ from smachac.ir.message_types import DefinitionKind, Definitions, MissingDefinit
 from smachac.ir.properties import Property
 from smachac.ir.robot import Robot
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass, field
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

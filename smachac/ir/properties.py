@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from smachac.diagnostics.source import Span
+from smachac.records import dataclass, field
 
 Subject = Literal["path", "tag", "type", "claim"]
 """How an atom selects states: by path or its end, by tag, by state type, by claimed resource."""

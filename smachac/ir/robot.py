@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
+from smachac.records import dataclass, field
 from smachac.robots.description import Limb
 from smachac.robots.fields import IDENTITY, Pose
 

@@ -1,9 +1,9 @@
 """Paths of states as the script shows them, and what the containers made of sugar are for.
 
-`timeout`, `retry` and `for_each` put containers around a state (frontend/desugar.py). The state has
-the path that the script shows, `sm/DRIVE`, whatever its depth in the graph. A container around it
-has that path and its role, `sm/DRIVE (retry)`; a state that was added to it is below that path:
-`sm/DRIVE (timeout)/TIMER`. Paths of the graph are called full paths.
+`timeout`, `retry` and `for_each` put containers around a state (frontend/script/desugar.py). The
+state has the path that the script shows, `sm/DRIVE`, whatever its depth in the graph. A container
+around it has that path and its role, `sm/DRIVE (retry)`; a state that was added to it is below that
+path: `sm/DRIVE (timeout)/TIMER`. Paths of the graph are called full paths.
 """
 
 from __future__ import annotations

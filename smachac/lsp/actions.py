@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Diagnostic
@@ -17,6 +16,7 @@ from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.lsp.navigation import Named, script_path
 from smachac.lsp.place import Body, Place
+from smachac.records import dataclass
 from smachac.refactor.autofix import UNCLEAR
 from smachac.refactor.edited_script import EditedScript, HasErrorsError
 from smachac.refactor.editor import RefusedError

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from smachac.frontend import schema
 from smachac.frontend.schema import CONTAINERS
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.ir.nodes import StateType, VariableType
 from smachac.ir.types import ANY, Type
 from smachac.lsp.complete_values import params_of_call

@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable
 
-from smachac.frontend.fields import PRESET_FIELDS
+from smachac.frontend.text.fields import PRESET_FIELDS
 from smachac.ir.types import ANY, WORDS
 from smachac.lsp.place import KEY, VALUE, Body
 from smachac.lsp.word import Completion, Request

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from smachac.frontend import schema
 from smachac.frontend.schema import CONTAINER_DOCS, CONTAINERS
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import StateType
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.lsp.word import Completion, Request

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 
 from smachac.diagnostics.source import Source
 from smachac.frontend.loader import Library
+from smachac.frontend.resolved_script import EXHAUSTED, TIMEOUT
 from smachac.frontend.schema import CONTAINERS
-from smachac.frontend.script import EXHAUSTED, TIMEOUT
-from smachac.frontend.state_types import find_state_type
-from smachac.frontend.yaml_tree import Map, Scalar
+from smachac.frontend.text.yaml_tree import Map, Scalar
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import StateType
 from smachac.lsp.place import Body, top_bodies
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-from smachac.frontend.yaml_tree import Map, Scalar, Seq
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq
 from smachac.ir.nodes import Leaf
 from smachac.ir.traversal import containers
 from smachac.ir.types import ANY
@@ -13,6 +12,7 @@ from smachac.lsp.hover import full_path
 from smachac.lsp.navigation import script_path
 from smachac.lsp.place import Body, top_bodies
 from smachac.lsp.session import View
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

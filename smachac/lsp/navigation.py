@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
 
 from smachac.diagnostics.source import Source, Span
-from smachac.frontend.python_modules import load_module
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree
 from smachac.ir.nodes import Machine, StateType
 from smachac.ir.script_paths import ScriptPath, walk_script
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import FIELD, ITEM, KEY, STATE, VALUE, Body, Place
+from smachac.pysource.modules import load_module
+from smachac.records import dataclass
 from smachac.refactor.cst import UnsupportedYamlError
 from smachac.refactor.editor import RefusedError, ScriptEditor
 from smachac.refactor.refactorings import RENAME

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from smachac.frontend import schema
 from smachac.frontend.schema import CONTAINERS, FieldOwner
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

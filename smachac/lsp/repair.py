@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import Tree, parse, syntax_error_line
+from smachac.frontend.text.yaml_tree import Tree, parse, syntax_error_line
 
 MOST_REPAIRS = 8
 """The most lines that are blanked before the whole text is given up."""

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import PurePath
 
 from smachac.diagnostics.source import Source
 from smachac.driver import CODES
-from smachac.frontend.file_kinds import FileKind
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.frontend.text.file_kinds import FileKind
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.lsp.repair import with_mark
 from smachac.lsp.session import View
 from smachac.lsp.word import Completion
+from smachac.records import dataclass
 from smachac.report.json_schema import Schema, generated_schemas
 
 ITEM = "-"

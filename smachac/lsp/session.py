@@ -10,7 +10,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from smachac.analysis.context import Context
@@ -21,15 +21,16 @@ from smachac.diagnostics.source import Source
 from smachac.driver import CODES, Analysis, Previous, read_machine
 from smachac.frontend.config import PROJECT_FILES
 from smachac.frontend.discovery import NothingFoundError, scripts_of
-from smachac.frontend.file_kinds import FileKind, kind_of_tree
 from smachac.frontend.files import Disk, disk_library, find_project
 from smachac.frontend.loader import Library
-from smachac.frontend.robots import DataKind, check_data_file
-from smachac.frontend.state_types import find_state_type
-from smachac.frontend.yaml_tree import Map, Seq, Tree
+from smachac.frontend.robots.robots import DataKind, check_data_file
+from smachac.frontend.text.file_kinds import FileKind, kind_of_tree
+from smachac.frontend.text.yaml_tree import Map, Seq, Tree
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.lsp.repair import repaired
+from smachac.records import dataclass
 
 
 @contextmanager

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
 from smachac.ir.expressions import looks_like_expression, parse_expression
 from smachac.lsp.place import Body, top_bodies
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from smachac.lsp.facts import Facts
 from smachac.lsp.place import Body, Place
 from smachac.lsp.session import View
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,7 +7,6 @@ import difflib
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from smachac.batch import Batch
@@ -15,6 +14,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, fingerp
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import BUILT_IN
+from smachac.records import dataclass
 
 Texts = Mapping[str, str]
 """Changed texts by the real path of their file."""

@@ -16,7 +16,7 @@ from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.wording import listed
 from smachac.driver import Analysis
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import (
     Concurrence,
     Container,

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from smachac.diagnostics.source import Source
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD_OUTCOMES
 from smachac.ir.traversal import leads_to_child, outcome_names, outer_inputs, outer_outputs
+from smachac.records import dataclass
 from smachac.refactor.cst import Atom, Collection, Item
 from smachac.refactor.editor import (
     RefusedError,

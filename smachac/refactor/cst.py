@@ -1,18 +1,19 @@
 """Concrete syntax tree of a YAML text: values as written, comments, blank lines, anchors.
 
-The tree of frontend/yaml_tree.py has the meaning of a text only. Here everything is kept, and each
-comment belongs to an item: `leading` above it, `trailing` behind it, `tail` below the last item.
+The tree of frontend/text/yaml_tree.py has the meaning of a text only. Here everything is kept, and
+each comment belongs to an item: `leading` above it, `trailing` behind it, `tail` below the last
+item.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from itertools import accumulate
 from typing import Any, TypeAlias
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import events
+from smachac.frontend.text.yaml_tree import events
+from smachac.records import dataclass, field
 
 _COMMENT = re.compile(r"(?:^|(?<=\s))#.*")
 _BLOCK = re.compile(r"(?:[&!]\S*\s+)*[|>]")
@@ -96,7 +97,7 @@ class Document:
 
 def parse_cst(source: Source) -> Document:
     """The syntax tree of a text. Raises UnsupportedYamlError, also for a text that is no YAML, but
-    that the checks read as repaired (frontend/yaml_mends.py)."""
+    that the checks read as repaired (frontend/text/yaml_mends.py)."""
     if source.text.startswith("%"):
         raise UnsupportedYamlError("it begins with a YAML directive")
     from yaml import YAMLError

@@ -7,7 +7,6 @@ An edit is JSON: `{"operation": "transition", "path": "sm/PICK", "arguments": {"
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, Literal
 
 from smachac.diagnostics.diagnostic import Report
@@ -16,6 +15,7 @@ from smachac.diagnostics.spelling import is_plain
 from smachac.diff.comparison import compare
 from smachac.driver import Analysis
 from smachac.ir.recursion import deep_recursion
+from smachac.records import dataclass
 from smachac.refactor.autofix import differences
 from smachac.refactor.change_states import add_state, remove_state, set_transition
 from smachac.refactor.edited_script import EditedScript

@@ -16,7 +16,7 @@ from smachac.driver import CODES, Analysis, analyse
 from smachac.frontend.discovery import scripts_of
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
-from smachac.frontend.yaml_tree import Map
+from smachac.frontend.text.yaml_tree import Map
 from smachac.ir.nodes import Machine
 from smachac.refactor.cst import UnsupportedYamlError
 from smachac.refactor.editor import RefusedError, ScriptEditor

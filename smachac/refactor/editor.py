@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source, Span
+from smachac.records import dataclass
 from smachac.refactor.cst import Atom, Collection, Item, parse_cst
 from smachac.refactor.field_order import long_name, variables_of
 from smachac.refactor.formatter import item_lines

@@ -72,8 +72,8 @@ def inline(editor: ScriptEditor, span: Span, sub: ScriptEditor) -> None:
 
 
 def _merged(below: list[Item], own: list[Item]) -> list[Item]:
-    """The fields of a sub-script, overridden by those of its call (as frontend/resolve.py merges
-    them)."""
+    """The fields of a sub-script, overridden by those of its call (as frontend/script/resolve.py
+    merges them)."""
     over = {long_name(item): item for item in own}
     merged = []
     for item in below:

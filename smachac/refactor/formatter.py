@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from smachac.diagnostics.source import Source
 from smachac.frontend import schema
 from smachac.frontend.files import with_line_feeds
-from smachac.frontend.params import look_up_word
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse
+from smachac.frontend.script.params import look_up_word
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse
 from smachac.ir.recursion import deep_recursion
 from smachac.refactor.cst import Atom, Collection, Document, Item, UnsupportedYamlError, parse_cst
 from smachac.refactor.field_order import Spelling, order_fields

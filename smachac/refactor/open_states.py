@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from smachac.ir.nodes import Key, Leaf, Outcome, StateMachine, Transition
 from smachac.ir.traversal import outcome_names
+from smachac.records import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,7 +17,7 @@ from smachac.diagnostics.diagnostic import Severity
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import Analysis
 from smachac.frontend.loader import Library
-from smachac.frontend.smacha_meta import keys_in_code
+from smachac.frontend.types.smacha_meta import keys_in_code
 from smachac.ir.nodes import Leaf, Machine, Node, StateMachine, StateType
 from smachac.ir.script_paths import plain_paths
 from smachac.ir.traversal import walk

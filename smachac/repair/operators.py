@@ -19,8 +19,8 @@ from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
-from smachac.frontend.fields import PRESET_FIELDS
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
+from smachac.frontend.text.fields import PRESET_FIELDS
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import walk

@@ -22,7 +22,7 @@ from smachac.diagnostics.repair import edited_texts
 from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, MachineCheck, analyse
 from smachac.frontend.loader import Library
-from smachac.frontend.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.repair.operators import Around, Candidate, candidates, text_of

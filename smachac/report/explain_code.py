@@ -5,10 +5,10 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from textwrap import dedent, fill, indent
 
 from smachac.diagnostics.diagnostic import Code
+from smachac.records import dataclass, field
 
 MAIN = "main.yml"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 from typing import Any
 
 from smachac.analysis.context import Context
@@ -16,6 +15,7 @@ from smachac.ir.printer import print_data
 from smachac.ir.script_paths import Sugared, in_words, role, sugared_containers
 from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass, field
 from smachac.report.outline import STATUS, Paragraph, article, at, place, way
 
 

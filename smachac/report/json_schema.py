@@ -13,10 +13,10 @@ from typing import Any, TypeAlias, get_args
 from smachac.diagnostics.diagnostic import Code
 from smachac.frontend import schema
 from smachac.frontend.config import LEVELS, SETTINGS
-from smachac.frontend.interface_code import CLASS_FIELDS
 from smachac.frontend.schema import CONTAINERS, REQUIRED, VARIABLES, FieldOwner
-from smachac.frontend.unquoted import VARIABLE_SHAPES
-from smachac.frontend.value_facts import NAMES
+from smachac.frontend.text.unquoted import VARIABLE_SHAPES
+from smachac.frontend.types.interface_code import CLASS_FIELDS
+from smachac.frontend.types.value_facts import NAMES
 from smachac.interpreter.scenario import STEP_FIELDS
 from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
 from smachac.ir.types import WORDS
@@ -64,7 +64,7 @@ SHAPES: Mapping[str, Schema] = {
         "additionalProperties": {"anyOf": [{"$ref": "#/definitions/preset"}, {}]},
     },
 }
-"""What each shape of a field accepts (frontend/fields.py)."""
+"""What each shape of a field accepts (frontend/text/fields.py)."""
 
 PRESET: Schema = {
     "type": "object",

@@ -9,9 +9,9 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
+from smachac.records import dataclass
 from smachac.sweep.task import Run
 
 MOST_TRIES = 2

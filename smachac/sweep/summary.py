@@ -5,12 +5,12 @@ from __future__ import annotations
 import shlex
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.script_paths import added_states, script_paths
 from smachac.ir.traversal import outcome_names, walk
+from smachac.records import dataclass, field
 from smachac.sweep.task import Run, merge_states
 from smachac.sweep.variation import Single, value_text
 from smachac.verify.coverage import CoverageItem, coverage_items

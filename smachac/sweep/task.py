@@ -7,7 +7,6 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,12 +14,13 @@ from smachac.diagnostics.diagnostic import has_errors
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse_script, compile_script
 from smachac.frontend.files import module_folders
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.yaml_tree import parse
 from smachac.interpreter.interpreter import MAX_STEPS
 from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Checked, Leaf
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import walk
+from smachac.records import dataclass, field
 from smachac.robots.faults import Fault
 from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.sweep.play import FailedError, play

@@ -10,12 +10,12 @@ import json
 import math
 import random
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree
+from smachac.records import dataclass
 from smachac.robots.scene import AXES
 
 Number: TypeAlias = "int | float"

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from keyword import iskeyword
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
+from smachac.records import dataclass, field
 from smachac.targets.interface_check import Declared
 from smachac.version import __version__
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
 from smachac.diagnostics.source import Span, Word
-from smachac.frontend.python_source import ASSIGNED
 from smachac.ir.class_facts import ClassFault
+from smachac.pysource.source import ASSIGNED
 from smachac.targets.class_faults import about_class, class_effect
 
 

@@ -9,18 +9,19 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Protocol
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
-from smachac.frontend.import_cycles import circular_imports
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, Parameter, renamed_name
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import inputs_from, outer_outputs, remapping, walk
+from smachac.pysource.import_cycles import circular_imports
+from smachac.records import dataclass, field
 from smachac.targets.class_faults import CHECKED_ONLY, SET_IN_SCRIPT, STOPS_PROGRAM
 from smachac.targets.errors import (
     Difference,

@@ -14,14 +14,14 @@ from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
-from smachac.frontend.jinja_tags import tags
 from smachac.frontend.loader import Library
-from smachac.frontend.python_modules import template_module
-from smachac.frontend.python_source import PythonText
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
+from smachac.pysource.jinja_tags import tags
+from smachac.pysource.modules import template_module
+from smachac.pysource.source import PythonText
 from smachac.targets.errors import bad_class
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.frontend.loader import Library
-from smachac.frontend.python_imports import missing_in_template
 from smachac.ir.nodes import Machine
+from smachac.pysource.imports import missing_in_template
 from smachac.targets.errors import code_not_found
 
 

@@ -21,20 +21,20 @@ from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.script import NameFix, undefined_name
-from smachac.frontend.library_names import (
+from smachac.frontend.loader import Library
+from smachac.ir.code_places import attribute_place, node_place, python_tree
+from smachac.ir.code_slips import CONSTANTS
+from smachac.ir.expressions import looks_like_expression
+from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
+from smachac.ir.traversal import expressions
+from smachac.pysource.library_names import (
     MODULES,
     attributes,
     is_shadowed,
     missing_name,
     only_imported,
 )
-from smachac.frontend.loader import Library
-from smachac.frontend.python_modules import Module, load_module
-from smachac.ir.code_places import attribute_place, node_place, python_tree
-from smachac.ir.code_slips import CONSTANTS
-from smachac.ir.expressions import looks_like_expression
-from smachac.ir.nodes import Data, Expression, Leaf, Machine, Node, StateType, Struct
-from smachac.ir.traversal import expressions
+from smachac.pysource.modules import Module, load_module
 
 FUNCTIONS = tuple(name for name in dir(builtins) if name.islower() and name[0] != "_")
 """The built-in functions and types of Python."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from smachac.diagnostics.source import Source
+from smachac.records import dataclass
 from smachac.report.terminal import on_one_line
 from smachac.verify.test_case import UnplayableError
 

@@ -8,7 +8,6 @@ chooses that branch: leaves of the other branches wait until they are preempted.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from smachac.interpreter.behaviours import builtin_behaviour, is_made_of_functions
@@ -22,6 +21,7 @@ from smachac.ir.expressions import parse_expression
 from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Concurrence, Expression, Leaf, Machine, Node, StateMachine
 from smachac.ir.traversal import PREEMPTED, containers, expressions, outcome_names, walk
+from smachac.records import dataclass, field
 from smachac.verify.coverage import Coverage
 from smachac.verify.guidance import Goals, Planner, possible_leaf_outcomes
 from smachac.verify.sample_values import SampleValues, sample_inputs

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from smachac.diagnostics.source import Span
 from smachac.interpreter.scenario import PlainStep, quoted, scenario_text
+from smachac.records import dataclass
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
 from smachac.verify.coverage import CoverageItem, Reason

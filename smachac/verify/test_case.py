@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from smachac.interpreter.behaviours import builtin_behaviour
@@ -19,6 +18,7 @@ from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.secret_keys import SecretKeys, secret_keys
 from smachac.ir.traversal import walk
+from smachac.records import dataclass
 from smachac.runtime.tracing.compare import Difference, difference
 from smachac.runtime.tracing.writer import trace_value
 from smachac.verify.paths import Path

@@ -9,7 +9,6 @@ run, is allowed up to its end.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
@@ -20,6 +19,7 @@ from smachac.ir.concurrence_rules import outcome_of
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateMachine
 from smachac.ir.script_paths import script_paths
 from smachac.ir.traversal import PREEMPTED, ends_preempted, leads_to_child, outcome_names, walk
+from smachac.records import dataclass, field
 from smachac.runtime.tracing.writer import shown_path
 from smachac.verify.guidance import possible_leaf_outcomes
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Span
@@ -12,6 +11,7 @@ from smachac.diagnostics.wording import quote
 from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
+from smachac.records import dataclass
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
 from smachac.runtime.tracing.writer import LONGEST_LINE, LONGEST_NAME

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
 from math import sqrt
 
 from smachac.analysis.markov_prediction import Measured
 from smachac.interpreter.result import Event
+from smachac.records import dataclass, field
 
 
 @dataclass(slots=True)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Literal
+
+from smachac.records import dataclass
 
 Action = Literal["pause", "resume", "step", "break", "unbreak", "outcome", "stop"]
 

@@ -12,7 +12,7 @@ from typing import Any
 from smachac.diagnostics.diagnostic import Severity
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.recursion import deep_recursion
 from smachac.refactor.autofix import differences
 from smachac.refactor.edit import BadEditError, Edit, EditResult, Operation, edit_of, perform

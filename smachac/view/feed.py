@@ -6,8 +6,9 @@ import json
 import threading
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, TypeAlias
+
+from smachac.records import dataclass
 
 Message: TypeAlias = Mapping[str, Any]
 

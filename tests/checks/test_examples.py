@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from smachac.analysis import properties
-from smachac.checks.workspace import unreachable
+from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity
 from smachac.driver import CODES, analyse, build
 from smachac.frontend.files import disk_library, read_source

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from smachac.checks.workspace import unreachable
+from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.driver import analyse
 from smachac.frontend.files import disk_library, read_source

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from smachac.analysis.context import Context
-from smachac.checks.workspace import poses_to_reach
+from smachac.checks.robot.workspace import poses_to_reach
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse
 from smachac.frontend.loader import memory_library

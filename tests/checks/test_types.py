@@ -7,7 +7,7 @@ import pytest
 
 from smachac.checks import check_machine
 from smachac.diagnostics.diagnostic import Diagnostic
-from smachac.frontend.robots import built_in_robot, default_robot
+from smachac.frontend.robots.robots import built_in_robot, default_robot
 from smachac.ir.parser import parse_machine
 from smachac.robots.files import BUILT_IN
 from tests.support.typed_machines import BUILT_IN as LIBRARY

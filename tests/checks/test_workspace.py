@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from smachac.analysis.context import Context
-from smachac.checks.workspace import poses_to_reach, unreachable
+from smachac.checks.robot.workspace import poses_to_reach, unreachable
 from smachac.commands.cli import main
 from smachac.driver import read_machine
 from smachac.frontend.files import disk_library, read_source

@@ -402,7 +402,7 @@ states:
     assert new == [f", label: {key}" for key in expected]
     if len(expected) == 2:
         ways = [f"add `label: {key}` to the `remapping` of `A`" for key in expected]
-        assert finding.help == " or ".join(ways)
+        assert finding.help == ", or ".join(ways)
 
 
 def test_another_name_for_the_variable_of_a_meta_block() -> None:

@@ -17,7 +17,7 @@ from smachac.diagnostics import baseline
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend import files
-from smachac.frontend.yaml_tree import Tree, parse
+from smachac.frontend.text.yaml_tree import Tree, parse
 
 HEAD = "template: Base\noutcomes: [done]\nuserdata: {block: red}\noutput_keys: [block]\nstates:\n"
 PICK = "  - PICK: {script: pick, transitions: {ok: done}}\n"

@@ -11,7 +11,7 @@ import pytest
 from smachac.commands.cli import main
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.yaml_tree import parse
 from smachac.refactor.smacha.report import render_migration
 from smachac.refactor.smacha.script_differences import script_differences
 from smachac.refactor.smacha.template_differences import template_differences, top_level_sets

@@ -12,7 +12,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse, build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.targets.cpp import TARGET
 from smachac.targets.cpp.user_classes import interface_hash
 from tests.cpp.compilers import BARE, COMPILERS, Compiler, last_with

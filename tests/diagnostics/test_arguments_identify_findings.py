@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 import pytest
 
-from smachac.checks.workspace import unreachable
+from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Finding, Report, Severity, diagnostic
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES, analyse

@@ -16,7 +16,7 @@ from smachac.commands.cli import COMMANDS, command_line, main
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
-from smachac.frontend.robots import DataKind, check_data_file
+from smachac.frontend.robots.robots import DataKind, check_data_file
 from smachac.report.json_schema import scenario_schema
 from smachac.robots.files import plain
 

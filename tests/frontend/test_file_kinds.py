@@ -8,8 +8,8 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.diagnostics.source import Source
-from smachac.frontend.file_kinds import kind_of_tree
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.file_kinds import kind_of_tree
+from smachac.frontend.text.yaml_tree import parse
 
 KINDS = {
     "name: Wave\nvariables: {times: int}\noutcomes: [done]\n": "interface",

@@ -6,8 +6,8 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_errors import LONGEST_LINE
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.yaml_errors import LONGEST_LINE
+from smachac.frontend.text.yaml_tree import parse
 
 USUAL = "check the brackets, quotes and indentation before this place"
 """The help without a cause."""

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library, memory_library
-from smachac.frontend.message_definitions import (
+from smachac.frontend.messages.message_definitions import (
     TypeName,
     find_definitions,
     read_definition,

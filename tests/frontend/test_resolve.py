@@ -12,15 +12,15 @@ import pytest
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Word
 from smachac.driver import read_machine
-from smachac.frontend import resolve as resolve_module
 from smachac.frontend import schema
-from smachac.frontend.fields import READERS
 from smachac.frontend.files import disk_library
-from smachac.frontend.lower import lower
-from smachac.frontend.resolve import resolve
-from smachac.frontend.script import Script, State
-from smachac.frontend.state_types import find_state_type
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.resolved_script import Script, State
+from smachac.frontend.script import resolve as resolve_module
+from smachac.frontend.script.lower import lower
+from smachac.frontend.script.resolve import resolve
+from smachac.frontend.text.fields import READERS
+from smachac.frontend.text.yaml_tree import parse
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import Value
 from smachac.ir.traversal import walk
 
@@ -150,13 +150,13 @@ def imports(module: str) -> Iterator[str]:
 
 def test_lowering_reads_no_yaml() -> None:
     seen: set[str] = set()
-    todo = ["smachac.frontend.lower"]
+    todo = ["smachac.frontend.script.lower"]
     while todo:
         module = todo.pop()
         if module not in seen:
             seen.add(module)
             todo += imports(module)
-    assert {"smachac.frontend.script", "smachac.frontend.desugar"} <= seen
+    assert {"smachac.frontend.resolved_script", "smachac.frontend.script.desugar"} <= seen
     readers = {"yaml_tree", "fields", "values", "resolve", "state_fields", "state_types", "sugar"}
     assert not {f"smachac.frontend.{name}" for name in readers} & seen
 
@@ -172,8 +172,8 @@ def test_state_types_are_looked_up_in_few_places() -> None:
     assert users == [
         "smachac/commands/new.py",
         "smachac/commands/states.py",
-        "smachac/frontend/kept.py",
-        "smachac/frontend/resolve.py",
+        "smachac/frontend/script/kept.py",
+        "smachac/frontend/script/resolve.py",
         "smachac/lsp/complete_templates.py",
         "smachac/lsp/facts.py",
         "smachac/lsp/session.py",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from smachac.frontend.message_definitions import find_definitions
-from smachac.frontend.standard_messages import FOLDER, standard_package
+from smachac.frontend.messages.message_definitions import find_definitions
+from smachac.frontend.messages.standard_messages import FOLDER, standard_package
 from smachac.ir.message_types import PARTS, PRIMITIVES
 from tests.support.typed_machines import BUILT_IN
 

@@ -10,8 +10,8 @@ import pytest
 import smachac
 from smachac.diagnostics.diagnostic import Finding, Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.sugar import duration
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.script.sugar import duration
+from smachac.frontend.text.yaml_tree import parse
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.interpreter.result import Event, InterpreterResult

@@ -14,7 +14,7 @@ from smachac.diagnostics.severities import Policy, apply_severities, select_find
 from smachac.diagnostics.source import NOWHERE, Source
 from smachac.driver import CODES, Analysis, analyse, build
 from smachac.frontend.files import disk_library, read_source
-from smachac.frontend.suppressions import MARK, suppressions_in
+from smachac.frontend.text.suppressions import MARK, suppressions_in
 from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import load_target, target_names
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import smachac
 from smachac.diagnostics.source import Source
-from smachac.frontend.urdf import robot_of_urdf
+from smachac.frontend.robots.urdf import robot_of_urdf
 from smachac.ir.robot import Robot
 from smachac.robots import urdf
 from smachac.robots.xml_tree import XmlError

@@ -8,8 +8,8 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_mends import parse_mended
-from smachac.frontend.yaml_tree import Map, parse
+from smachac.frontend.text.yaml_mends import parse_mended
+from smachac.frontend.text.yaml_tree import Map, parse
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend import yaml_tree
-from smachac.frontend.fields import as_map
-from smachac.frontend.yaml_tree import Map, Scalar, Seq, Tree, parse, syntax_error_line
+from smachac.frontend.text import yaml_tree
+from smachac.frontend.text.fields import as_map
+from smachac.frontend.text.yaml_tree import Map, Scalar, Seq, Tree, parse, syntax_error_line
 
 
 def read(text: str, codes: list[str] | None = None) -> Tree | None:

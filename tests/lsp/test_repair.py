@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import Map, parse
+from smachac.frontend.text.yaml_tree import Map, parse
 from smachac.lsp.positions import Encoding, Positions
 from smachac.lsp.repair import MARK, repaired, with_mark
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from smachac.frontend.file_kinds import FileKind
+from smachac.frontend.text.file_kinds import FileKind
 from smachac.lsp.completion import complete
 from smachac.lsp.facts import Facts
 from smachac.lsp.hover import hover_at

@@ -17,7 +17,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.yaml_tree import parse
 from smachac.ir.printer import print_machine
 from smachac.refactor.formatter import WIDTH, format_script
 from tests.support.examples import seeds

@@ -11,9 +11,10 @@ import networkx as nx
 import pytest
 
 LAYERS = (
-    ("robots",),
+    ("robots", "records"),
     ("sim", "runtime", "grammars", "diagnostics", "version"),
     ("ir",),
+    ("pysource",),
     ("analysis", "interpreter", "frontend"),
     ("targets", "checks"),
     ("driver", "report"),
@@ -29,7 +30,7 @@ LAYERS = (
 
 PACKAGES: Mapping[str, frozenset[str]] = {
     "runtime": frozenset(
-        {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs"}
+        {"rospy", "rosgraph", "actionlib", "actionlib_msgs", "genpy", "smach_msgs", "yaml"}
     ),
     "robots": frozenset({"yaml", "xacro"}),
     "sim": frozenset({"pybullet", "pybullet_data", "numpy", "PIL", "imageio_ffmpeg"}),
@@ -180,11 +181,11 @@ def test_our_modules_load_no_heavy_package_when_imported(ours: Tree) -> None:
     [
         ("smachac/commands/cli.py", "import smachac\nfrom smachac import driver, load"),
         ("smachac/targets/__init__.py", "from smachac.version import __version__"),
-        ("smachac/driver.py", "from smachac.frontend.lower import lower"),
+        ("smachac/driver.py", "from smachac.frontend.script.lower import lower"),
         ("smachac/ir/graph.py", "from .nodes import Leaf\nfrom .. import diagnostics"),
         ("smachac/targets/runner.py", "import smachac.sim.world"),
         ("smachac/sim/world.py", "def step():\n    import numpy, time"),
-        ("smachac/frontend/lower.py", "from smachac.frontend.resolve import Script"),
+        ("smachac/frontend/script/lower.py", "from smachac.frontend.script.resolve import Script"),
     ],
 )
 def test_imports_from_lower_layers_are_fine(path: str, text: str) -> None:
@@ -200,7 +201,7 @@ def test_imports_from_lower_layers_are_fine(path: str, text: str) -> None:
         ("smachac/ir/__init__.py", "from .. import frontend", "1: ir > frontend"),
         ("smachac/analysis/context.py", "\nfrom .. import frontend", "2: analysis > frontend"),
         (
-            "smachac/checks/names.py",
+            "smachac/checks/names/names.py",
             "def f():\n from smachac.commands.cli import main",
             "2: checks > commands",
         ),
@@ -211,13 +212,13 @@ def test_imports_from_lower_layers_are_fine(path: str, text: str) -> None:
         ),
         ("smachac/driver.py", "from smachac import load", "1: driver > __init__"),
         (
-            "smachac/frontend/lower.py",
+            "smachac/frontend/script/lower.py",
             "import importlib\nimportlib.import_module('smachac.checks')",
             "2: frontend > checks",
         ),
         ("smachac/runtime/trace.py", "from ..sim import world", "1: runtime > sim"),
         ("smachac/runtime/trace.py", "import smachac.diagnostics", "1: runtime > diagnostics"),
-        ("smachac/frontend/lower.py", "import smachac.novelty", "1: frontend > novelty"),
+        ("smachac/frontend/script/lower.py", "import smachac.novelty", "1: frontend > novelty"),
     ],
 )
 def test_imports_against_the_order_are_found(path: str, text: str, fault: str) -> None:
@@ -274,7 +275,7 @@ def test_a_package_that_its_own_module_imports_is_a_circle() -> None:
     ],
 )
 def test_heavy_packages_at_the_top_are_found(text: str) -> None:
-    assert len(list(heavy_faults(example("smachac/checks/names.py", text)))) == 1
+    assert len(list(heavy_faults(example("smachac/checks/names/names.py", text)))) == 1
 
 
 @pytest.mark.parametrize(
@@ -287,7 +288,7 @@ def test_heavy_packages_at_the_top_are_found(text: str) -> None:
     ],
 )
 def test_heavy_packages_in_functions_and_for_types_are_fine(text: str) -> None:
-    assert list(heavy_faults(example("smachac/checks/names.py", text))) == []
+    assert list(heavy_faults(example("smachac/checks/names/names.py", text))) == []
 
 
 def example(path: str, text: str) -> Tree:

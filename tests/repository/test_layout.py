@@ -21,7 +21,7 @@ LONGEST_FUNCTION = 70
 
 TOUCHES = {
     "smachac/frontend/files.py": "reads scripts, templates and project files",
-    "smachac/frontend/standard_messages.py": "reads the definitions of common packages of ROS",
+    "smachac/frontend/messages/standard_messages.py": "reads the common packages of ROS",
     "smachac/runtime/signals.py": "replaces the streams of a terminal that was closed",
     "smachac/targets/python/runner.py": "runs what was built, and keeps its output",
     "smachac/verify/players/python.py": "runs what was built, and keeps its output off the report",

@@ -12,7 +12,7 @@ PACKAGE = Path(smachac.__file__).parent
 ALLOWED = {
     "interpreter/behaviours.py": "their behaviour in the interpreter",
     "targets/cpp/builtin_states.py": "their code in C++",
-    "frontend/script.py": "the timer, which sugar adds to a machine",
+    "frontend/resolved_script.py": "the timer, which sugar adds to a machine",
     "refactor/smacha/template_differences.py": "the templates that templates of SMACHA extend",
 }
 

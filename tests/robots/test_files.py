@@ -6,8 +6,8 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
-from smachac.frontend.data_files import plain as checked_data
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.data_files import plain as checked_data
+from smachac.frontend.text.yaml_tree import parse
 from smachac.robots.fields import DataError
 from smachac.robots.files import plain
 

@@ -24,7 +24,7 @@ from smachac.commands.cli import main
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.driver import build
 from smachac.frontend.files import disk_library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
 from smachac.runtime import smach

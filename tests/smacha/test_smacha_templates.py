@@ -16,7 +16,7 @@ import pytest
 
 import smachac
 from smachac.frontend.files import disk_library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import StateType
 from smachac.targets.python.smacha_context import FILTERS, TESTS, ScriptText, is_not_string
 from smachac.targets.templates.engine import Blocks

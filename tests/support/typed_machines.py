@@ -9,7 +9,7 @@ from typing import cast
 
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import Key, KeyRole, Leaf, Machine, Node, StateMachine, StateType
 from smachac.ir.traversal import walk
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.yaml_tree import parse
+from smachac.frontend.text.yaml_tree import parse
 from smachac.sweep.variation import (
     Single,
     Variation,

@@ -15,7 +15,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse, build
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import Checked
 from smachac.targets import load_target
 from smachac.targets.cpp.builtin_states import is_built_in

@@ -16,7 +16,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse, build, merged
 from smachac.frontend.files import disk_library
 from smachac.frontend.loader import memory_library
-from smachac.frontend.state_types import find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.targets import load_target
 from tests.support.examples import examples
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
+from smachac.records import dataclass
 from smachac.refactor.smacha.script_differences import What
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line, visible

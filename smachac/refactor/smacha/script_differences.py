@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
 
 from smachac.diagnostics.source import Span
 from smachac.frontend.schema import LONG
-from smachac.frontend.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree
+from smachac.records import dataclass
 from smachac.targets.python.smacha_context import is_dotted_or_call
 
 What = Literal["edit", "changed", "note"]

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.source import Source, Span
-from smachac.frontend import schema, smacha_meta
-from smachac.frontend.jinja_tags import meta_block, tags
+from smachac.frontend import schema
+from smachac.frontend.types import smacha_meta
+from smachac.pysource.jinja_tags import meta_block, tags
+from smachac.records import dataclass, field
 from smachac.refactor.smacha.script_differences import SmachaDifference
 from smachac.targets.python.buffers import APPENDED, KEYED, PREPENDED
 from smachac.targets.python.python2 import translated

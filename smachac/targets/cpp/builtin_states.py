@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 from smachac.diagnostics.source import Span
@@ -11,6 +11,7 @@ from smachac.ir.leaf import default_outcome, functions, variable, variable_of
 from smachac.ir.nodes import Data, Expression, Iterator, Leaf, StateType, Struct, VariableRole
 from smachac.ir.traversal import PREEMPTED, own_outcomes
 from smachac.ir.types import Type
+from smachac.records import dataclass
 from smachac.targets.cpp.expressions import (
     Printed,
     Spelling,

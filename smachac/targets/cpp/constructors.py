@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 from smachac.diagnostics.source import NOWHERE, Word
-from smachac.frontend.cpp_text import Part
 from smachac.ir.class_facts import ClassFault
+from smachac.pysource.cpp_text import Part
+from smachac.records import dataclass
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import ClassCode, parameter_type

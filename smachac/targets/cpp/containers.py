@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 
 from smachac.diagnostics.source import assert_never
@@ -32,6 +32,7 @@ from smachac.ir.traversal import (
     walk,
 )
 from smachac.ir.types import Type
+from smachac.records import dataclass
 from smachac.targets.cpp.builtin_states import LeafCode
 from smachac.targets.cpp.expressions import cpp_expression, cpp_function
 from smachac.targets.cpp.identifiers import identifier

@@ -10,7 +10,7 @@ from __future__ import annotations
 import ast
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from smachac.diagnostics.source import assert_never
 from smachac.ir.expressions import (
@@ -35,6 +35,7 @@ from smachac.ir.expressions import (
 )
 from smachac.ir.python_code import parse_code
 from smachac.ir.types import Type
+from smachac.records import dataclass, field
 from smachac.targets.cpp import builtin_functions, literals, operators
 from smachac.targets.cpp.terms import (
     AND,

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.cpp_text import Part
 from smachac.ir.class_facts import ClassFault
+from smachac.pysource.cpp_text import Part
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.user_classes import ClassCode
 

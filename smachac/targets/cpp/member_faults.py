@@ -11,11 +11,11 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import words_of
-from smachac.frontend.cpp_text import Part
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault
 from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import PREEMPTED
+from smachac.pysource.cpp_text import Part
 from smachac.targets.cpp.constructors import constructor_faults
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.key_members import unknown_members

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import PurePath
 
 from smachac.analysis.type_inference import infer
@@ -16,6 +16,7 @@ from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import OuterNames, containers, outcome_names, remapping
 from smachac.ir.types import ANY, Type
+from smachac.records import dataclass, field
 from smachac.targets import comment
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.identifiers import clashes, identifier, outermost

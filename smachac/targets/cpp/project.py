@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
+from smachac.records import dataclass
 from smachac.targets import BuildContext, Files, OptionError, made_by, stem
 from smachac.targets.cpp.header import Header
 from smachac.targets.cpp.plan import scope_name

@@ -8,11 +8,11 @@ of the items of an empty list; `mixed` has no type in C++, and its argument is t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import reduce
 from typing import NamedTuple
 
 from smachac.ir.types import Type
+from smachac.records import dataclass
 from smachac.targets.cpp.types import (
     FLOAT,
     INT,

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from smachac.diagnostics.source import Word
-from smachac.frontend.cpp_text import Part, without_literals
 from smachac.frontend.loader import Library
+from smachac.pysource.cpp_text import Part, without_literals
 
 _CALL = re.compile(
     r"(?:\A|(?<=[;{}]))\s*(?P<call>(?P<object>\w+)\s*(?:\.|->)\s*(?P<method>\w+)\s*\()"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
-from smachac.frontend.unquoted import parameters
+from smachac.frontend.text.unquoted import parameters
 from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.traversal import PREEMPTED
 from smachac.ir.types import Type
+from smachac.records import dataclass
 from smachac.targets.cpp.builtin_states import STOP, LeafCode
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, converts

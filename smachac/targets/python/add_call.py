@@ -7,10 +7,10 @@ Such a template knows neither `error_as_outcome`, for a state that catches its e
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
 
 from smachac.ir.nodes import Concurrence, Container, Iterator, Node, Sequence, StateMachine
 from smachac.ir.python_code import parse_module
+from smachac.records import dataclass
 from smachac.targets.python import structure
 from smachac.targets.python.formatter import flat
 

@@ -1,4 +1,4 @@
-"""The declared interface of a SMACH class, from the facts about it (frontend/class_reader.py)."""
+"""The declared interface of a SMACH class, from the facts about it (pysource/class_reader.py)."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.class_reader import PARAMETERS
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFacts, ClassFault, Parameter
 from smachac.ir.nodes import StateType
+from smachac.pysource.class_reader import PARAMETERS
 from smachac.targets.interface_check import Declared
 from smachac.targets.python.ros import has_node_parameter
 

@@ -7,11 +7,11 @@ import io
 import math
 import tokenize
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from smachac.ir.nodes import Data, Expression, Struct
 from smachac.ir.python_code import parse_code
+from smachac.records import dataclass
 from smachac.targets import comment_lines
 
 if TYPE_CHECKING:

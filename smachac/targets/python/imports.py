@@ -5,13 +5,13 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from textwrap import indent
 
 from smachac.frontend.loader import Ros
 from smachac.ir.nodes import DEFINITION_KINDS, Leaf, Machine
 from smachac.ir.python_code import parse_module
 from smachac.ir.traversal import expressions, walk
+from smachac.records import dataclass, field
 from smachac.targets.python.formatter import WIDTH, laid_out, names
 
 ROS_MODULES: Mapping[Ros, tuple[str, ...]] = {

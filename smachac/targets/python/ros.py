@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source, Span
@@ -13,6 +12,7 @@ from smachac.diagnostics.wording import either
 from smachac.frontend.loader import ROS_VERSIONS, Library, Ros
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import expressions, walk
+from smachac.records import dataclass
 from smachac.targets import BuildContext, OptionError
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python.python2 import parsed

@@ -10,7 +10,6 @@ import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import partial, wraps
 from pathlib import Path
 from types import ModuleType
@@ -20,6 +19,7 @@ from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import walk
+from smachac.records import dataclass
 from smachac.robots.faults import Fault
 from smachac.runtime import signals
 from smachac.runtime.signals import StopSignals

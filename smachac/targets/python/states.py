@@ -4,7 +4,7 @@ user."""
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import chain, count
 from textwrap import indent
 
@@ -28,6 +28,7 @@ from smachac.ir.nodes import (
     Variable,
 )
 from smachac.ir.traversal import own_outcomes
+from smachac.records import dataclass, field
 from smachac.targets.interface_check import missing_template
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, OtherContainerError, adapted

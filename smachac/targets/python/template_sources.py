@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Source
 from smachac.frontend.loader import Library
-from smachac.frontend.state_types import TEMPLATE_FILES
+from smachac.frontend.types.state_types import TEMPLATE_FILES
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
 from smachac.targets.python.ros import template_finder

@@ -11,7 +11,6 @@ import json
 import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path, PurePosixPath
 
@@ -20,6 +19,7 @@ from smachac.diagnostics.source import Source
 from smachac.ir.nodes import Leaf, Machine, Node
 from smachac.ir.traversal import outcome_names, own_outcomes, walk
 from smachac.ir.types import Type
+from smachac.records import dataclass
 from smachac.runtime.tracing.writer import with_shown_paths
 from smachac.targets.cpp.builtin_states import built_in, enumeration
 from smachac.targets.cpp.identifiers import identifier

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from importlib import resources
 
 from smachac.diagnostics.diagnostic import Report, in_order
@@ -19,6 +19,7 @@ from smachac.interpreter.scenario import PlainStep
 from smachac.ir.nodes import Key, Leaf, Node, Outcome, StateMachine, StateType
 from smachac.ir.traversal import PREEMPTED, containers, own_outcomes, walk
 from smachac.ir.types import Type
+from smachac.records import dataclass, field
 from smachac.targets.cpp.builtin_states import enumeration
 from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.identifiers import identifier

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.cpp_text import without_literals
+from smachac.pysource.cpp_text import without_literals
+from smachac.records import dataclass, field
 
 _TOKEN = re.compile(
     r"\bnamespace\s+(?P<space>[\w:]+)\s*\{"

@@ -1,0 +1,1 @@
+"""Rules over the classes of the user, against the interfaces of their state types."""

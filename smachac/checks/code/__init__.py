@@ -1,0 +1,1 @@
+"""Rules over the code in a script: expressions, and functions of the user."""

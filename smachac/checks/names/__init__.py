@@ -1,0 +1,1 @@
+"""Rules over names: of states, of outcomes, and of the targets of transitions."""

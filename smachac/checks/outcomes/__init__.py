@@ -1,0 +1,1 @@
+"""Rules over outcomes: which are possible, where they lead, and which hide failures."""

@@ -1,0 +1,614 @@
+"""Rules over outcomes: whether each has a transition, and is declared by its container."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple, TypeAlias
+
+from smachac.analysis.context import Context
+from smachac.analysis.control_flow import (
+    Linear,
+    is_catch_all,
+    is_open,
+    places_of,
+    unknown_outcomes,
+)
+from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
+from smachac.diagnostics.wording import both
+from smachac.ir import nodes
+from smachac.ir.graph import stopped_endings
+from smachac.ir.leaf import functions, variable
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Leaf,
+    Node,
+    Outcome,
+    OutcomeRule,
+    Transition,
+)
+from smachac.ir.outcome_names import (
+    GOOD,
+    PREEMPTED,
+    SUCCESSES,
+    fails,
+    failures_of,
+    is_failure,
+    successes,
+)
+from smachac.ir.traversal import outcome_names
+
+
+@rule(
+    "SM103",
+    "undeclared-container-outcome",
+    Severity.ERROR,
+    firm=True,
+    effect="SMACH raises InvalidTransitionError for an undeclared outcome: the program stops",
+)
+def undeclared_container_outcome(context: Context) -> Iterator[Finding]:
+    """A concurrence or iterator can end with an outcome that it does not declare.
+
+    The container around it has no transition for that outcome: the machine stops with an error,
+    and the robot stops in the middle of its task.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, failed]
+              default_outcome: failed
+              outcome_map:
+                ready: {LEFT: done, RIGHT: done}
+                partly: {LEFT: done, RIGHT: slipped}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done]}
+                - RIGHT: {template: ScriptedState, outcomes: [done, slipped]}
+              transitions: {ready: ready, failed: failed}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [ready, failed]
+        states:
+          - BOTH:
+              template: Concurrence
+              outcomes: [ready, partly, failed]
+              default_outcome: failed
+              outcome_map:
+                ready: {LEFT: done, RIGHT: done}
+                partly: {LEFT: done, RIGHT: slipped}
+              states:
+                - LEFT: {template: ScriptedState, outcomes: [done]}
+                - RIGHT: {template: ScriptedState, outcomes: [done, slipped]}
+              transitions: {ready: ready, partly: failed, failed: failed}
+    """
+    for path, container in context.containers:
+        if isinstance(container, Concurrence):
+            yield from _undeclared_results(path, container)
+        elif isinstance(container, nodes.Iterator):
+            yield from _undeclared_endings(path, container)
+
+
+def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
+    results = [
+        ("a rule of the outcome map gives", entry.outcome, entry.span) for entry in container.rules
+    ]
+    if container.default_outcome:
+        results.append(("`default_outcome` is", container.default_outcome, container.default_span))
+    declared = frozenset(outcome_names(container))
+    guess = places_of(container)
+    transposed = transposed_rules(container)
+    inverted = inverted_rules(container)
+    if inverted:
+        yield _inverted(path, container, inverted)
+    reported = {each.rule.outcome for each in inverted}
+    for source, name, span in results:
+        if name not in declared and name not in reported:
+            meant = guess(name)
+            yield Finding(
+                span=span,
+                message=f"{source} `{name}`, which is not an outcome of `{container.name}`",
+                arguments=(own_name(container, span), name),
+                help=transposed.get(name)
+                or did_you_mean(meant if meant in declared else None)
+                or _added(container, name),
+                related=calls(container, span),
+                node=path,
+            )
+
+
+def _added(container: Container, name: str) -> str:
+    """The help that adds an outcome to a container, and to its transitions where it has some. No
+    target is chosen but a failure."""
+    help = f"add `{name}` to the outcomes of `{container.name}`"
+    target = next((step.target for step in reversed(container.transitions) if step.target), "")
+    if name == PREEMPTED or not target:
+        return help
+    transition = f", and `{name}: {target}` to its transitions"
+    return f"{help}{transition if is_failure(target) else ' and to its transitions'}"
+
+
+def transposed_rules(container: Concurrence) -> dict[str, str]:
+    """The rules of an outcome map in which the outcome of the concurrence and that of the states
+    have changed places, by the outcome that they begin with, and how they are written right."""
+    declared = frozenset(outcome_names(container))
+    children = {child.name: outcome_names(child) for child in container.children}
+    found = {}
+    for entry in container.rules:
+        results = {part.outcome for part in entry.when}
+        if entry.outcome in declared or len(results) != 1 or not results <= declared:
+            continue
+        if all(entry.outcome in children.get(part.child, ()) for part in entry.when):
+            states = ", ".join(f"{part.child}: {entry.outcome}" for part in entry.when)
+            found[entry.outcome] = (
+                f"write `{results.pop()}: {{{states}}}`: a rule begins with an"
+                f" outcome of `{container.name}`"
+            )
+    return found
+
+
+class Inverted(NamedTuple):
+    """A rule of an outcome map that begins with a state, and what is meant: pairs of an outcome of
+    the concurrence and one of the state."""
+
+    rule: OutcomeRule
+    meant: tuple[tuple[str, str], ...]
+
+
+def inverted_rules(container: Concurrence) -> tuple[Inverted, ...]:
+    """The rules of an outcome map in which outcomes and states have changed places: `STATE:
+    {outcome of the state: outcome of the concurrence}`, or with the two outcomes in the other
+    order."""
+    declared = frozenset(outcome_names(container))
+    children = {child.name: child for child in container.children}
+    found = []
+    for entry in container.rules:
+        child = children.get(entry.outcome)
+        if child is None or entry.outcome in declared or not entry.when:
+            continue
+        if any(part.child in children for part in entry.when):
+            continue
+        pairs = [(part.child, part.outcome) for part in entry.when]
+        own = frozenset(outcome_names(child))
+        if not is_open(child) and all(one in declared and two in own for one, two in pairs):
+            found.append(Inverted(entry, tuple(pairs)))
+        elif all(two in declared for _, two in pairs):
+            found.append(Inverted(entry, tuple((two, one) for one, two in pairs)))
+    return tuple(found)
+
+
+def _inverted(path: str, container: Concurrence, inverted: tuple[Inverted, ...]) -> Finding:
+    first = inverted[0].rule
+    rules: dict[str, list[str]] = {}
+    for entry in inverted:
+        for result, end in entry.meant:
+            rules.setdefault(result, []).append(f"{entry.rule.outcome}: {end}")
+    shown = ", ".join(f"{name}: {{{', '.join(parts)}}}" for name, parts in rules.items())
+    return Finding(
+        span=first.span,
+        message=f"the outcome map of `{container.name}` begins a rule with its state"
+        f" `{first.outcome}`, not with one of its outcomes",
+        arguments=(own_name(container, first.span), first.outcome),
+        help=f"the outcome comes first: `outcome_map: {{{shown}}}`",
+        related=calls(container, first.span),
+        node=path,
+    )
+
+
+def endings(container: nodes.Iterator) -> Iterator[tuple[str, str, str]]:
+    """The ways in which an iterator can end: its child (empty after the last item), the outcome
+    of that, and the outcome of the iterator."""
+    renamed = dict(container.final_map)
+    exhausted = container.exhausted_outcome
+    yield "", exhausted, renamed.get(exhausted, exhausted)
+    loops = frozenset(container.loop_outcomes)
+    for child in container.children:
+        for name in outcome_names(child):
+            if name not in loops:
+                yield child.name, name, renamed.get(name, name)
+
+
+def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Finding]:
+    declared = frozenset(outcome_names(container))
+    known = {name for child in container.children for name in outcome_names(child)}
+    misnamed = not container.sugar and not known.issuperset(container.loop_outcomes)
+    for child, outcome, result in endings(container):
+        if result in declared:
+            continue
+        if misnamed and child and outcome.lower() in SUCCESSES | GOOD:
+            continue  # SM102: an entry of `loop_outcomes` is meant for it
+        when = f"when `{child}` ends with `{outcome}`" if child else "after the last item"
+        others = f", write `loop_outcomes: [{outcome}]` to continue on it" if child else ""
+        mapped = next(reversed(outcome_names(container)), "")
+        yield Finding(
+            span=container.span,
+            message=f"`{container.name}` ends with `{result}` {when}, but has no such outcome",
+            arguments=(container.name, result, child, outcome),
+            help=f"{_added(container, result)}{others}"
+            + (f", or map it with `final_outcome_map: {{{outcome}: {mapped}}}`" if mapped else ""),
+            related=calls(container, container.span),
+            node=path,
+        )
+
+
+@rule(
+    "SM104",
+    "unhandled-outcome",
+    Severity.ERROR,
+    firm=True,
+    effect="SMACH refuses to run such a container: none of its states runs",
+)
+def unhandled_outcome(context: Context) -> Iterator[Finding]:
+    """An outcome of a state has no transition, and its container has no outcome of that name.
+
+    When the state ends with that outcome, no next state is defined: SMACH stops with an error, and
+    the arm stops where it is.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped, blocked]
+              transitions: {done: picked, slipped: lost}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped, blocked]
+              transitions: {done: picked, slipped: lost, blocked: lost}
+    """
+    for path, container in context.linear:
+        lacking = context.of_container(unhandled_in, path, container)
+        yield from _unhandled_outcomes(path, container, lacking)
+
+
+def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Iterator[Finding]:
+    if not lacking:
+        return
+    free = unentered(container)
+    order = {child.name: at for at, child in enumerate(container.children)}
+    for child, outcomes in lacking:
+        left = [*outcomes]
+        meant = meant_ending(child) if isinstance(child, nodes.Iterator) else None
+        if meant is not None and meant.result in left:
+            left.remove(meant.result)
+            yield _misnamed_ending(path, meant)
+        if not left:
+            continue
+        targets = _targets(container, child, left, free, order)
+        if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
+            for outcome in left:
+                yield _unhandled(path, container, child, outcome, targets[outcome.name])
+        else:
+            yield _several_unhandled(path, container, child, targets)
+
+
+def unentered(container: Linear) -> list[str]:
+    """The states of a container to which no transition of another state leads."""
+    led = {step.target for child in container.children for step in child.transitions
+           if step.target != child.name}  # fmt: skip
+    return [child.name for child in container.children
+            if child.name not in led and child.name != container.initial]  # fmt: skip
+
+
+def _targets(
+    container: Linear,
+    child: Node,
+    left: Iterable[Outcome],
+    free: list[str],
+    order: Mapping[str, int],
+) -> dict[str, str]:
+    """For each outcome without a transition the target that it probably needs. `free` are the
+    states of the container to which nothing leads yet; those that are used are removed. `order` has
+    the numbers of all states."""
+    found: dict[str, str] = {}
+    rest = [each.name for each in left]
+    sure, failures = successes(child), failures_of(child)
+    good = [name for name in rest
+            if name != PREEMPTED and (name in sure or name not in failures)]  # fmt: skip
+    bad = [name for name in rest
+           if name != PREEMPTED and name in failures and name not in sure]  # fmt: skip
+    for outcome in (*good, *bad) if len(rest) <= MOST_EXPLAINED else ():
+        after = (name for name in free if order[name] > order[child.name])
+        choice = next(after, next((name for name in free if name != child.name), None))
+        if choice is not None:
+            found[outcome] = choice
+            free.remove(choice)
+    for outcome in rest[:MOST_EXPLAINED]:
+        if outcome not in found:
+            is_good = outcome in sure or (good == [outcome] and _is_only_good(child, outcome))
+            found[outcome] = _target(container, child, outcome, is_good)
+    last = found[rest[:MOST_EXPLAINED][-1]]
+    found |= dict.fromkeys(rest[MOST_EXPLAINED:], last)
+    return {name: found[name] for name in rest}
+
+
+def _is_only_good(child: Node, outcome: str) -> bool:
+    """Whether all other outcomes of a state are failures or a stop, and one is a failure."""
+    others = [name for name in outcome_names(child) if name not in (outcome, PREEMPTED)]
+    return bool(others) and all(fails(child, name) for name in others)
+
+
+def _before_detour(container: Linear, child: Node, target: str) -> str:
+    """The only state that leads to a state, if another of its outcomes leads to `target`, which is
+    meant for a success of that state: it may have to run again. Empty without one."""
+    before = [
+        state for state in container.children
+        if state is not child and any(step.target == child.name for step in state.transitions)
+    ]  # fmt: skip
+    if len(before) != 1 or all(step.target != target for step in before[0].transitions):
+        return ""
+    return before[0].name
+
+
+UNDECIDED = "..."
+"""In a help in place of a target that is not certain."""
+
+
+def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
+    """The target that an outcome probably needs: that of the other failures of the state, the state
+    after a stop request, that of the same outcome of other states, a failure of the container or
+    its stop, or what comes after a success."""
+    ends = outcome_names(container)
+    failed = [name for name in ends if fails(container, name)]
+    names = [each.name for each in container.children]
+    alike = [step.target for each in container.children if each is not child
+             for step in each.transitions if step.outcome == outcome]  # fmt: skip
+    others = [name for name in alike if name in ends or outcome == PREEMPTED]
+    own = {step.target for step in child.transitions if step.origin == "written"
+           and step.outcome != PREEMPTED and fails(child, step.outcome)}  # fmt: skip
+    if outcome == PREEMPTED:
+        near = [name for name in others if name in own]
+        targets = [*([PREEMPTED] if PREEMPTED in ends else []), *near, *others, *failed]
+    elif fails(child, outcome):
+        stopped = [step.target for step in child.transitions
+                   if step.outcome == PREEMPTED and step.target in names]  # fmt: skip
+        targets = [*(own if len(own) == 1 else ()), *stopped, *others, *failed]
+    elif succeeds:
+        targets = [*names[names.index(child.name) + 1 :], *successes(container)]
+    else:
+        used = {step.target for each in container.children for step in each.transitions}
+        unused = [name for name in ends if name not in used and name != PREEMPTED]
+        targets = [*(unused if len(unused) == 1 else ()), *others, *failed]
+        if not targets and len(ends) + len(names) > 2:
+            return UNDECIDED
+    plain = [name for name in ends if name != PREEMPTED]
+    return next(iter([*targets, *reversed(plain), *ends, *names]))
+
+
+def _several_unhandled(
+    path: str, container: Linear, child: Node, targets: dict[str, str]
+) -> Finding:
+    """SM104 for a state of which several outcomes have no transition."""
+    rows = ", ".join(f"{name}: {target}" for name, target in targets.items())
+    help = f"add `{rows}` to the transitions of `{child.name}`"
+    if not any(step.origin == "written" for step in child.transitions):
+        help = f"write `transitions: {{{rows}}}` in `{child.name}`"
+    return Finding(
+        span=child.span,
+        message=f"the outcomes {both(targets)} of `{child.name}` have no transitions, and"
+        f" `{container.name}` has no outcomes of these names",
+        arguments=(child.name, *targets),
+        help=help,
+        related=calls(child, child.span),
+        node=f"{path}/{child.name}",
+    )
+
+
+class MeantEnding(NamedTuple):
+    """The outcome of an iterator after its last item, which the script does not declare and which
+    leads nowhere, and the declared outcome that is meant."""
+
+    container: nodes.Iterator
+    result: Outcome
+    meant: Outcome
+
+
+def meant_ending(container: nodes.Iterator) -> MeantEnding | None:
+    """The outcome that an iterator is meant to have after its last item: the only one that it
+    declares and cannot end with."""
+    if container.sugar or not container.transitions or any(map(is_open, container.children)):
+        return None
+    ways = {result for _, _, result in endings(container)}
+    (name, *_) = [result for _, _, result in endings(container)]
+    added = [each for each in container.outcomes if each.name == name]
+    handled = {step.outcome for step in container.transitions}
+    if not added or added[0].span != container.exhausted_span or name in handled:
+        return None
+    ways |= {*stopped_endings(container).values(), PREEMPTED, container.catches}
+    left = [each for each in container.outcomes if each.name not in ways and each.name in handled]
+    return MeantEnding(container, added[0], left[0]) if len(left) == 1 else None
+
+
+def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
+    container, result, meant = ending
+    name, field, value = container.name, "exhausted_outcome", meant.name
+    mapped = container.exhausted_outcome in dict(container.final_map)
+    if mapped:
+        field, value = "final_outcome_map", f"{{{container.exhausted_outcome}: {meant.name}}}"
+    written = result.span.text == result.name
+    message = f"`{name}` ends with `{result.name}` after the last item, but has no such outcome"
+    if written and not mapped:
+        message = f"`{field}` is `{result.name}`, but `{name}` has no such outcome"
+    return Finding(
+        span=result.span,
+        message=message,
+        arguments=(own_name(container, result.span), result.name),
+        help=f"write `{field}: {value}`: `{name}` has no other way to end with `{meant.name}`",
+        related=(
+            *other_place(meant.span, f"`{name}` never ends with this outcome"),
+            *calls(container, result.span),
+        ),
+        node=f"{path}/{name}",
+    )
+
+
+Unhandled: TypeAlias = "Sequence[tuple[Node, Sequence[Outcome]]]"
+"""The states of a container that have outcomes without a transition, with these."""
+
+
+def unhandled_in(container: Linear) -> Unhandled:
+    """The states of a container that have outcomes without a transition."""
+    return tuple([(child, left) for child in container.children if (left := unhandled(child))])
+
+
+def unhandled(child: Node) -> list[Outcome]:
+    """The outcomes of a state without a transition, except those that a misspelt transition is
+    probably for."""
+    handled = {step.outcome for step in child.transitions}
+    left = [outcome for outcome in child.outcomes if outcome.name not in handled]
+    if not left:
+        return []
+    unknown = unknown_outcomes(child)
+    if any(is_catch_all(step) for step, _ in unknown):
+        return []
+    handled.update(meant for _, meant in unknown if meant)
+    return [outcome for outcome in child.outcomes if outcome.name not in handled]
+
+
+def _field_that_adds(node: Node, outcome: str) -> str:
+    """The field `timeout`, `retry` or `for_each` of a state that adds an outcome; empty if the
+    state itself has it."""
+    if not isinstance(node, Concurrence | nodes.Iterator) or not node.sugar:
+        return ""
+    inner = node.children[0]
+    return _field_that_adds(inner, outcome) if outcome in outcome_names(inner) else node.sugar
+
+
+def meant_default(leaf: Leaf) -> str | None:
+    """The declared outcome that is meant by a `default_outcome` without a transition: the only one
+    to which no condition leads, if it has a transition."""
+    default, conditions = variable(leaf, "default_outcome"), functions(leaf, "conditions")
+    handled = {step.outcome for step in leaf.transitions}
+    if not isinstance(default, str) or not conditions or default in handled:
+        return None
+    others = {*conditions, default, leaf.catches}
+    left = [name for name in outcome_names(leaf) if name not in others]
+    return left[0] if len(left) == 1 and left[0] in handled else None
+
+
+def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, target: str) -> Finding:
+    held = child.variables if isinstance(child, Leaf) else ()
+    default = next((each for each in held if each.name == "default_outcome"), None)
+    meant = meant_default(child) if isinstance(child, Leaf) else None
+    if default is not None and meant is not None and default.value.data == outcome.name:
+        return Finding(
+            span=default.value.span,
+            message=f"`{outcome.name}` of `{child.name}` has no transition, and no condition leads"
+            f" to `{meant}`, which has one",
+            arguments=(child.name, outcome.name),
+            help=f"write `default_outcome: {meant}`",
+            related=calls(child, default.value.span),
+            node=f"{path}/{child.name}",
+        )
+    # The file of an interface may have another place on another machine, so it is not shown.
+    inside = outcome.span.source is child.span.source
+    again = _before_detour(container, child, target) if not fails(child, outcome.name) else ""
+    again = f", or `{outcome.name}: {again}` to run `{again}` again" if again else ""
+    field = _field_that_adds(child, outcome.name)
+    origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
+    why = ""
+    if field and outcome.name == PREEMPTED:
+        why = f"after a stop request `{field}` ends with it: "
+    elif field == "timeout" and isinstance(child, nodes.Iterator) and child.sugar == "retry":
+        why = f"add `{outcome.name}` to `on` of `retry` if the state must be tried again, or "
+    return Finding(
+        span=child.span,
+        message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
+        f" `{container.name}` has no outcome of that name",
+        arguments=(child.name, outcome.name),
+        help=f"{why}add `{outcome.name}: {target}` to the transitions of `{child.name}`{again}",
+        related=(
+            *(other_place(outcome.span, origin) if inside else ()),
+            *calls(child, child.span),
+        ),
+        node=f"{path}/{child.name}",
+    )
+
+
+@rule("SM105", "implicit-exit", Severity.INFO)
+def implicit_exit(context: Context) -> Iterator[Finding]:
+    """An outcome without a transition ends the container, which has an outcome of the same name.
+
+    This is often intended. If the transition was forgotten, the robot stops without a recovery.
+
+    Exactly: it is a warning for an outcome of failure of a state that has a transition for an
+    outcome of success, and a note otherwise. The states of one container that end it with one
+    outcome are one finding.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [placed, failed]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, failed]
+              transitions: {done: PLACE}
+          - PLACE:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: placed}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [placed, failed]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, failed]
+              transitions: {done: PLACE, failed: failed}
+          - PLACE:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: placed}
+    """
+    for path, container in context.linear:
+        for child in container.children if not container.sugar else ():
+            steps = [step for step in child.transitions if step.origin == "implicit"]
+            if steps:
+                yield from _implicit(path, container, child, steps)
+
+
+def _implicit(
+    path: str, container: Linear, child: Node, steps: Iterable[Transition]
+) -> Iterator[Finding]:
+    misspelt = {meant for _, meant in unknown_outcomes(child)}
+    beside = any(
+        step.origin == "written" and not fails(child, step.outcome) and step.outcome != PREEMPTED
+        for step in child.transitions
+    )
+    for step in steps:
+        if step.outcome in misspelt:
+            continue
+        forgotten = beside and fails(child, step.outcome)
+        entry = f"`{written_name(step.outcome)}: {written_name(step.target)}`"
+        yield Finding(
+            span=step.span,
+            message=f"outcome `{step.outcome}` of `{child.name}` has no transition, so"
+            f" `{container.name}` ends with `{step.target}`",
+            arguments=(own_name(child, step.span), step.outcome),
+            help=f"write {entry} if this is intended, or a transition to a state that recovers"
+            if forgotten
+            else f"add {entry} to the `transitions` of `{child.name}` to"
+            " show that this is intended",
+            related=calls(child, step.span),
+            severity=Severity.WARNING if forgotten else None,
+            node=f"{path}/{child.name}",
+            group=(own_name(container, step.span), step.outcome),
+        )

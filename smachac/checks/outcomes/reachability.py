@@ -1,0 +1,677 @@
+"""Rules over reachability: of states, of the outcomes of containers, and initial states."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+from smachac.analysis.context import Context
+from smachac.analysis.control_flow import (
+    Linear,
+    is_open,
+)
+from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.outcomes.hidden_conditions import hidden_conditions
+from smachac.checks.outcomes.misled_failures import linear_outcomes, misled_failures
+from smachac.checks.outcomes.needed_variables import outcomes_without_variable
+from smachac.checks.outcomes.outcomes import endings, meant_ending, unhandled
+from smachac.checks.properties.properties import missed_states
+from smachac.checks.rule import rule
+from smachac.checks.timing.timeouts import undeclared_stops
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.source import NOWHERE, Word
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
+from smachac.diagnostics.wording import both, listed
+from smachac.ir import nodes
+from smachac.ir.graph import edges, reachable, stopped_endings
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Node,
+    Outcome,
+    Sequence,
+    StateMachine,
+    Transition,
+)
+from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.ir.script_paths import name_in_script
+from smachac.ir.traversal import ends_preempted, outcome_names, outer_outputs
+
+
+@rule(
+    "SM201",
+    "unreachable-state",
+    Severity.ERROR,
+    effect="the robot never does this part of its task",
+)
+def unreachable_state(context: Context) -> Iterator[Finding]:
+    """No path leads to this state from the initial state of its container.
+
+    The robot never does this part of its task. Often it is a recovery, or the state in which the
+    gripper opens.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: picked, slipped: lost}
+          - OPEN_GRIPPER:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: lost}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: picked, slipped: OPEN_GRIPPER}
+          - OPEN_GRIPPER:
+              template: ScriptedState
+              outcomes: [done]
+              transitions: {done: lost}
+    """
+    for each in _hidden_groups(context):
+        if isinstance(each, Finding):
+            yield each
+            continue
+        path, container, group = each.path, each.container, each.group
+        child, way_out, twice = group[0], each.way_out, each.twice
+        if each.past is not None:
+            yield _passed(path, container, group, each.past)
+            continue
+        yield Finding(
+            span=child.span,
+            message=_unreached(container, group),
+            arguments=(child.name,),
+            help=_led_help(group, twice)
+            if twice is not None
+            else _out_help(child, *way_out)
+            if way_out is not None
+            else _why_unreachable(container, group),
+            related=(
+                *_led_places(twice),
+                *(_out_places(container, *way_out) if way_out is not None else ()),
+                *calls(child, child.span),
+            ),
+            node=f"{path}/{child.name}",
+        )
+
+
+class _Hidden(NamedTuple):
+    """A state that cannot be entered, first in a group of those that are entered by it; and what
+    probably has to lead to it: a transition that leads past it, an outcome without a transition,
+    one of two outcomes."""
+
+    path: str
+    container: Linear
+    group: list[Node]
+    past: _LedPast | None
+    way_out: tuple[Node, Transition] | None
+    twice: _LedTwice | None
+
+
+def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
+    """The groups of states that cannot be entered, without those whose cause another rule
+    reports; and the finding on a sequence that never continues."""
+    missed: set[str] | None = None
+    for (path, container), whole in zip(context.linear, context.corrected, strict=True):
+        seen = context.of_container(reachable, path, whole)
+        hidden = [child for child in container.children if child.name not in seen]
+        if not hidden:
+            continue
+        if isinstance(container, Sequence) and _never_continues(container):
+            yield _wrong_connector(path, container)
+            continue
+        if missed is None:
+            missed = missed_states(context)
+        before = _before(whole, frozenset(child.name for child in hidden))
+        first = _first_hidden(container, hidden, before, seen)
+        previous = {each.name: one for one, each in pairwise(container.children)}
+        led_twice = _led_twice(container, seen)
+        order = {child.name: at for at, child in enumerate(hidden)}
+        groups = 0
+        for child in hidden:
+            if child.name not in first or f"{path}/{child.name}" in missed:
+                continue  # SM701 reports the transition that must lead to it
+            groups += 1
+            alone, one = not before.get(child.name), previous.get(child.name)
+            is_searched = alone and groups <= MOST_EXPLAINED
+            others = first[child.name] - {child.name}
+            group = [child, *(hidden[at] for at in sorted(map(order.__getitem__, others)))]
+            past = _led_past(container, one, group, seen) if is_searched else None
+            if past is None and led_twice is None and is_searched:
+                past = _led_out(container, one, group, seen)
+            way_out = _way_out(container, one, seen) if past is None else None
+            yield _Hidden(path, container, group, past, way_out, led_twice if alone else None)
+
+
+def keys_of_hidden_states(context: Context) -> dict[tuple[str, str], frozenset[str]]:
+    """The keys that states set past which the state before them leads (SM201), each with the path
+    of its container; and the states that are entered without that transition."""
+    found: dict[tuple[str, str], frozenset[str]] = {}
+    for each in _hidden_groups(context):
+        if isinstance(each, Finding) or each.past is None or not each.past.next:
+            continue
+        entered = _entered_without(each.container, each.past.step)
+        for child in each.group:
+            found |= {(each.path, key): entered for key in outer_outputs(child)}
+    return found
+
+
+def _entered_without(container: Linear, step: Transition) -> frozenset[str]:
+    """The states of a container that can be entered without a transition."""
+    ahead: dict[str, list[str]] = {}
+    for child in container.children:
+        targets = [each.target for each in child.transitions if each is not step]
+        ahead.setdefault(child.name, []).extend(targets)
+    seen: set[str] = set()
+    todo = [container.initial]
+    while todo:
+        name = todo.pop()
+        if name in ahead and name not in seen:
+            seen.add(name)
+            todo += ahead[name]
+    return frozenset(seen)
+
+
+def _first_hidden(
+    container: Linear, hidden: list[Node], before: dict[str, list[str]], seen: Collection[str]
+) -> dict[str, set[str]]:
+    """The states by which the hidden ones are entered, each with those that are entered by it:
+    those to which no other one leads, and the first one of a circle. None if as many outcomes of
+    states that can be entered have no transitions (SM104)."""
+    after: dict[str, list[str]] = {}
+    for name, sources in before.items():
+        for source in sources:
+            after.setdefault(source, []).append(name)
+    found: dict[str, set[str]] = {}
+    covered: set[str] = set()
+    alone = [child.name for child in hidden if not before.get(child.name)]
+    for name in (*alone, *(child.name for child in hidden)):
+        if name not in covered:
+            group = found[name] = set()
+            todo = [name]
+            while todo:
+                if (each := todo.pop()) not in covered:
+                    covered.add(each)
+                    group.add(each)
+                    todo += after.get(each, [])
+    left = sum(len(unhandled(child)) for child in container.children if child.name in seen)
+    return found if len(found) > left else {}
+
+
+def _unreached(container: Linear, group: list[Node]) -> str:
+    return (
+        f"{both(each.name for each in group)} cannot be reached from `{container.initial}`, the"
+        f" initial state of `{container.name}`"
+    )
+
+
+class _LedPast(NamedTuple):
+    """A state with a transition that leads past other ones; `next`: it is the state before them in
+    the script."""
+
+    child: Node
+    step: Transition
+    next: bool
+
+
+def _led_past(
+    container: Linear,
+    before: Node | None,
+    group: list[Node],
+    seen: Collection[str],
+) -> _LedPast | None:
+    """The transition that leads past a group of states, to a state to which one of them leads as
+    well: the only one of the state before them in the script that is not one of failure; else the
+    only one of failure of that state, or of all states; else the one that leads back."""
+    if isinstance(container, Sequence):
+        return None
+    after = {step.target for step in group[0].transitions if step.target in seen}
+    good = {step.target for each in group for step in each.transitions
+            if step.target in seen and not fails(each, step.outcome)
+            and step.outcome != PREEMPTED}  # fmt: skip
+    if before is not None and before.name in seen:
+        steps = [step for step in before.transitions if step.origin == "written"]
+        for found in (
+            [each for each in steps if each.target in after | good
+             and each.outcome != PREEMPTED and not fails(before, each.outcome)],
+            [each for each in steps if each.target in good and fails(before, each.outcome)],
+        ):  # fmt: skip
+            if found:
+                return _LedPast(before, found[0], True) if len(found) == 1 else None
+    others = [
+        _LedPast(child, step, False)
+        for child in container.children
+        if child.name in seen
+        for step in child.transitions
+        if step.target in good and step.origin == "written" and fails(child, step.outcome)
+    ]
+    if len(others) == 1:
+        return others[0]
+    return _led_back(container, before) if before is not None and before.name in seen else None
+
+
+def _led_out(
+    container: Linear, before: Node | None, group: list[Node], seen: Collection[str]
+) -> _LedPast | None:
+    """The only transition for a success of the state before a group of states that leads to an
+    outcome of the container, no failure, to which one of the group leads as well."""
+    if before is None or before.name not in seen or isinstance(container, Sequence):
+        return None
+    ends = {step.target for each in group for step in each.transitions
+            if step.target in outcome_names(container) and not fails(container, step.target)
+            and step.outcome != PREEMPTED and not fails(each, step.outcome)}  # fmt: skip
+    steps = [step for step in before.transitions
+             if step.origin == "written" and step.target in ends
+             and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
+    return _LedPast(before, steps[0], True) if len(steps) == 1 else None
+
+
+def _led_back(container: Linear, before: Node) -> _LedPast | None:
+    """The only transition of a state for its successes, if it leads back to an earlier state: it is
+    probably that of a state that was copied."""
+    names = [each.name for each in container.children]
+    earlier = names[: names.index(before.name)]
+    steps = [step for step in before.transitions
+             if step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
+    is_back = len(steps) == 1 and steps[0].origin == "written" and steps[0].target in earlier
+    return _LedPast(before, steps[0], True) if is_back else None
+
+
+def _way_out(
+    container: Linear, before: Node | None, seen: Collection[str]
+) -> tuple[Node, Transition] | None:
+    """A state that can be entered, with an outcome that is not one of failure and has no
+    transition, so that the container ends with it."""
+    if before is None or before.name not in seen or isinstance(container, Sequence):
+        return None
+    steps = [step for step in before.transitions if step.origin == "implicit"
+             and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
+    return (before, steps[0]) if len(steps) == 1 else None
+
+
+def _out_help(child: Node, before: Node, step: Transition) -> str:
+    return f"add `{step.outcome}: {child.name}` to the transitions of `{before.name}`"
+
+
+def _out_places(container: Linear, before: Node, step: Transition) -> tuple[Related, ...]:
+    text = f"`{step.outcome}` of `{before.name}` has no transition, so `{container.name}` ends"
+    return other_place(before.span, text)
+
+
+def _passed(path: str, container: Linear, group: list[Node], past: _LedPast) -> Finding:
+    """SM201 for states past which the state before them leads, or another one."""
+    child, names = group[0], both(each.name for each in group)
+    before, step = past.child, past.step
+    several = len(group) > 1
+    where = ", the state before," if past.next else ""
+    return Finding(
+        span=child.span,
+        message=_unreached(container, group),
+        arguments=(child.name,),
+        help=f"write `{written_name(step.outcome)}: {child.name}` in `{before.name}`, or remove"
+        f" {names} if {'their' if several else 'its'} work is not needed",
+        related=(
+            *other_place(
+                step.target_span,
+                f"`{before.name}`{where} leads past {'them' if several else 'it'}",
+            ),
+            *calls(child, child.span),
+        ),
+        node=f"{path}/{child.name}",
+    )
+
+
+class _LedTwice(NamedTuple):
+    """A state with two outcomes of success that lead to one state."""
+
+    child: Node
+    steps: tuple[Transition, Transition]
+
+
+def _led_twice(container: Linear, seen: Collection[str]) -> _LedTwice | None:
+    """The only state of a container that can be entered and has two outcomes, neither of failure,
+    that lead to one state."""
+    names = {child.name for child in container.children}
+    found: list[_LedTwice] = []
+    for child in container.children:
+        by_target: dict[str, list[Transition]] = {}
+        plain = {
+            name for name in outcome_names(child) if name != PREEMPTED and not fails(child, name)
+        }
+        for step in child.transitions if child.name in seen else ():
+            is_plain = step.outcome in plain
+            if step.origin == "written" and step.target in names and is_plain:
+                by_target.setdefault(step.target, []).append(step)
+        found += [_LedTwice(child, (steps[0], steps[1])) for steps in by_target.values()
+                  if len(steps) == 2]  # fmt: skip
+    return found[0] if len(found) == 1 else None
+
+
+def _led_help(group: list[Node], twice: _LedTwice) -> str:
+    first, second = twice.steps
+    return (
+        f"lead `{first.outcome}` or `{second.outcome}` of `{twice.child.name}` to"
+        f" `{group[0].name}`, or remove {both(each.name for each in group)}"
+    )
+
+
+def _led_places(twice: _LedTwice | None) -> tuple[Related, ...]:
+    if twice is None:
+        return ()
+    first, second = twice.steps
+    words = f"`{first.outcome}` and `{second.outcome}` of `{twice.child.name}` both lead to"
+    return (
+        *other_place(first.target_span, f"{words} `{first.target}`"),
+        *other_place(second.target_span, "and here"),
+    )
+
+
+def _never_continues(container: Sequence) -> bool:
+    """Whether no state of a sequence has the connector outcome that the script gives."""
+    if container.connector_span.source is NOWHERE.source:
+        return False
+    return all(
+        container.connector_outcome not in outcome_names(child) and not is_open(child)
+        for child in container.children
+    )
+
+
+def _wrong_connector(path: str, container: Sequence) -> Finding:
+    outcomes = [name for child in container.children for name in outcome_names(child)]
+    word = Word(container.connector_outcome, container.connector_span)
+    guess = guesser(outcomes)
+    good = [name for name in dict.fromkeys(outcomes)
+            if all(name in outcome_names(child) for child in container.children)
+            and not any(fails(child, name) for child in container.children)]  # fmt: skip
+    known = f"use an outcome of its states: {listed(good or outcomes)}"
+    if len(good) == 1:
+        known = f"write `{good[0]}`, with which each of its states can end"
+    return Finding(
+        span=word.span,
+        message=f"no state of `{container.name}` ends with `{word.text}`, so the sequence never"
+        " continues after its first state",
+        arguments=(word.text,),
+        help=did_you_mean(guess(word.text)) or known,
+        related=calls(container, word.span),
+        node=path,
+        edits=respelt(word, guess.sure(word.text)),
+    )
+
+
+def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:
+    """The states that lead to each hidden one, without itself; they are hidden as well."""
+    before: dict[str, list[str]] = {}
+    for edge in edges(container):
+        if edge.target in hidden and edge.source != edge.target:
+            before.setdefault(str(edge.target), []).append(str(edge.source))
+    return before
+
+
+def _copied_target(container: Linear, wanted: str) -> str | None:
+    """The help that leads to a name to which nothing leads, if one state of the container leads two
+    of its outcomes to one state: one of the two targets may be a copy. It is that of the success if
+    only failures of other states lead there, that of the failure if the name is one."""
+    names = {child.name for child in container.children}
+    found: list[tuple[Node, str, list[str]]] = []
+    leading: dict[str, list[bool]] = {}
+    for child in container.children:
+        ends: dict[str, list[str]] = {}
+        for step in child.transitions if child.name != wanted else ():
+            if step.origin == "written" and step.outcome != PREEMPTED and step.target in names:
+                ends.setdefault(step.target, []).append(step.outcome)
+        for target, outcomes in ends.items():
+            if len(outcomes) == 2:
+                found.append((child, target, outcomes))
+            else:
+                leading.setdefault(target, []).extend(fails(child, name) for name in outcomes)
+    if len(found) != 1:
+        return None
+    ((child, target, outcomes),) = found
+    others = leading.get(target, [])
+    is_failure = fails(container, wanted) if wanted not in names else False
+    fitting = [name for name in outcomes if fails(child, name) == is_failure]
+    if len(fitting) == 1 and (is_failure or (others and all(others))):
+        return f"write `{fitting[0]}: {wanted}` in the transitions of `{child.name}`"
+    return (
+        f"add a transition to `{wanted}`, for example in `{child.name}`, which leads"
+        f" {both(outcomes)} to `{target}`"
+    )
+
+
+def _why_unreachable(container: Linear, group: list[Node]) -> str:
+    if isinstance(container, Sequence):
+        return (
+            f"give the state before it the outcome `{container.connector_outcome}` without a"
+            " transition: a sequence continues with that outcome"
+        )
+    names = both(each.name for each in group)
+    copied = _copied_target(container, group[0].name)
+    if copied is not None:
+        return f"{copied}, or remove {names}"
+    return f"add a transition to `{group[0].name}`, or remove {names}"
+
+
+@rule(
+    "SM203",
+    "impossible-outcome",
+    Severity.WARNING,
+    effect="a transition for this outcome is never taken",
+)
+def impossible_outcome(context: Context) -> Iterator[Finding]:
+    """A container or a state has an outcome with which it can never end.
+
+    What the script does after that outcome never happens. If the outcome is one of failure, a
+    failure of the robot probably ends the container with another outcome.
+
+    Exactly: a condition of a state counts as hidden if it compares one key with numbers, and an
+    earlier one is true for each of these values: `ud.n > 3` before `ud.n > 5`. An outcome with
+    `needs` in the interface of a state (such as `valid` of MonitorState, which needs `max_checks`)
+    is reported if the variable has no value, and only this outcome leads to a state or an end of
+    the container, or the rule of a concurrence contains it.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: picked, slipped: picked}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [picked, lost]
+        states:
+          - PICK:
+              template: ScriptedState
+              outcomes: [done, slipped]
+              transitions: {done: picked, slipped: lost}
+    """
+    yield from context.at_states(hidden_conditions)
+    types = {name: each for name, each in context.machine.state_types.items() if each.needs}
+    for path, container in context.containers if types else ():
+        yield from outcomes_without_variable(path, container, types)
+    linear = iter(context.corrected)
+    again = {found.stop.path for found in context.stop_paths.again}
+    moved: set[tuple[str, str]] | None = None
+    for path, container in context.containers:
+        whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
+        possible = _possible_outcomes(context, path, whole)
+        # Where SM209 is reported, a state does not lead `preempted` out of the container.
+        stops = path in again or ends_preempted(container)
+        known = {container.catches, PREEMPTED if stops else ""}
+        misnamed = meant_ending(container) if isinstance(container, nodes.Iterator) else None
+        if misnamed is not None:
+            known.add(misnamed.meant.name)  # SM104
+        for outcome in container.outcomes:
+            if possible is not None and outcome.name not in possible | known:
+                if moved is None:
+                    misled = misled_failures(context).items()
+                    moved = {(place, each.meant.name) for (place, _), each in misled}
+                if (path, outcome.name) not in moved:  # SM301
+                    yield _impossible(path, container, outcome)
+
+
+def _possible_outcomes(context: Context, path: str, container: Container) -> frozenset[str] | None:
+    """The outcomes with which a corrected container can end; None where another fault makes that
+    unknown."""
+    if not container.children:
+        return None
+    match container:
+        case StateMachine() | Sequence():
+            return linear_outcomes(context, path, container)
+        case Concurrence():
+            return context.of_container(_concurrence_outcomes, path, container)
+        case nodes.Iterator():
+            return context.of_container(_iterator_outcomes, path, container)
+    return None
+
+
+def _concurrence_outcomes(container: Concurrence) -> frozenset[str] | None:
+    results = {entry.outcome for entry in container.rules}
+    results.add(container.default_outcome)
+    return _if_declared(container, results)
+
+
+def _if_declared(container: Container, results: set[str]) -> frozenset[str] | None:
+    """Results, or None where one is undeclared: it may be meant for the declared outcome."""
+    return frozenset(results) if results.issubset(outcome_names(container)) else None
+
+
+def _iterator_outcomes(container: nodes.Iterator) -> frozenset[str] | None:
+    if any(is_open(child) for child in container.children):
+        return None
+    if _if_declared(container, {result for _, _, result in endings(container)}) is None:
+        return None
+    found = {edge.target[1] for edge in edges(container) if isinstance(edge.target, tuple)}
+    found.update(stopped_endings(container).values())
+    # Where SM208 is reported, `preempted` is what the iterator was meant to end with.
+    return frozenset(found | {PREEMPTED} if undeclared_stops(container) else found)
+
+
+def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
+    name = name_in_script(container)
+    removed = f"remove it from the outcomes of `{name}`"
+    help = f"add a transition to `{outcome.name}`, or {removed}"
+    severity = None
+    effect = None
+    if "/" not in path:
+        effect = f"a caller of `{name}` that waits for this outcome never gets it"
+    if isinstance(container, StateMachine):
+        copied = _copied_target(container, outcome.name)
+        help = f"{copied}, or {removed}" if copied is not None else help
+    if isinstance(container, Concurrence):
+        help = f"add a rule for `{outcome.name}`, or {removed}"
+        if outcome.name == PREEMPTED:
+            # docs/semantics.md, Preemption.
+            help = (
+                "keep it if the machine runs in SMACH for Noetic: there a preempt request ends"
+                f" `{name}` with it"
+            )
+            severity = Severity.INFO
+    if isinstance(container, nodes.Iterator):
+        child = name_in_script(container.children[0])
+        help = (
+            f"list an outcome of `{child}` in `loop_outcomes`: without one, `{name}` ends"
+            " after the first item"
+        )
+        if container.sugar:
+            help = f"list an outcome of `{child}` in `on` of `{container.sugar}`: only on such an"
+            help += " outcome the state runs again"
+        elif container.loop_outcomes:
+            help = removed
+    return Finding(
+        span=outcome.span,
+        message=f"`{name}` can never end with its outcome `{outcome.name}`",
+        arguments=(own_name(container, outcome.span), outcome.name),
+        help=help,
+        effect=effect if severity is None else "",
+        related=calls(container, outcome.span),
+        severity=severity,
+        node=path,
+    )
+
+
+@rule(
+    "SM205",
+    "no-initial",
+    Severity.ERROR,
+    firm=True,
+    effect="a container needs a state where it starts: SMACH stops it with an error",
+)
+def no_initial(context: Context) -> Iterator[Finding]:
+    """A container has no states, or its initial state does not exist.
+
+    SMACH reports an error when the container starts, and runs none of its states: the robot stops
+    in the middle of its task.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [done]
+        initial: PIKC
+        states:
+          - PICK: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [done]
+        initial: PICK
+        states:
+          - PICK: {template: ScriptedState, outcomes: [ok], transitions: {ok: done}}
+    """
+    for path, container in context.containers:
+        if isinstance(container, Concurrence):
+            continue
+        if not container.children:
+            span = container.span
+            if isinstance(container, StateMachine | Sequence) and not container.initial:
+                span = container.initial_span  # that of the empty list
+            yield Finding(
+                span=span,
+                message=f"`{container.name}` has no states",
+                arguments=(container.name,),
+                help=f"write `states: [NAME: {{{_first_state(container)}}}]`",
+                related=calls(container, span),
+                node=path,
+            )
+        elif isinstance(container, StateMachine | Sequence):
+            yield from _unknown_initial(path, container)
+
+
+def _first_state(container: Container) -> str:
+    """The fields of a state for a container without one."""
+    target = next(iter(outcome_names(container)), "OUTCOME")
+    if isinstance(container, nodes.Iterator):
+        return "template: ScriptedState, outcomes: [done]"
+    return f"template: ScriptedState, outcomes: [done], transitions: {{done: {target}}}"
+
+
+def _unknown_initial(path: str, container: Linear) -> Iterator[Finding]:
+    names = [child.name for child in container.children]
+    if container.initial in names:
+        return
+    guess = guesser(names)(container.initial)
+    yield Finding(
+        span=container.initial_span,
+        message=f"`initial` of `{container.name}` is `{container.initial}`, which is not one of its"
+        " states",
+        arguments=(own_name(container, container.initial_span), container.initial),
+        help=did_you_mean(guess) or f"use one of its states: {listed(names)}",
+        related=calls(container, container.initial_span),
+        node=path,
+    )

@@ -1,0 +1,1 @@
+"""Rules over the robot: values that it receives, motions, grasps and bodies."""

@@ -1,0 +1,1 @@
+"""Rules over time: time limits, loops, and preempt requests."""

@@ -1,0 +1,1 @@
+"""Rules over values and their types, limits and units."""

@@ -1,0 +1,1 @@
+"""Rules over userdata: keys that are unset, unused, undeclared or overwritten, and remappings."""

@@ -1,0 +1,630 @@
+"""The rules on declarations that nothing uses: keys, outcomes, params, types."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
+from typing import Literal
+
+from smachac.analysis.accesses import callback_names, unreceived_outputs, userdata_fields
+from smachac.analysis.code_slots import free_in
+from smachac.analysis.context import Context
+from smachac.analysis.definite_assignment import UserdataScope
+from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
+from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.type_lattice import misfit
+from smachac.analysis.unset_reads import Missing, container_name
+from smachac.analysis.uses import place_of
+from smachac.checks.code.code_slots import function_reads
+from smachac.checks.code.expressions import unknown_endings
+from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
+from smachac.checks.outcomes.outcomes import meant_default
+from smachac.checks.ros.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
+from smachac.checks.rule import rule
+from smachac.checks.userdata.candidate_keys import meant_by_remaps, outer_value
+from smachac.checks.userdata.empty_remaps import meant_by_empty_remaps
+from smachac.checks.userdata.meant_keys import (
+    loop_in_a_body,
+    meant_keys,
+    misnamed_finding,
+    misnamed_keys,
+    sees_everything,
+    used_in,
+)
+from smachac.checks.userdata.undeclared_keys import leaves_with_code
+from smachac.checks.userdata.unsent_keys import unsent_keys
+from smachac.checks.userdata.unwritten_keys import (
+    read_unwritten,
+    unreceived_finding,
+    unwritten_finding,
+    unwritten_keys,
+)
+from smachac.checks.userdata.word_loops import words_as_lists
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.source import NOWHERE, Span, Word
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, is_plain, respelt
+from smachac.diagnostics.wording import listed
+from smachac.frontend.errors.references import short_value
+from smachac.frontend.errors.script import number_before
+from smachac.ir import nodes
+from smachac.ir.graph import START
+from smachac.ir.leaf import functions, variable, variable_of
+from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
+from smachac.ir.traversal import OuterNames, expressions, remapping, walk
+
+
+@rule(
+    "SM305",
+    "dead-key",
+    Severity.WARNING,
+    effect="the value has no effect",
+)
+def dead_key(context: Context) -> Iterator[Finding]:
+    """A userdata key is set, but nothing in its container reads it.
+
+    The key is left over, or a state that should read it uses another name and so works with a
+    wrong value.
+
+    Exactly: only keys in `userdata` and in the `output_keys` of states are checked, not the outputs
+    of a state type or sub-script, unless the script remaps the output to a key that is one slip
+    away from a key that is read. It is an info for outputs of states in the outermost machine,
+    because they can be read after the run; its `output_keys` declare the results.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5, old_pose: 0.4}
+        states:
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              transitions: {succeeded: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5}
+        states:
+          - GRASP:
+              template: PrintUserdataState
+              input_keys: [pose]
+              transitions: {succeeded: held}
+    """
+    flow = context.corrected_flow
+    reported = _reported_elsewhere(context)
+    unset: dict[str, set[str]] = {}
+    for each in context.missing_keys("nowhere", "remapped"):
+        unset.setdefault(each.scope.path, set()).add(each.key)
+    for empty in context.empty_remaps:
+        unset.setdefault(empty.scope.path, set()).add(empty.remap.to)
+    in_functions = function_reads(context)
+    all_misnamed = misnamed_keys(context)
+    misnamed = {each.word.span: each for each in all_misnamed.values()}
+    inner = {(path.rpartition("/")[0], key) for path, key in all_misnamed}
+    for scope in flow.scopes.values():
+        container = scope.container
+        if context.of_container(sees_everything, scope.path, scope) or container.sugar:
+            continue
+        read = context.of_container(used_in, scope.path, scope)
+        remapped = _names_in_unknown_remaps(container)
+        misplaced = _misplaced_keys(container)
+        near_unset = guesser(sorted(unset.get(scope.path, ())))
+        type_keys = _type_keys(container)
+        explained = 0
+        for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
+            if key in read or (scope.path, key) in reported:
+                continue
+            if key in in_functions.get(scope.path, ()):
+                continue  # SM310
+            if (scope.path, key) in inner:
+                continue  # SM306: an input of a container inside is misspelt
+            wrong = misnamed.get(span)
+            if wrong is not None:
+                if wrong.declared:
+                    yield misnamed_finding(wrong, scope.path, container_name(scope, span))
+                continue  # otherwise SM301
+            explained += 1
+            is_searched = explained <= MOST_EXPLAINED
+            near = near_unset.names[:MOST_EXPLAINED] if is_searched else []
+            if near_unset.sure(key) or any(guesser([key])(name) for name in near):
+                continue  # SM301 or SM302 is about the same slip
+            if key in remapped:
+                continue  # SM302
+            if key in type_keys:
+                continue  # SM515
+            if not misplaced.isdisjoint([key.rpartition("_")[2], key]):
+                continue  # SM003 is about the same value
+            if not is_searched:
+                yield _unread_key(scope, key, node, span, None, is_searched=False)
+                continue
+            # The userdata of the machine can be read after the run.
+            back = _turned_preset(scope, key, read) if node is container else None
+            finding = _unread_key(scope, key, node, span, back)
+            is_result = container is flow.machine.root and node is not container
+            yield replace(finding, severity=Severity.INFO) if is_result else finding
+        for child, remap, meant in context.of_container(_misnamed_outputs, scope.path, scope):
+            if remap.to in read or (scope.path, remap.to) in reported:
+                continue
+            yield _lost_result(scope, child, remap, meant)
+
+
+def _type_keys(container: Container) -> Collection[str | None]:
+    """The keys that probably hold the type of a message that a state reads without its type."""
+    if not any(map(lacks_type_key, container.children)):
+        return ()
+    return (TYPE_KEY, type_key_meant(container))
+
+
+def _unread_key(
+    scope: UserdataScope,
+    key: str,
+    node: Node,
+    span: Span,
+    back: str | None,
+    *,
+    is_searched: bool = True,
+) -> Finding:
+    """SM305 for a key of a container that a node sets. `back`: the key that is meant, if name and
+    value have changed places; `is_searched`: a state that can read the key is searched."""
+    where = container_name(scope, span)
+    return Finding(
+        span=span,
+        message=f"`{key}` is set, but nothing in {where} reads it",
+        arguments=(key,),
+        help=(_reader_help(scope, key, node) if is_searched else None)
+        or (f"write `{back}: {key}`: the name of the key comes first" if back else None)
+        or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
+        f" it, or to the `output_keys` of {where}",
+        related=calls(node, span),
+        node=scope.path if node is scope.container else f"{scope.path}/{node.name}",
+    )
+
+
+def _lost_result(scope: UserdataScope, child: Node, remap: Remap, meant: str) -> Finding:
+    """SM305 for an output of a state that is remapped to a misspelt key."""
+    return Finding(
+        span=remap.to_span,
+        message=f"`{remap.to}` is set, but nothing in {container_name(scope, remap.span)} reads it",
+        arguments=(remap.to,),
+        help=f"did you mean `{meant}`? Write `{remap.key}: {meant}`",
+        effect=f"the result `{remap.key}` of `{child.name}` is lost: what reads `{meant}`"
+        " works without it",
+        related=calls(child, remap.span),
+        node=f"{scope.path}/{child.name}",
+    )
+
+
+def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
+    """The keys about which another finding is, each with the path of its container."""
+    found = {(each.keeper.path, each.written.outer) for each in context.lost_outputs}  # SM307
+    found |= {(each.other, each.key) for each in context.missing_keys("outside")}
+    found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
+    found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
+    found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
+    scopes = context.corrected_flow.scopes
+    unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
+    found |= {place for place in unset if place is not None}  # SM301
+    found |= _swapped_lists(context)
+    return found
+
+
+def swapped_loop(missing: Missing) -> nodes.Iterator | None:
+    """The loop over a key that nothing sets, where it calls its item as a key that is set, and a
+    state in it reads the item under the name of that key: both have changed places."""
+    scope = missing.scope
+    if missing.cause not in ("nowhere", "remapped"):
+        return None
+    held = {*scope.held, *scope.inputs}
+    for vertex in missing.vertices:
+        node = scope.container if vertex == START else scope.children.get(str(vertex))
+        if not isinstance(node, nodes.Iterator) or not node.item_key:
+            continue
+        if (remapping(node) if vertex != START else OuterNames())[node.items_key] != missing.key:
+            continue
+        read = {key.name for child in node.children for key in child.inputs}
+        for steps in scope.steps.values() if vertex != START else ():
+            held.update(*(step.writes.perhaps for step in steps))
+        if node.item_key in held and missing.key in read and node.item_key not in read:
+            return node
+    return None
+
+
+def _swapped_lists(context: Context) -> set[tuple[str, str]]:
+    """The lists of loops whose items and item have changed places, with their containers."""
+    loops = [(each, swapped_loop(each)) for each in context.missing_keys("nowhere", "remapped")]
+    return {(each.scope.path, loop.item_key) for each, loop in loops if loop is not None}
+
+
+def _misplaced_keys(container: Container) -> set[str]:
+    """The input keys that states of a container have as variables (SM003)."""
+    leaves = [child for child in container.children if isinstance(child, Leaf)]
+    return {key for leaf in leaves for key in leaf.misplaced_keys}
+
+
+def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
+    """The help for a preset that one state can read as its only optional key of that kind, which
+    nothing sets."""
+    container = scope.container
+    data = next((each.value.data for each in container.userdata if each.key == key), None)
+    if node is not container or data is None:
+        return None
+    known = scope.uses.provided
+    given = type_of_data(data)
+    last = key.removesuffix("_id").rpartition("_")[2]
+    found = [
+        (child.name, each.name)
+        for child in container.children
+        for each in (child.inputs if isinstance(child, Leaf) else ())
+        if each.type.name == "optional" and remapping(child)[each.name] not in known
+        if misfit(given, each.type) is None and last in (each.role, each.name)
+    ]
+    if len(found) != 1:
+        return None
+    (state, name), *_ = found
+    return (
+        f"`{state}` can read it as `{name}`: write `remapping: {{{name}: {key}}}` in `{state}`,"
+        f" or remove `{key}`"
+    )
+
+
+def _turned_preset(scope: UserdataScope, key: str, known: Collection[str]) -> str | None:
+    """The key of a container that is the value of a preset which nothing reads, and has no value
+    itself: name and value have changed places."""
+    values = {preset.key: preset.value.data for preset in scope.container.userdata}
+    value = values.get(key)
+    return value if isinstance(value, str) and value in known and value not in values else None
+
+
+def _names_in_unknown_remaps(container: Container) -> set[str | None]:
+    """The names in remappings of states that are none of their keys, and those that are meant."""
+    unknown = (each for child in container.children for each in unknown_remaps(child))
+    return {name for each in unknown for name in (each.remap.key, each.meant)}
+
+
+def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ...]:
+    """The keys of a container that the script itself sets, each once: presets and outputs that it
+    lists, not those of a state type or sub-script."""
+    found: dict[str, tuple[str, Node, Span]] = {}
+    for use in scope.uses.all:
+        key, node = use.declared, use.node
+        if use.kind == "presets":
+            found[use.outer] = (use.outer, node, use.span)
+        elif use.writes and isinstance(key, Key) and use.outer not in found:
+            # A key that only the code of the state has, not the script, has the place of the state.
+            is_listed = key.span != node.span or node.span == NOWHERE
+            if is_listed and key.span.source is node.span.source and _sets(node, key):
+                found[use.outer] = (use.outer, node, use.span)
+    return tuple(found.values())
+
+
+def _misnamed_outputs(scope: UserdataScope) -> tuple[tuple[Node, Remap, str], ...]:
+    """The outputs of state types that the script remaps to a key that is one slip away from another
+    one that the container reads, with that key. The reader must accept the type of the output."""
+    children = scope.container.children
+    remapped = [
+        (child, remap, key)
+        for child in children
+        if child.remaps
+        for key in child.outputs
+        for remap in child.remaps
+        if remap.key == key.name and key.span.source is not child.span.source
+    ]
+    if not remapped:
+        return ()
+    read: dict[str, list[Key]] = {}
+    for use in scope.uses.all:
+        if use.reads and isinstance(use.declared, Key):
+            read.setdefault(use.outer, []).append(use.declared)
+    guess = guesser(read)
+    found: list[tuple[Node, Remap, str]] = []
+    for child, remap, key in remapped:
+        meant = guess.sure(remap.to) if remap.to not in read else None
+        if meant is None or key.name in {each.name for each in child.inputs}:
+            continue
+        if all(misfit(key.type, each.type) is None for each in read[meant]):
+            found.append((child, remap, meant))
+    return tuple(found)
+
+
+def _sets(node: Node, key: Key) -> bool:
+    """Whether a state can set one of its outputs (if not: SM306)."""
+    if not isinstance(node, Leaf):
+        return True
+    if key.role != "result":
+        return key.name not in unreceived_outputs(node)
+    return key.name in callback_names(node)
+
+
+@rule("SM306", "unused-declaration", Severity.WARNING)
+def unused_declaration(context: Context) -> Iterator[Finding]:
+    """A key, an outcome, a param or a type is declared, but nothing uses it.
+
+    The caller of a container must provide a key without need, or expects a result that is never
+    set. An unused param has no effect, so the robot does not do what the caller intended.
+
+    Exactly: params are not checked where a template without an interface reads `params`. An output
+    key of a ServiceState or SimpleActionState is set if `response_slots` or `result_slots` lists
+    it, or if a function of the script receives the userdata and passes it on.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5, speed: 1.0}
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [done]
+              input_keys: [pose, speed]
+              states:
+                - GRASP:
+                    template: PrintUserdataState
+                    input_keys: [pose]
+                    transitions: {succeeded: done}
+              transitions: {done: held}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [held]
+        userdata: {pose: 0.5}
+        states:
+          - PICK:
+              template: StateMachine
+              outcomes: [done]
+              input_keys: [pose]
+              states:
+                - GRASP:
+                    template: PrintUserdataState
+                    input_keys: [pose]
+                    transitions: {succeeded: done}
+              transitions: {done: held}
+    """
+    flow = context.corrected_flow
+    missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
+    kept = {(each.other, each.key) for each in context.missing_keys("outside")}
+    kept |= _swapped_lists(context)
+    loops = [(each.scope.path, loop_in_a_body(each)) for each in context.missing_keys("outside")]
+    kept |= {(path, loop.item_key) for path, loop in loops if loop is not None}  # SM303
+    kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
+    kept |= {place for each in context.item_reads for place in each.declared}
+    misnamed = {each.word.span: each for each in misnamed_keys(context).values()}
+    kept |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
+    misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
+    yield from context.at_containers(_unused_in)
+    yield from _unwritten_outputs(context)
+    yield from unsent_keys(context)
+    for scope in flow.scopes.values():
+        container = scope.container
+        if isinstance(container, nodes.Iterator):
+            yield from words_as_lists(scope.path, container)
+        if context.of_container(sees_everything, scope.path, scope) or container.sugar:
+            continue
+        used = context.of_container(used_in, scope.path, scope)
+        for key in container.inputs:
+            if key.name in used or (scope.path, key.name) in kept:
+                continue
+            wrong = misnamed.get(key.span)
+            if wrong is not None and wrong.declared:
+                yield misnamed_finding(wrong, scope.path, container_name(scope, key.span))
+                continue
+            yield _unused(scope.path, container, key, "input")
+        set_ = scope.uses.provided
+        outer = scope.path.rpartition("/")[0]
+        for key in container.outputs:
+            if key.name in set_ or id(key) in misspelt:
+                continue
+            if (outer, scope.outputs[key.name]) not in missing:
+                own = {each.name for each in container.outputs}
+                meant = guesser(sorted(set_ - own)).sure(key.name)
+                yield _unused(scope.path, container, key, "output", meant)
+    yield from _unused_by_the_script(context)
+
+
+def _unwritten_outputs(context: Context) -> Iterator[Finding]:
+    """The output keys that built-in states never write."""
+    unwritten = unwritten_keys(context)
+    read = read_unwritten(context, unwritten) if unwritten else {}
+    for path, found in groupby(unwritten, key=lambda each: each.path):
+        every = [each for each in found if each.slots]
+        if every:
+            is_read = any((path, each.key.name) in read for each in every)
+            yield unreceived_finding(every, context.machine.definitions, read=is_read)
+    for each in unwritten:
+        if each.slots:
+            continue
+        finding = unwritten_finding(each, read=(each.path, each.key.name) in read)
+        if finding is not None:
+            yield finding
+
+
+def _unused(
+    path: str, node: Node, key: Key, role: Literal["input", "output"], meant: str | None = None
+) -> Finding:
+    span = key.span if not isinstance(node, Leaf) else place_of(node, key)
+    verb = "read" if role == "input" else "set"
+    effect = "a state that reads the key afterwards finds it unset, or with an older value"
+    if role == "input":
+        effect = "the container around it must set a key that has no effect"
+    if isinstance(node, Leaf):
+        nothing = f"none of its functions {verb}s it"
+        other = f"read it in one of its functions as `ud.{key.name}`"
+    else:
+        nothing = f"no state in `{node.name}` {verb}s it"
+        other = f"add it to the `{role}_keys` of the state in `{node.name}` that {verb}s it"
+    return Finding(
+        span=span,
+        message=f"`{node.name}` declares the {role} key `{key.name}`, but {nothing}",
+        arguments=(role, key.name),
+        help=did_you_mean(meant)
+        or f"remove `{key.name}` from the `{role}_keys` of `{node.name}`, or {other}",
+        effect=effect,
+        related=calls(node, span),
+        node=path,
+        edits=respelt(Word(key.name, span), meant),
+    )
+
+
+def _param_meant(name: str, known: Sequence[str]) -> str | None:
+    """The param that is probably meant by an unused one: one of a similar name, or the only one
+    that has a word of its name, as `force` for `grip_force`."""
+    words = set(name.split("_"))
+    alike = [each for each in known if not words.isdisjoint(each.split("_"))]
+    return guesser(known).sure(name) or (alike[0] if len(alike) == 1 else None)
+
+
+MOST_SHOWN = 40
+"""The longest value that a message shows, in characters."""
+
+
+_PARAM_IN_CODE = re.compile(r"\bparams(?:\.|\[['\"])(\w+)")
+
+
+def _params_in_code(machine: Machine) -> set[str]:
+    """The params that code of the script names as if they were variables: `params.limit`."""
+    codes = [code.text for _, node in walk(machine.root) for code in expressions(node)]
+    return {name for text in codes for name in _PARAM_IN_CODE.findall(text)}
+
+
+def _unused_by_the_script(context: Context) -> Iterator[Finding]:
+    """The params and types of the script that nothing uses."""
+    machine = context.machine
+    if not machine.unused:
+        return
+    in_code = _params_in_code(machine)
+    for what, word, via, known, kept in machine.unused:
+        if what == "param" and word.text in in_code:  # SM019
+            continue
+        yield _unused_word(Unused(what, word, via, known, kept), machine.root.name)
+
+
+def _unused_word(unused: Unused, root: str) -> Finding:
+    """SM306 for a param or type of the script that nothing uses."""
+    what, word, via, known, kept = unused
+    outside = (call for call in via if call.source is not word.span.source)
+    meant = _param_meant(word.text, known)
+    help = _turned_param_help(word, known) or did_you_mean(meant)
+    if help is None and known:
+        help = f"the params that are used here are {listed(known)}"
+        if len(known) == 1:
+            meant = known[0]
+            help = f"write `{meant}`, the param that is used here"
+    effect = "its value has no effect" if what == "param" else None
+    number = number_before(word)
+    if number:
+        help = f"write `{number}.{word.text}`: a decimal number has a point, not a comma"
+        effect = f"YAML reads `{number},{word.text}` as two entries"
+    default = kept.get(meant or "") if not number else None
+    if default is not None and "\n" not in default.text and len(default.text) <= MOST_SHOWN:
+        effect = f"its value has no effect: the sub-script keeps `{meant}: {default.text}`"
+    return Finding(
+        span=word.span,
+        message=f"the {what} `{word.text}` is defined, but nothing uses it",
+        arguments=(what, word.text),
+        help=help or "remove it, or correct its name",
+        effect=effect,
+        related=(
+            *(other_place(default, f"the value of `{meant}` in the sub-script") if default else ()),
+            *(Related(span=call, message=CALLED_HERE) for call in outside),
+        ),
+        node=root,
+    )
+
+
+def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:
+    """The help for a param whose value is the name of one that is used."""
+    value = short_value(word)
+    if value not in known:
+        return None
+    return f"write `{value}: {word.text}`: the name of the param comes first"
+
+
+def _unused_in(path: str, container: Container) -> Iterator[Finding]:
+    for inner, leaf in leaves_with_code(path, container):
+        yield from _unused_by_code(inner, leaf)
+
+
+def _unused_by_code(path: str, leaf: Leaf) -> Iterator[Finding]:
+    """The declared keys and outcomes of a leaf that its code in the script does not use."""
+    callbacks, conditions = functions(leaf, "callbacks"), functions(leaf, "conditions")
+    chooses = variable_of(leaf, "conditions") is not None
+    if callbacks is None or conditions is None or not (callbacks or chooses):
+        return
+    called = [*callbacks.values(), *conditions.values()]
+    if chooses and not called and not [*unknown_endings(path, leaf)]:
+        lacking = _without_conditions(path, leaf)
+        if lacking is not None:
+            yield lacking
+            return
+    known = [userdata_fields(code.text) for code in called]
+    fields = [each for each in known if each is not None]
+    if len(fields) == len(known):
+        used = {key for each in fields for key in (*each.read, *each.tested)}
+        undeclared = [key for key, _ in undeclared_reads(leaf)]
+        used |= _meant_keys(undeclared, leaf.inputs) if undeclared else set()
+        arguments = [key for key in leaf.inputs if key.role == "argument"]
+        if any(key.name not in used for key in arguments):
+            used |= {name.id for code in called for name in free_in(code.text)}  # SM019
+        yield from _unused_keys(path, leaf, arguments, used, "input")
+    if chooses and not [*unknown_endings(path, leaf)] and meant_default(leaf) is None:
+        yield from _unused_outcomes(path, leaf, conditions)
+
+
+def _without_conditions(path: str, leaf: Leaf) -> Finding | None:
+    """The finding on a state of conditions that has none, although it has outcomes for them."""
+    possible = {variable(leaf, "default_outcome"), leaf.catches}
+    outcomes = [each for each in leaf.outcomes if each.name not in possible]
+    held = variable_of(leaf, "conditions")
+    if not outcomes or held is None or meant_default(leaf) is not None:
+        return None
+    names = [each.name for each in outcomes]
+    keys = [name if is_plain(name) else f"'{name}'" for name in names]
+    pairs = ", ".join(f"{key}: 'lambda ud: ...'" for key in keys)
+    reads = listed([f"ud.{key.name}" for key in leaf.inputs if key.role == "argument"])
+    return Finding(
+        span=outcomes[0].span,
+        message=f"`{leaf.name}` has no condition for {listed(names)}",
+        arguments=("conditions", *names),
+        help=f"write `{held.name}: {{{pairs}}}`" + (f", with {reads}" if reads else ""),
+        effect="the transitions for these outcomes are never taken",
+        related=calls(leaf, outcomes[0].span),
+        node=path,
+    )
+
+
+def _unused_outcomes(path: str, leaf: Leaf, conditions: Iterable[str]) -> Iterator[Finding]:
+    """The declared outcomes without a condition."""
+    possible = {*conditions, variable(leaf, "default_outcome"), leaf.catches}
+    for outcome in leaf.outcomes:
+        if outcome.name not in possible:
+            yield Finding(
+                span=outcome.span,
+                message=f"`{outcome.name}` is declared as an outcome, but no condition leads to it",
+                arguments=("outcome", outcome.name),
+                help=f"add a condition for it, as in `{outcome.name}: 'lambda ud: True'`, or remove"
+                " it from `outcomes` and from the transitions",
+                effect="a transition for this outcome is never taken",
+                related=calls(leaf, outcome.span),
+                node=path,
+            )
+
+
+def _unused_keys(
+    path: str,
+    leaf: Leaf,
+    keys: Iterable[Key],
+    used: Iterable[str],
+    role: Literal["input", "output"],
+) -> Iterator[Finding]:
+    names = set(used)
+    return (_unused(path, leaf, key, role) for key in keys if key.name not in names)
+
+
+def _meant_keys(wrong: Iterable[str], known: Iterable[Key]) -> set[str]:
+    """The likely keys behind misspelt names (SM308, SM310)."""
+    guess = guesser(each.name for each in known)
+    return {name for key in wrong if (name := guess(key)) is not None}

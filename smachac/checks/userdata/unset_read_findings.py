@@ -1,0 +1,154 @@
+"""The finding about a key that a state reads where it may be unset (SM301): its help, its path, and
+the places that belong to it."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from smachac.analysis.def_use import written_on
+from smachac.analysis.definite_assignment import DataFlow
+from smachac.analysis.type_inference import Types
+from smachac.analysis.type_lattice import is_open
+from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
+from smachac.checks.help_text import added_remapping, calls, other_place
+from smachac.checks.userdata.candidate_keys import (
+    may_be,
+    unread_output,
+)
+from smachac.checks.userdata.edits import with_remapping
+from smachac.checks.userdata.initial_presets import counts, initial_value
+from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.repair import Certainty, Repair
+from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir import nodes
+from smachac.ir.code_places import python_tree
+from smachac.ir.nodes import Container, Node
+from smachac.ir.traversal import outcome_names, outer_inputs
+from smachac.ir.types import ANY
+
+MOST_RELATED = 3
+"""Limit on the related places of one kind in a finding."""
+
+
+def _item_place(container: Container, reader: Node) -> tuple[Related, ...]:
+    """The place of the name of the item, where the loop around the reader or the reader itself has
+    one that the script names."""
+    loop = reader if isinstance(reader, nodes.Iterator) else container
+    if not isinstance(loop, nodes.Iterator) or loop.sugar == "retry" or not loop.item_key:
+        return ()
+    if loop is reader and loop.sugar != "for_each":
+        return ()
+    return other_place(loop.item_span, f"the loop calls its item `{loop.item_key}`")
+
+
+def unset_read(
+    flow: DataFlow,
+    missing: Missing,
+    witness: Witness,
+    types: Types,
+    *,
+    is_searched: bool,
+) -> Finding:
+    """SM301 for a key where a state reads it. `is_searched`: an output that nothing reads is
+    searched in the whole container."""
+    scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
+    why = f"which is unset on {'every path' if witness.always else 'some paths'}"
+    value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
+    where = "on every path" if witness.always else "on this path too,"
+    help = (
+        f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
+    )
+    help += f" `{name}`: {value}"
+    is_counter = missing.cause == "unset" and counts(missing)
+    if is_counter:
+        help = f"give `{missing.key}` an initial value in `{name}`: {value}"
+    related: tuple[Related, ...] = ()
+    fitting: list[str] = []
+    if not (is_counter or witness.always) and len(witness.path) > 2 and witness.path[-2].is_outcome:
+        before, outcome = witness.path[-3], witness.path[-2].label.strip("()")
+        if any(use.path == before.node for use in scope.uses.writers(missing.key)):
+            help = f"lead `{outcome}` of `{before.label}` to another state, {help}"
+    if missing.cause == "nowhere":
+        why = f"which nothing in {container_name(scope, reader.span)} sets"
+        unread = unread_output(scope, missing.key) if is_searched else None
+        fitting = _fitting_keys(missing, witness, types) if is_searched else []
+        if isinstance(reader.node, nodes.Iterator) and isinstance(
+            python_tree(missing.key), ast.Lambda
+        ):
+            help = f"quotes make it the name of a key: write code as '`{missing.key}`'"
+        elif unread is not None:
+            help, related = unread.help, other_place(unread.place, f"nothing reads `{unread.key}`")
+        elif fitting:
+            help = ", or ".join(added_remapping(reader.node, reader.key, key) for key in fitting)
+        related += _item_place(scope.container, reader.node)
+    return Finding(
+        span=reader.span,
+        message=f"{reader.words}, {why}",
+        arguments=(reader.key,),
+        help=help,
+        related=(
+            *_readers(missing, witness),
+            *_writers(flow, missing),
+            *related,
+            *calls(reader.node, reader.span),
+        ),
+        path=witness.path if len(witness.path) > 1 else (),
+        severity=None if witness.always else Severity.WARNING,
+        node=reader.path,
+        repairs=tuple(
+            Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="remap a key")
+            for key in fitting
+            if (edits := with_remapping(reader.node, reader.key, key))
+        ),
+    )
+
+
+MOST_PROPOSED = 3
+"""Of more keys that can be read in place of one, none is proposed."""
+
+
+def _fitting_keys(missing: Missing, witness: Witness, types: Types) -> list[str]:
+    """The keys that a state can read in place of a key of its interface which nothing sets: those
+    that are known to have its type, or else those that nothing reads and that can have it. The
+    search itself proposes near names."""
+    scope, reader = missing.scope, witness.reader
+    declared = next((key for key in reader.node.inputs if key.name == missing.key), None)
+    if declared is None or declared.span.source is reader.node.span.source:
+        return []
+    near, own = guesser([missing.key]), outer_inputs(reader.node)
+    wanted = types.inputs.get((reader.path, reader.key), ANY)
+    if witness.inner is not None and is_open(wanted):
+        wanted = types.inputs.get((witness.inner.path, witness.inner.key), ANY)
+    known, unread = [], []
+    for key in sorted(scope.uses.provided.difference(own)):
+        if not may_be(types, scope, key, wanted):
+            continue
+        if not is_open(wanted) and not is_open(types.keys.get((scope.path, key), ANY)):
+            known.append(key)
+        elif key not in scope.uses.read and key not in scope.outputs and near(key) is None:
+            unread.append(key)
+    found = known or unread
+    return found if len(found) <= MOST_PROPOSED else []
+
+
+def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
+    """The state inside a container that reads the key, and the other readers of the unset key."""
+    if witness.inner is not None:
+        yield from other_place(witness.inner.span, f"{witness.inner.words} here")
+    for vertex in witness.also[:MOST_RELATED]:
+        reader = reader_at(missing.scope, vertex, missing.key)
+        yield from other_place(reader.span, f"{reader.words} as well")
+
+
+def _writers(flow: DataFlow, missing: Missing) -> Iterator[Related]:
+    """The states that set the key, on other paths or on some outcomes only."""
+    for use in missing.scope.uses.writers(missing.key)[:MOST_RELATED]:
+        name, outcomes = use.node.name, written_on(flow, missing.scope, use)
+        text = f"`{name}` sets it here"
+        if outcomes != outcome_names(use.node):
+            text = f"`{name}` can set it, but no outcome guarantees that it does"
+            if outcomes:
+                text = f"`{name}` sets it only on {listed(outcomes)}"
+        yield from other_place(use.span, text)

@@ -1,0 +1,1 @@
+"""Scripts: from trees to resolved scripts, and to the state graph."""

@@ -1,0 +1,180 @@
+"""Functions of the user that a script names as code: `callbacks: {best: choose_best}`.
+
+A program gets them from the templates of the user, which define them or import them from modules
+of the project. They are read, never run.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+from smachac.diagnostics.source import Span, Word
+from smachac.frontend.loader import Library
+from smachac.frontend.resolved_script import State
+from smachac.frontend.types.smacha_meta import extended
+from smachac.frontend.types.state_types import TEMPLATE_FILES
+from smachac.ir.argument_parts import argument_uses, own_names, result_of
+from smachac.ir.code_places import python_tree
+from smachac.ir.function_facts import FunctionFacts
+from smachac.ir.nodes import Data, Expression, StateType, Struct
+from smachac.pysource.flow import Flows
+from smachac.pysource.functions import alternatives, is_plain, returns_of
+from smachac.pysource.modules import Module, OwnClass, find_function, template_module
+from smachac.pysource.source import name_span
+
+_NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*")
+
+
+def functions_of(
+    base: State, types: Mapping[str, StateType | None], library: Library
+) -> dict[str, FunctionFacts]:
+    """The functions that the states of a script name, by the text in the script."""
+    modules = list(_modules(types, library))
+    if not modules:
+        return {}
+    found: dict[str, FunctionFacts] = {}
+    for text in dict.fromkeys(_names(base)):
+        facts = next((each for each in _facts(text, modules, library) if each is not None), None)
+        if facts is not None:
+            found[text] = facts
+    return found
+
+
+def _names(base: State) -> Iterator[str]:
+    """The texts in the variables of all states that can be the name of a function."""
+    todo = [base]
+    while todo:
+        state = todo.pop()
+        todo += state.states
+        for held in state.variables:
+            yield from _names_in(held.value.data)
+
+
+def _names_in(data: Data) -> Iterator[str]:
+    match data:
+        case Struct(entries=entries):
+            for _, each in entries:
+                yield from _names_in(each)
+        case str() | Expression():
+            text = data if isinstance(data, str) else data.text
+            text = text.strip("` ")
+            text = text.partition("(")[0] if text.endswith(")") else text  # a call
+            if _NAME.fullmatch(text):
+                yield text
+
+
+def _modules(types: Mapping[str, StateType | None], library: Library) -> Iterator[Module]:
+    """The Python in the user's templates of the base and of the states of a script, and in those
+    that they extend."""
+    seen: set[str] = set()
+    todo = [name for name, type_ in types.items() if type_ is not None and not type_.built_in]
+    while todo:
+        name = todo.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        for pattern in TEMPLATE_FILES:
+            source = library.own_template(pattern.format(name))
+            module = template_module(source) if source is not None else None
+            if source is not None:
+                todo.append(extended(source).partition(".")[0])
+            if module is not None:
+                yield module
+
+
+def _facts(
+    text: str, modules: Iterable[Module], library: Library
+) -> Iterator[FunctionFacts | None]:
+    """The facts about the function of a name in each module; None where it has none, or one that is
+    not called as it is defined."""
+    called = python_tree(text)
+    for module in modules if called is not None else ():
+        try:
+            found = find_function(module, called, library) if called is not None else None
+            yield _function(*found, library) if found is not None else None
+        except (RecursionError, MemoryError, ValueError):
+            return
+
+
+def _function(module: Module, function: ast.FunctionDef, library: Library) -> FunctionFacts | None:
+    text, given = module.text, function.args
+    if not is_plain(function) or text.is_filled(text.span(function)):
+        return None
+    if None in given.kw_defaults:  # a keyword that no state passes
+        return None
+    positional = [*given.posonlyargs, *given.args]
+    unknown = OwnClass(classes=(), names=(), root="unknown")
+    first = positional[0].arg if positional else ""
+    flow = Flows(unknown, library).of(module, function, first) if first else None
+    values = [each.value for each in returns_of(function.body) if each.value is not None]
+    ends = not isinstance(function.body[-1], ast.Raise)
+    parameters = tuple(each.arg for each in positional)
+    own = set(own_names(function.body, parameters))
+    places = _places(module, function)
+    word = Word(function.name, name_span(text, function))
+    return FunctionFacts(
+        word=word,
+        head=_head(module, positional) or word.span,
+        parameters=parameters,
+        least=len(positional) - len(given.defaults),
+        most=None if given.vararg is not None else len(positional),
+        silent=not values and ends and not _is_sketch(function),
+        results=tuple(result_of(one, own, places) for each in values for one in alternatives(each)),
+        reads=flow.reads if flow is not None else (),
+        writes=flow.writes if flow is not None else (),
+        used=_used(function),
+        uses=argument_uses(_nodes(function), own, places),
+    )
+
+
+def _used(function: ast.FunctionDef) -> tuple[str, ...]:
+    """The parameters of a function that its body reads."""
+    read = {each.id for line in function.body for each in ast.walk(line)
+            if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Load)}  # fmt: skip
+    given = [*function.args.posonlyargs, *function.args.args]
+    return tuple(each.arg for each in given if each.arg in read)
+
+
+def _places(module: Module, function: ast.FunctionDef) -> Callable[[ast.expr], Span]:
+    """The spans of the expressions in a function: of one in a formatted text that of this text,
+    where Python gives no exact place."""
+    formatted = {
+        each: text
+        for text in _nodes(function)
+        if isinstance(text, ast.JoinedStr)
+        for each in ast.walk(text)
+    }
+
+    def place(node: ast.expr) -> Span:
+        span = module.text.span(node)
+        text = formatted.get(node)
+        exact = text is None or span.text == ast.unparse(node)
+        return span if exact or text is None else module.text.span(text)
+
+    return place
+
+
+def _nodes(function: ast.FunctionDef) -> list[ast.AST]:
+    """The parts of the body of a function, in the order of its lines."""
+    return [each for line in function.body for each in ast.walk(line)]
+
+
+def _head(module: Module, positional: Sequence[ast.arg]) -> Span | None:
+    """The place of the positional parameters of a function."""
+    if not positional:
+        return None
+    first, last = positional[0], positional[-1]
+    start = module.text.offset(first.lineno, first.col_offset)
+    end = module.text.offset(last.end_lineno or last.lineno, last.end_col_offset or 0)
+    return Span(module.text.source, start, end)
+
+
+def _is_sketch(function: ast.FunctionDef) -> bool:
+    """Whether a function is not written yet: it has no code but a text or `...`."""
+    return all(
+        isinstance(each, ast.Pass)
+        or (isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant))
+        for each in function.body
+    )

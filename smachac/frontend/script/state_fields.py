@@ -1,0 +1,640 @@
+"""The fields of a state, each read once into a typed field.
+
+Reported are unknown fields (SM003), values of the wrong shape (SM004) and missing fields (SM005).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
+from smachac.diagnostics.source import Word
+from smachac.diagnostics.spelling import (
+    MOST_EXPLAINED,
+    guesser_of,
+    is_plain,
+    words_of,
+    written_name,
+)
+from smachac.diagnostics.wording import listed
+from smachac.frontend import schema
+from smachac.frontend.errors.script import (
+    Owner,
+    missing_variable,
+    one_of_many,
+    unknown_variable,
+    wrong_shape,
+)
+from smachac.frontend.resolved_script import State
+from smachac.frontend.schema import FieldOwner
+from smachac.frontend.script.extra_keys import check_interface
+from smachac.frontend.script.missing_outcomes import outcomes_used
+from smachac.frontend.script.params import Scope
+from smachac.frontend.script.sugar import NAMES, is_own, read_sugar
+from smachac.frontend.text.field_shapes import (
+    ends_with_any,
+    fitting_fields,
+    paired_help,
+)
+from smachac.frontend.text.fields import (
+    READERS,
+    YAML_1_1_BOOLEANS,
+    Keys,
+    Pairs,
+    as_outcomes,
+    listed_keys,
+    name_of,
+    wrong,
+)
+from smachac.frontend.text.unquoted import check_name, check_unquoted
+from smachac.frontend.text.values import as_value, as_written
+from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
+from smachac.frontend.types import value_facts
+from smachac.ir.nodes import (
+    StateType,
+    Struct,
+    Value,
+    Variable,
+    VariableType,
+)
+from smachac.ir.types import ANY, EXAMPLES
+
+Entries = Mapping[str, Entry]
+"""Fields by long name, as written; the entry's key is the name as written."""
+
+_FIELDS = frozenset(State._fields) & frozenset(schema.VARIABLES)
+"""The fields of the schema that a state keeps; tests compare their types with the readers'."""
+
+_ALL_FIELDS = frozenset(schema.VARIABLES)
+
+FIELDS_OF_STATES = tuple(schema.names_for("state"))
+
+TEMPLATE_WORDS = frozenset(
+    ["action", "behavior", "behaviour", "class", "kind", "skill", "state", "state_type", "type"]
+)
+"""Words that other tools use for `template`."""
+
+_READ_ELSEWHERE = frozenset(["template", "states", "types", *NAMES])
+"""The fields that need more than their value to be read: the library, or the state type."""
+
+_BASE_VARIABLES = ("node_name", "function_name", "manifest")
+"""The fields of the base that are variables of every base type."""
+
+
+def read_fields(
+    name: Word,
+    entries: Entries,
+    owner: FieldOwner,
+    type_: StateType,
+    report: Report,
+    *,
+    scope: Scope,
+    inner: Word | None,
+) -> dict[str, Any]:
+    """The fields of a state, as arguments of State.
+
+    `scope` are the params in its scope; `inner` is its name in the sub-script, if it is called.
+    """
+    before = len(report)
+    read, rejected = _known_fields(entries, owner, type_, report)
+    if len(report) > before and "transitions" in read:
+        read["transitions"] = _meant_booleans(read["transitions"], type_, report, before)
+    if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
+        read["name"] = name
+    if owner == "state" and "default_outcome" in entries and "default_outcome" not in read:
+        given = entries["default_outcome"].value
+        read["default_outcome"] = None if is_known_wrong(given) else name_of(given)
+    if not NAMES.isdisjoint(entries):
+        written = (word.text for word, _ in read.get("input_keys", ()))
+        inputs = (*written, *(key.name for key in type_.input_keys))
+        read["sugar"] = read_sugar(entries, type_, read.get("outcomes", ()), inputs, report)
+    if "outcomes" in schema.REQUIRED[owner] and "outcomes" not in entries:
+        read["outcomes"] = outcomes_used(entries)
+    if owner == "state" and not type_.open:
+        check_interface(read, type_, report)
+    if type_.variables:
+        _check_lists(entries, type_, report)
+        for part, keys in _listed_keys(entries, type_):
+            read[part] = (*read.get(part, ()), *keys)
+    examples = {}
+    if "outcomes" not in entries and read.get("outcomes"):
+        examples["outcomes"] = f"[{', '.join(each.name for each in read['outcomes'])}]"
+    _check_required(read["name"], entries, owner, type_, rejected, inner, examples, report)
+    read["variables"] = tuple(_variables(entries, owner, type_))
+    if owner == "base" or type_.variables:
+        _check_unquoted(entries, owner, type_, report)
+    if type_.prints_itself:
+        read["written"] = tuple(_written(read["name"], entries, scope))
+    return read
+
+
+def _meant_booleans(steps: Pairs, type_: StateType, report: Report, begin: int) -> Pairs:
+    """The transitions, with the outcomes `true` and `false` of the type in place of other words for
+    booleans, such as `yes`; the help of their finding (SM004) has the outcome that is meant. The
+    findings of this state begin at the number `begin`."""
+    names = {each.name for each in type_.outcomes}
+    places = {each.span: number for number, each in enumerate(report[begin:], begin)}
+    found: list[tuple[Word, Word]] = []
+    for word, target in steps:
+        meant = YAML_1_1_BOOLEANS.get(word.text, "")
+        if meant in names and word.text not in names and word.span in places:
+            message = f"`{word.text}` is a boolean for many YAML parsers, not an outcome"
+            help = f"write the outcome in quotes: '{meant}'"
+            report[places[word.span]] = wrong_shape(
+                word.span, message, help, arguments=("boolean", word.text)
+            )
+            word = Word(meant, word.span)
+        found.append((word, target))
+    return tuple(found)
+
+
+def accepts(type_: StateType, name: str) -> bool:
+    """Whether a state type has a variable, or accepts any."""
+    return name in type_.variables or type_.any_variable
+
+
+def with_meant_fields(
+    entries: dict[str, Entry], owner: FieldOwner, type_: StateType, report: Report
+) -> dict[str, Entry]:
+    """The fields, with those of unknown names also under the names that are meant, where that is
+    certain: then one misspelt name is one finding. The role of a variable means the variable, as
+    `conditions` in a ConditionalOutcomeState. Fields whose name and value have changed places are
+    reported."""
+    own = schema.OWN_FIELDS[owner]
+    if own.issuperset(entries):
+        return entries
+    unknown = [
+        key
+        for key in entries
+        if key not in own and (not accepts(type_, key) or _is_unused(key, type_))
+    ]
+    if not unknown:
+        return entries
+    guess = guesser_of((*schema.names_for(owner), *type_.variables))
+    meant = {guess.sure(str(entries[key].key.value)): entries[key] for key in reversed(unknown)}
+    roles: dict[str, str] = {each.role: name for name, each in type_.variables.items() if each.role}
+    meant |= {roles[key]: entries[key] for key in unknown if key in roles}
+    other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
+    if other is not None and owner != "base":
+        meant["template"] = other
+    if owner == "state" and "default_outcome" in type_.variables:
+        default = [key for key in unknown if "default" in key.split("_")]
+        if len(default) == 1 and isinstance(entries[default[0]].value, Scalar):
+            meant.setdefault("default_outcome", entries[default[0]])
+    found = {name: entry for name, entry in meant.items() if name is not None}
+    if "child_termination_cb" in unknown and ends_with_any(entries, owner):
+        given = entries["child_termination_cb"]  # the help of its finding is `join: any`
+        found["join"] = Entry(given.key, Scalar("any", True, given.key.span.source, 0, 0))
+    return found | entries
+
+
+def params_meant(entries: Entries) -> Entry | None:
+    """The field that is certainly a misspelt `params` (SM003)."""
+    if _ALL_FIELDS.issuperset(entries):
+        return None
+    for key, entry in entries.items():
+        is_map = key not in schema.VARIABLES and isinstance(entry.value, Map)
+        if is_map and guesser_of(FIELDS_OF_STATES).sure(key) == "params":
+            return entry
+    return None
+
+
+def _is_unused(key: str, type_: StateType) -> bool:
+    """Whether a template that accepts any variable has no use of this one."""
+    return type_.used is not None and key not in type_.used and key not in type_.variables
+
+
+def has_wrong_transitions(entries: Mapping[str, Entry], fields: Mapping[str, object]) -> bool:
+    """Whether the transitions of a state have a wrong shape, which was reported: then it may lead
+    anywhere."""
+    given = entries.get("transitions")
+    return given is not None and not isinstance(given.value, Map) and not fields.get("transitions")
+
+
+def has_unknown_outcomes(entries: Mapping[str, Entry], fields: Mapping[str, Any]) -> bool:
+    """Whether a look-up in the outcomes of a state failed, which was reported. `fields` are those
+    that were read: an outcome that is not known is not among them."""
+    given = entries.get("outcomes")
+    if given is None or isinstance(given.value, Scalar):
+        return given is not None and is_known_wrong(given.value)
+    items = given.value.items if isinstance(given.value, Seq) else ()
+    return len(items) > len(fields.get("outcomes", ())) and any(map(is_known_wrong, items))
+
+
+def _known_fields(
+    entries: Entries, owner: FieldOwner, type_: StateType, report: Report
+) -> tuple[dict[str, Any], set[str | None]]:
+    """The fields of the schema, read, and for each unknown field the one that it looks like. An
+    outcome beside the transitions is read as one of them."""
+    read: dict[str, Any] = {}
+    strays: list[tuple[Word, Word]] = []
+    meant: set[str | None] = set()
+    known_here, unknown = schema.OWN_FIELDS[owner], 0
+    for key, entry in entries.items():
+        if key in known_here or (key in schema.VARIABLES and _is_field(key, owner, type_)):
+            if key not in _READ_ELSEWHERE:
+                value = _read(key, schema.VARIABLES[key].shape, entry, report)
+                if key in _FIELDS and (key != "name" or owner == "base"):
+                    read[key] = value
+        elif key in type_.variables:
+            continue  # a rule checks it against its type
+        elif type_.any_variable:
+            if not type_.prints_itself and ("template" in entries or key not in TEMPLATE_WORDS):
+                check_name(key, entry.key.span, report)
+            if type_.used is not None and key not in type_.used:
+                words = [*schema.names_for(owner), *type_.used]
+                word = Word(str(entry.key.value), entry.key.span)
+                lacking = _lacking_variable(word.text, entries, type_)
+                owned = f"`{type_.name}`" if lacking is None else f"state type `{type_.name}`"
+                template = Owner(type_.name, owned)
+                report.append(unknown_variable(word, template, words, anything=lacking is None,
+                                               meant=lacking))  # fmt: skip
+        else:
+            known = schema.names_for(owner)
+            word = Word(str(entry.key.value), entry.key.span)
+            unknown += 1
+            if unknown > MOST_EXPLAINED:
+                report.append(one_of_many(word, _owner_of(owner, type_, of_type=owner == "state")))
+                continue
+            whose = _owner_of(owner, type_, of_type=owner == "state")
+            own = [*type_.variables]
+            also = [name for name, each in entries.items() if each is entry and name != key]
+            sure = also[0] if also else None
+            target = name_of(entry.value) if key in _outcomes(entries, type_) else None
+            if target is not None:
+                strays.append((word, target))
+            as_key = _as_key(word, entry, entries, type_)
+            stray = target is not None
+            certain = paired_help(word.text, sure, [*known, *own])
+            fitting = fitting_fields(entry.value, [*known, *own], entries, type_)
+            if sure is None and len(fitting) == 1 and not own:
+                certain = f"did you mean `{fitting[0]}`?"
+            needed = sure if sure is not None and _is_required(sure, owner, type_) else None
+            report.append(
+                unknown_variable(
+                    word, whose, known, own=own, meant=sure, outcome=stray, key=as_key,
+                    certain=certain, fitting=fitting, required=needed,
+                )
+            )  # fmt: skip
+            if as_key is not None:
+                read["misplaced_keys"] = (*read.get("misplaced_keys", ()), word.text)
+            meant.add(guesser_of((*dict.fromkeys((*known, *own)),))(word.text))
+            if len(own) == 1:
+                meant.add(own[0])  # the message names the only variable
+    if strays:
+        read["transitions"] = (*read.get("transitions", ()), *strays)
+    return read, meant
+
+
+def _is_required(key: str, owner: FieldOwner, type_: StateType) -> bool:
+    variable = type_.variables.get(key)
+    return key in schema.REQUIRED[owner] or (variable is not None and variable.required)
+
+
+def _as_key(word: Word, entry: Entry, entries: Entries, type_: StateType) -> str | None:
+    """How to set an input key of a state type that is written as a variable; None for others."""
+    names = {*(key.name for key in type_.input_keys), *type_.listed_inputs} - {"*"}
+    if word.text not in names:
+        return None
+    text = entry.value.span.text
+    given = text if "\n" not in text and len(text) <= LONGEST_VALUE else "..."
+    held = next((key.type.name for key in type_.input_keys if key.name == word.text), "any")
+    field = "userdata"
+    if held not in ("any", "str", "one_of", "optional") and _is_plain_word(entry.value):
+        field = "remapping"  # a name cannot be the value: it is that of another key
+    help = f"write `{field}: {{{word.text}: {given}}}`"
+    keys = entries.get("input_keys")
+    if keys is None and word.text not in type_.listed_inputs:
+        return help
+    listed_here = (
+        [] if keys is None else keys.value.span.text.replace(",", " ").strip("[]{}").split()
+    )
+    return help if word.text in listed_here else f"{help} and add `{word.text}` to its `input_keys`"
+
+
+def _is_plain_word(tree: Tree) -> bool:
+    """Whether a value is one name without quotes."""
+    return (
+        isinstance(tree, Scalar)
+        and tree.plain
+        and isinstance(tree.value, str)
+        and tree.value.isidentifier()
+    )
+
+
+LONGEST_VALUE = 60
+"""In characters; a longer value is not repeated in a help."""
+
+
+def _is_field(key: str, owner: FieldOwner, type_: StateType) -> bool:
+    """Whether a name is that of a field of the schema here. A variable that a type of the user
+    declares has its own type, also under the name of a field of containers, such as `it`."""
+    owners = schema.VARIABLES[key].owners
+    own = owners and not type_.built_in
+    return owner in owners or (key in type_.variables and not own)
+
+
+def _read(key: str, shape: str, entry: Entry, report: Report) -> object:
+    """The value of a field of the schema; one of the wrong shape, and a name that is none of the
+    choices of the field, are reported."""
+    if shape == "name" and not isinstance(entry.value, Scalar):
+        wrong(entry.value, "name", report, _one_name(key, entry))
+        return None
+    value = READERS[shape](entry.value, report)
+    if key in schema.FIELD_CHOICES and isinstance(value, Word) and value.text:
+        choices = schema.FIELD_CHOICES[key]
+        if value.text not in choices:
+            message = f"`{value.text}` is not a value of `{key}`"
+            help = did_you_mean(value.text, choices) or f"use one of {listed(choices)}"
+            arguments = ("choice", key, value.text)
+            report.append(wrong_shape(value.span, message, help, arguments=arguments))
+    return value
+
+
+def _one_name(key: str, entry: Entry) -> str | None:
+    """The help for a list or a mapping in place of one name: the only name in it, or where several
+    can be written."""
+    value = entry.value
+    trees = [each.value for each in value.entries] if isinstance(value, Map) else []
+    trees = [*value.items] if isinstance(value, Seq) else trees
+    words = [name_of(each) for each in trees]
+    if len(words) == 1 and words[0] is not None:
+        return f"write one name: `{entry.key.value}: {words[0].text}`"
+    return _SEVERAL.get(key)
+
+
+_SEVERAL = {
+    "initial": "write one state; to begin several at once, put them into a Concurrence",
+    "on_error": "write one state; errors of one state have their own `error:` in its `transitions`",
+    "robot": "write one robot; several robots in one world are a description with `parts:`",
+    "scene": "write one file, which has the bodies of all",
+}
+"""The help for a field with one name that has several."""
+
+
+def _outcomes(entries: Entries, type_: StateType) -> set[str]:
+    """The names of the outcomes that a state has."""
+    given = as_outcomes(entries["outcomes"].value, []) if "outcomes" in entries else ()
+    return {each.name for each in (*type_.outcomes, *given)}
+
+
+def _lacking_variable(name: str, entries: Entries, type_: StateType) -> str | None:
+    """The variable of a meta block that a state does not set and that is probably meant by the
+    unknown `name`: the variable that shares a word with `name`, or the only one. None otherwise."""
+    lacking = [
+        each.name
+        for each in type_.variables.values()
+        if each.default is None and each.name not in entries and each.name in (type_.used or ())
+    ]
+    near = [each for each in lacking if words_of(each) & words_of(name)] or lacking
+    return near[0] if len(near) == 1 else None
+
+
+def _check_required(
+    name: Word,
+    entries: Entries,
+    owner: FieldOwner,
+    type_: StateType,
+    meant: set[str | None],
+    inner: Word | None,
+    examples: Mapping[str, str],
+    report: Report,
+) -> None:
+    """Required fields that are missing; not those for which a misspelt one was found. `examples`
+    are their values where the script shows them."""
+    required = [*schema.REQUIRED[owner]]
+    if type_.variables:
+        required += [key for key, variable in type_.variables.items() if variable.required]
+    for key in required:
+        if key not in entries and key not in meant:
+            whose = _owner_of(owner, type_, of_type=key in type_.variables)
+            related: tuple[Related, ...] = ()
+            place = name.span
+            if inner is not None and key in schema.REQUIRED[owner]:
+                place = inner.span  # one finding for all calls
+                related = (Related(span=name.span, message="in the sub-script called here"),)
+            elif inner is not None:
+                related = (Related(span=inner.span, message="the sub-script does not set it"),)
+            variable = type_.variables.get(key)
+            example = examples.get(key, "")
+            if variable is not None:
+                example = _example(variable)
+            params = entries.get("params")
+            entry = params.value.get(key) if params and isinstance(params.value, Map) else None
+            inside = entry.key.span if entry is not None else None
+            help = _with_type(key, variable)
+            report.append(
+                missing_variable(place, key, whose, related, example, help=help, in_params=inside)
+            )
+
+
+TYPE_EXAMPLES = {
+    "message_type": ("the messages", "std_msgs/Float32"),
+    "service_type": ("the service", "std_srvs/Trigger"),
+    "action_type": ("the action", "actionlib/TestAction"),
+}
+"""What has a type of each kind, and the name of such a type, as a script writes it."""
+
+
+def _with_type(name: str, variable: VariableType | None) -> str | None:
+    """The help for a missing variable that names a type of ROS: an example, because the script does
+    not contain the type. None for other variables."""
+    if variable is None or variable.unquoted != "type" or variable.role not in TYPE_EXAMPLES:
+        return None
+    what, example = TYPE_EXAMPLES[variable.role]
+    return f"add `{name}` with the type of {what}, such as `{name}: {example}`"
+
+
+def _example(variable: VariableType) -> str:
+    """A value that the variable can have; empty if there is no short one."""
+    limits = variable.limits
+    if variable.unquoted == "function" and variable.arguments:
+        names = ("ud" if each == "userdata" else each for each in variable.arguments)
+        return f"'lambda {', '.join(names)}: True'"
+    if variable.type.name == "one_of":
+        return written_name(str(variable.type.args[0]))
+    if limits is not None and limits.choices:
+        return str(limits.choices[0])
+    if variable.role in value_facts.NAMES:
+        return "..."  # an example that is no name of the robot is wrong
+    text = EXAMPLES.get(variable.type.name, "")
+    if limits is None or variable.type.name not in ("float", "int"):
+        return text
+    if limits.least < float(text) < limits.most:
+        return text
+    low = limits.least if math.isfinite(limits.least) else limits.most - 2
+    high = limits.most if math.isfinite(limits.most) else low + 2
+    middle = low / 2 + high / 2
+    shown = str(round(middle)) if variable.type.name == "int" else f"{middle:.4g}"
+    if "e" in shown:
+        return "..."
+    if variable.type.name == "float" and "." not in shown:
+        shown += ".0"
+    inside = low < float(shown) < high or (float(shown) in (low, high) and not limits.exclusive)
+    return shown if inside else "..."
+
+
+def _check_lists(entries: Entries, type_: StateType, report: Report) -> None:
+    """Reports one name in place of a list of keys: a program reads its letters as the keys."""
+    for name, variable in type_.variables.items():
+        is_list = variable.keys in ("input", "output") and variable.type == ANY
+        value = entries[name].value if is_list and name in entries else None
+        if isinstance(value, Scalar) and isinstance(value.value, str) and is_plain(value.value):
+            wrong(value, "keys", report)
+
+
+def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys]]:
+    """The keys that variables of a state type list, each with the field that they add to."""
+    for name, variable in type_.variables.items():
+        if variable.keys in ("input", "output") and name in entries:
+            yield f"{variable.keys}_keys", listed_keys(entries[name].value)
+
+
+def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterator[Variable]:
+    """The variables of the state type that a script sets: all fields that are not the owner's."""
+    own: Collection[str] = () if owner == "base" else schema.OWN_FIELDS[owner]
+    for name in (*_BASE_VARIABLES, *type_.variables) if owner == "base" else entries:
+        if name in own and not (name in NAMES and is_own(name, type_)):
+            continue
+        entry, row = entries.get(name), schema.VARIABLES.get(name)
+        if entry is None:
+            continue
+        named = row is not None and row.shape == "name" and _is_field(name, owner, type_)
+        if named and not isinstance(entry.value, Scalar):
+            continue  # reported
+        known = type_.variables.get(name)
+        role = known.role if known is not None else ""
+        called = name == "callbacks" or role in ("callbacks", "conditions")
+        value = as_value(entry.value, code=called)
+        declared = known.type if known is not None else ANY
+        yield Variable(
+            name=name,
+            type=declared,
+            role=role,
+            takes_userdata=known is not None
+            and known.unquoted == "function"
+            and (known.arguments or ())[:1] == ("userdata",),
+            value=value,
+            span=entry.key.span,
+        )
+
+
+def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, report: Report) -> None:
+    """The shapes of the variables that programs contain without quotes."""
+    if owner == "base" and "function_name" in entries:
+        check_unquoted(entries["function_name"].value, "name", report)
+    for name, variable in type_.variables.items():
+        if variable.unquoted and name in entries:
+            check_unquoted(entries[name].value, variable.unquoted, report)
+        if variable.role == "qos" and name in entries:
+            _check_qos(entries[name].value, report)
+
+
+def _check_qos(tree: Tree, report: Report) -> None:
+    """The quality of service of a topic of ROS 2: a preset, a depth, or policies."""
+    from smachac.runtime.ros2_qos import POLICIES, faults
+
+    value: object = ()  # a list is none
+    if isinstance(tree, Scalar):
+        value = tree.value
+    elif isinstance(tree, Map):
+        value = {str(each.key.value): getattr(each.value, "value", ()) for each in tree.entries}
+    for fault in faults(value):
+        help = "write a preset such as `sensor_data`, a depth, or policies such as"
+        help += " `{reliability: best_effort, durability: volatile, depth: 5}`"
+        entry = tree.get(fault.key) if isinstance(tree, Map) else None
+        place = tree if entry is None else entry.value
+        if entry is not None and fault.key == "depth":
+            help = "write a whole number, such as `depth: 1`"
+        elif entry is not None and fault.key not in (*POLICIES, "preset"):
+            place = entry.key
+        if fault.known:
+            listed = ", ".join(f"`{each}`" for each in fault.known)
+            choice = f"write one of {listed}" if entry is not None else help
+            help = did_you_mean(place.span.text.strip("\"'"), fault.known) or choice
+        effect = "ROS 2 has no such quality of service: the program could not use the topic"
+        policy = next((name for name, known in POLICIES.items() if value in known), None)
+        if policy is not None:
+            help = f"`{value}` is a value of `{policy}`: write `{{{policy}: {value}}}`"
+            effect = "the program could not use the topic"
+        arguments = ("qos", fault.text)
+        report.append(wrong_shape(place.span, fault.text, help, arguments=arguments, effect=effect))
+
+
+def _written(name: Word, entries: Entries, scope: Scope) -> Iterator[Variable]:
+    """All fields of a state and the params in its scope, as SMACHA's templates need them."""
+    for key, entry in entries.items():
+        if key not in ("template", "states", "params"):
+            yield Variable(name=key, value=as_written(entry.value), span=entry.key.span)
+    if scope:
+        params = tuple((key, as_written(tree).data) for key, tree in scope.items())
+        value = Value(data=Struct(entries=params), span=name.span)
+        yield Variable(name="params", value=value, span=name.span)
+
+
+def _owner_of(owner: FieldOwner, type_: StateType, *, of_type: bool) -> Owner:
+    """The owner of a variable: the state type, or an owner of the schema."""
+    if of_type:
+        return Owner(type_.name, f"state type `{type_.name}`")
+    if owner == "base":
+        return Owner(owner, "the script")
+    return Owner(owner, "a state" if owner == "state" else f"a container of type `{owner}`")
+
+
+def is_field(entry: Entry) -> bool:
+    """Whether a further key of an item in a list of states is a field of its state, which is
+    indented too little, and not another state."""
+    name = str(entry.key.value)
+    if schema.LONG.get(name, name) in FIELDS_OF_STATES:
+        return True
+    empty = isinstance(entry.value, Scalar) and entry.value.value is None
+    return not isinstance(entry.value, Map) and not empty
+
+
+def with_further_states(items: tuple[Tree, ...]) -> Iterator[Tree]:
+    """The items of a list of states. A further state in one item, which is reported there, is also
+    an item of its own, so that it counts as a state."""
+    for item in items:
+        yield item
+        if not isinstance(item, Map) or len(item.entries) < 2:
+            continue
+        if isinstance(item.entries[0].value, Map):
+            for each in item.entries[1:]:
+                if isinstance(each.value, Map) and not is_field(each):
+                    yield Map((each,), each.key.span)
+
+
+def second_key(name: Word, fields: Map, other: Entry) -> Diagnostic:
+    """SM004 for a further key in an item of a list of states, beside a state with its fields."""
+    key = other.key
+    help = f"begin another item with `- {key.value}:`, or indent it below `{name.text}:`"
+    if is_field(other):
+        column = fields.entries[0].key.span.column if fields.entries else 0
+        more = max(column - key.span.column, 1)
+        spaces = f"{more} space{'s' if more > 1 else ''}"
+        help = f"indent it by {spaces} more: it is a field of `{name.text}`"
+        if fields.span.text.startswith("{"):
+            help = f"write it inside the braces of `{name.text}`: it is a field of the state"
+    return wrong_shape(
+        key.span,
+        f"this item has two keys, `{name.text}` and `{key.value}`; a state has one",
+        help,
+        (Related(span=name.span, message="the first key"),),
+        arguments=("item", name.text, str(key.value)),
+    )
+
+
+def another_state(iterator: str, first: str, other: Word) -> Diagnostic:
+    """SM004 for a further state in an Iterator."""
+    message = f"the Iterator `{iterator}` has the state `{first}`: `{other.text}` is another one"
+    help = f"indent `{other.text}` like `{iterator}` if it comes after the loop; or put `{first}`"
+    help += f" and `{other.text}` into a StateMachine inside `{iterator}`"
+    return wrong_shape(
+        other.span,
+        message,
+        help,
+        arguments=("iterator", other.text),
+        effect="an Iterator has exactly one state, which it runs for each item",
+    )

@@ -1,0 +1,220 @@
+"""Templates that are missing or were not found: the types that a state means by the names it uses,
+and one finding for all states that name the same template."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser_of, words_of
+from smachac.diagnostics.wording import either, listed
+from smachac.frontend import schema
+from smachac.frontend.errors.references import template_not_found
+from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable
+from smachac.frontend.script.state_fields import FIELDS_OF_STATES, TEMPLATE_WORDS, accepts
+from smachac.frontend.text.fields import name_of, pairs_of
+from smachac.frontend.text.yaml_tree import Entry
+from smachac.ir.nodes import StateType
+
+CALLED_HERE = "in the sub-script called here"
+
+MOST_TYPES = 200
+"""Among more types than these, none is proposed: each has to be read."""
+
+MOST_MEANT = 3
+"""If more types than these have the names that a state uses, none is proposed."""
+
+MOST_PLACES = 5
+"""The other states that are shown beside the first that names an unknown template."""
+
+
+def types_with_the_names(
+    entries: Mapping[str, Entry],
+    word: str,
+    names: Sequence[str],
+    find: Callable[[str, Collection[str]], StateType | None],
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The names of the types that have all variables, keys and outcomes of a state, and those
+    variables and keys. Types that share a word with the unknown name `word` come alone, if there
+    are any. `names` are those of all types."""
+    fields = schema.names_for("state")
+    variables = [key for key in entries if key not in fields]
+    keys = [inner.text for inner, _ in pairs_of(entries["remapping"].value)] \
+        if "remapping" in entries else []  # fmt: skip
+    used = tuple(dict.fromkeys([*keys, *variables]))
+    if not used or len(names) > MOST_TYPES:
+        return (), ()
+    steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    ends = {outcome.text for outcome, _ in steps}
+    types = [each for name in names if (each := find(name, used)) is not None]
+    fitting = [each for each in types if _has(each, used, ends)]
+    common = words_of(word) - {"state"}
+    near = [each for each in fitting if words_of(each.name) & common]
+    found = tuple(each.name for each in near or fitting)
+    return (found, used) if len(found) <= MOST_MEANT else ((), ())
+
+
+def type_of_other_framework(
+    word: str,
+    entries: Mapping[str, Entry],
+    names: Sequence[str],
+    find: Callable[[str, Collection[str]], StateType | None],
+) -> str:
+    """The help for a state whose `template` is the name of a type in another framework: the type
+    here, and the fields and outcomes of the state that have another name; empty without one."""
+    if len(names) > MOST_TYPES:
+        return ""
+    types = (find(name, (word,)) for name in names)
+    type_ = next((each for each in types if each and word in each.other_names), None)
+    if type_ is None:
+        return ""
+    steps = pairs_of(entries["transitions"].value) if "transitions" in entries else ()
+    used = [*entries, *(outcome.text for outcome, _ in steps)]
+    renamed = type_.other_names[word]
+    changes = [f"`{renamed[each]}` in place of `{each}`" for each in used if each in renamed]
+    return f"write `template: {type_.name}`" + (f", with {', '.join(changes)}" if changes else "")
+
+
+class Searched(NamedTuple):
+    """Where a template was searched: the folders, the names of all types, those and the kinds of
+    containers, the names of sub-scripts, and a folder that has the file but was not searched."""
+
+    folders: Sequence[str]
+    types: Sequence[str]
+    known: Sequence[str]
+    scripts: Sequence[str]
+    other: str
+
+
+def unknown_template(
+    word: Word,
+    entries: Mapping[str, Entry],
+    searched: Searched,
+    find: Callable[[str, Collection[str]], StateType | None],
+) -> Diagnostic:
+    """SM013 for a template that was not found: with the type that is meant by its name or by the
+    `entries` of the state."""
+    folders, types, known, scripts, other = searched
+    fitting: tuple[str, ...] = ()
+    used: tuple[str, ...] = ()
+    foreign = ""
+    is_script = word.text in scripts
+    if not (other or is_script) and guesser_of(tuple(known)).sure(word.text) is None:
+        foreign = type_of_other_framework(word.text, entries, types, find) if entries else ""
+        fitting, used = types_with_the_names(entries, word.text, types, find)
+    return template_not_found(word, folders, known, other, fitting, used, foreign, script=is_script)
+
+
+def with_meant_call(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
+    """The fields of a state with neither `template` nor `script`, in which a misspelt `script` is
+    corrected, which is reported (SM003)."""
+    if "template" in own or "script" in own:
+        return own
+    sure = guesser_of(("script", "template")).sure
+    for key, entry in own.items():
+        if key not in schema.VARIABLES and sure(key) == "script" and name_of(entry.value):
+            owner = Owner(name.text, f"`{name.text}`")
+            word = Word(str(entry.key.value), entry.key.span)
+            report.append(unknown_variable(word, owner, ["script"], meant="script"))
+            return {("script" if each == key else each): own[each] for each in own}
+    return own
+
+
+def meant_template(
+    entries: Mapping[str, Entry], find: Callable[[str], StateType | None]
+) -> Entry | None:
+    """The field with another name that is meant for `template`, if it names a type that does not
+    have the field: then the name is reported as unknown."""
+    sure = guesser_of(FIELDS_OF_STATES).sure
+    for key, entry in entries.items():
+        if key in schema.VARIABLES or not (key in TEMPLATE_WORDS or sure(key) == "template"):
+            continue
+        word = name_of(entry.value)
+        if word is None or not word.text:
+            continue
+        if word.text in schema.CONTAINERS:
+            return entry
+        found = find(word.text)
+        if found is not None and not found.open and not accepts(found, key):
+            return entry
+    return None
+
+
+def missing_template_help(
+    name: str,
+    entries: Mapping[str, Entry],
+    scripts: Sequence[str],
+    names: Sequence[str],
+    find: Callable[[str, Collection[str]], StateType | None],
+) -> str | None:
+    """The help for a state without a template: the sub-script of its name, else the types that have
+    the names that it uses; None if there are neither. `scripts` are the names of sub-scripts."""
+    script = next((each for each in scripts if each.casefold() == name.casefold()), None)
+    if script is not None:
+        return f"add `script: {script}`, or `template: TYPE` if it is no call of that sub-script"
+    kind, field = _only_kind(entries)
+    if kind:
+        return f"add `template: {kind}`: only a {kind} has `{field}`"
+    types, used = types_with_the_names(entries, "", names, find)
+    if not types:
+        return None
+    several = len(types) > 1
+    has = "these types have" if several else "this type has"
+    return f"add {either(f'template: {each}' for each in types)}: {has} {listed(used)}"
+
+
+def _only_kind(entries: Iterable[str]) -> tuple[str, str]:
+    """The only kind of container that has the fields of a state which no other state has, with the
+    first of these fields; empty without one."""
+    rows = {key: row for key in entries if (row := schema.VARIABLES.get(key)) is not None}
+    own = {key: row.owners & schema.CONTAINERS.keys() for key, row in rows.items()
+           if row.owners and not row.owners & {"state", "base"}}  # fmt: skip
+    kinds = set.intersection(*map(set, own.values())) if own else set()
+    return (kinds.pop(), next(iter(own))) if len(kinds) == 1 else ("", "")
+
+
+def missing_template(
+    state: Word, calls: Sequence[Span], entries: Mapping[str, Entry], help: str | None
+) -> Diagnostic:
+    """SM005 for a state without a template. `calls` are those of sub-scripts that lead to it."""
+    related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
+    owner = Owner(state.text, f"`{state.text}`")
+    others = [entries[key] for key in entries if key in TEMPLATE_WORDS]
+    instead = Word(str(others[0].key.value), others[0].key.span) if others else None
+    return missing_variable(state.span, "template", owner, related, help=help, instead=instead)
+
+
+def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:
+    """Whether a type declares these variables or keys, and these outcomes."""
+    if type_.kind != "state" or type_.open or type_.any_variable:
+        return False
+    keys = {each.name for each in (*type_.input_keys, *type_.output_keys)}
+    outcomes = {each.name for each in type_.outcomes} | {"error", "timeout"}
+    return keys.union(type_.variables).issuperset(used) and outcomes.issuperset(ends)
+
+
+def one_for_each_template(found: Sequence[Diagnostic]) -> Report:
+    """The findings, with one for each template that was not found, at the first state that names
+    it."""
+    places: dict[str, list[Diagnostic]] = {}
+    for item in found:
+        if item.kind is template_not_found.code:
+            places.setdefault(item.finding.arguments[0], []).append(item)
+    kept: Report = []
+    for item in found:
+        if item.kind is not template_not_found.code:
+            kept.append(item)
+            continue
+        first, *others = places[item.finding.arguments[0]]
+        if item is first:
+            # The calls of one sub-script lead to one place.
+            others = list({each.span: each for each in others if each.span != item.span}.values())
+            shown = (
+                Related(span=each.span, message="the same here") for each in others[:MOST_PLACES]
+            )
+            finding = replace(item.finding, related=(*item.finding.related, *shown))
+            kept.append(replace(item, finding=finding) if others else item)
+    return kept

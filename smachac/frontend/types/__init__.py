@@ -1,0 +1,1 @@
+"""State types: interfaces, templates with meta blocks, and the types of values."""

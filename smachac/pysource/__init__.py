@@ -1,0 +1,1 @@
+"""Source text of the user in Python and C++: read, never run."""

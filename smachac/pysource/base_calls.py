@@ -1,0 +1,343 @@
+"""Calls of the constructor of a base class of the project, against its parameters."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.wording import listed
+from smachac.ir.class_facts import ClassFault
+from smachac.pysource.functions import access_of, alternatives, returns_of
+from smachac.pysource.modules import Module, Names, OwnClass
+from smachac.pysource.source import PythonText
+
+
+class _Call(NamedTuple):
+    """A call of the constructor of the class `owner` with the parameters `taken`, in the
+    constructor `maker` of a derived class. `arguments` are those without `self`, `base` is the
+    constructor that is called."""
+
+    module: Module
+    maker: ast.FunctionDef
+    node: ast.Call
+    arguments: Sequence[ast.expr]
+    owner: str
+    base: ast.FunctionDef
+
+    @property
+    def taken(self) -> ast.arguments:
+        return self.base.args
+
+    @property
+    def positional(self) -> list[str]:
+        """The parameters that accept arguments without a name, without `self`."""
+        return [each.arg for each in (*self.taken.posonlyargs, *self.taken.args)][1:]
+
+
+def base_call_faults(own: OwnClass) -> Iterator[ClassFault]:
+    """The calls of constructors of base classes of the project that these do not fit."""
+    for at, names in enumerate(own.names):
+        call = _base_call(own, at, names)
+        if call is None:
+            continue
+        faults = [*_name_faults(call)] or [*_count_faults(call)]
+        if not faults and at == 0:
+            faults = [*_shifted(own, call)] or [*_exchanged(own, call)]
+        yield from faults
+
+
+def arguments_to_base(own: OwnClass) -> Mapping[str, tuple[PythonText, ast.expr]] | None:
+    """The arguments that a class passes to the constructor of the last of its base classes, by the
+    name of the parameter, and the default values of others, each with the text that it is in; not
+    those of a parameter to which that constructor gives another value. None if it is not known."""
+    *derived, (last, base) = own.classes
+    call = _base_call(own, 0, own.names[0]) if derived else None
+    if call is None or call.base not in base.body or [*base_call_faults(own)]:
+        return None
+    if call.node not in [each.value for each in call.maker.body if isinstance(each, ast.Expr)]:
+        return None
+    taken, text = call.taken, last.text
+    names = [each.arg for each in (*taken.posonlyargs, *taken.args)]
+    pairs = [*zip(reversed(names), reversed(taken.defaults), strict=False)]
+    pairs += [(each.arg, default) for each, default in
+              zip(taken.kwonlyargs, taken.kw_defaults, strict=True) if default]  # fmt: skip
+    found = {name: (text, default) for name, default in pairs}
+    given = [*zip(call.positional, call.arguments, strict=False)]
+    given += [(each.arg or "", each.value) for each in call.node.keywords]
+    found |= {name: (call.module.text, value) for name, value in given}
+    for each in ast.walk(call.base):
+        match each:
+            case (
+                ast.Name(id=name, ctx=ast.Store() | ast.Del())
+                | ast.Attribute(value=ast.Name(id=name))
+            ):
+                found.pop(name, None)
+    return found
+
+
+def _maker(names: Names) -> ast.FunctionDef | None:
+    """The constructor among the names of a class, if it is plain."""
+    match names.get("__init__", ()):
+        case (ast.FunctionDef(decorator_list=[]) as maker,):
+            return maker
+    return None
+
+
+def _base_call(own: OwnClass, at: int, names: Names) -> _Call | None:
+    """The only call of the constructor of the base class in that of a class; None where it is not
+    known which one it calls, and with which arguments."""
+    module, node = own.classes[at]
+    maker = _maker(names)
+    base = next((level for level in range(at + 1, len(own.names))
+                 if "__init__" in own.names[level]), None)  # fmt: skip
+    taken = _maker(own.names[base]) if base is not None else None
+    if maker is None or base is None or taken is None or maker not in node.body:
+        return None
+    me = [each.arg for each in (*maker.args.posonlyargs, *maker.args.args)][:1]
+    calls = [(each, _arguments(each, node, own.classes[base][1], me))
+             for each in ast.walk(maker) if isinstance(each, ast.Call)]  # fmt: skip
+    found = [(each, given) for each, given in calls if given is not None]
+    if len(found) != 1 or taken not in own.classes[base][1].body:
+        return None
+    call, arguments = found[0]
+    open_ = any(isinstance(each, ast.Starred) for each in arguments)
+    open_ = open_ or any(each.arg is None for each in call.keywords)
+    if open_ or module.text.is_filled(module.text.span(call)):
+        return None
+    return _Call(module, maker, call, arguments, own.classes[base][1].name, taken)
+
+
+def _arguments(
+    call: ast.Call, node: ast.ClassDef, base: ast.ClassDef, me: list[str]
+) -> Sequence[ast.expr] | None:
+    """The arguments without names of a call of the constructor of the base class; None for other
+    calls."""
+    match call.func:
+        case ast.Attribute(value=ast.Call(func=ast.Name(id="super"), args=given), attr="__init__"):
+            names = [each.id for each in given if isinstance(each, ast.Name)]
+            known = not given or names == [node.name, *me]
+            first = call.args[0] if call.args else None
+            again = isinstance(first, ast.Name) and [first.id] == me
+            return call.args if known and not again else None
+        case ast.Attribute(value=ast.Name(id=name), attr="__init__") if name == base.name:
+            match call.args:
+                case [ast.Name(id=passed), *others] if [passed] == me:
+                    return others
+    return None
+
+
+def _name_faults(call: _Call) -> Iterator[ClassFault]:
+    """The arguments of a name that the constructor does not have, or that it gets twice."""
+    text = call.module.text
+    by_name = [each.arg for each in (*call.taken.args, *call.taken.kwonlyargs)]
+    by_name = [name for name in by_name if name not in ("self",)]
+    passed = {*call.positional[: len(call.arguments)]}
+    free = [name for name in by_name if name not in passed]
+    given = {each.arg for each in call.node.keywords}
+    for keyword in call.node.keywords:
+        name = keyword.arg or ""
+        start = text.offset(keyword.lineno, keyword.col_offset)
+        word = Word(name, Span(text.source, start, start + len(name)))
+        if name in passed and name in by_name:
+            yield ClassFault(kind="argument twice", name=word, owner=call.owner)
+        elif name not in by_name and call.taken.kwarg is None:
+            near = guesser([each for each in free if each not in given])(name)
+            yield ClassFault(kind="no base argument", name=word, near=near, owner=call.owner,
+                             more=_in_order(by_name))  # fmt: skip
+
+
+def _in_order(names: list[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
+
+
+def _count_faults(call: _Call) -> Iterator[ClassFault]:
+    """Arguments that are too many, or missing."""
+    text, positional = call.module.text, call.positional
+    if len(call.arguments) > len(positional) and call.taken.vararg is None:
+        span = text.span(call.arguments[len(positional)])
+        more = _in_order(positional) if positional else "only `self`"
+        word = Word(" ".join(span.text.split()), span)
+        yield ClassFault(kind="too many arguments", name=word, owner=call.owner, more=more)
+        return
+    due = positional[: len(positional) - len(call.taken.defaults)]
+    due += [each.arg for each, default in
+            zip(call.taken.kwonlyargs, call.taken.kw_defaults, strict=True)
+            if default is None]  # fmt: skip
+    given = {*positional[: len(call.arguments)], *(each.arg for each in call.node.keywords)}
+    missing = [name for name in due if name not in given]
+    if missing:
+        span = text.span(call.node.func)
+        own = {each.arg for each in call.maker.args.args}
+        left_out = _left_out(call)
+        near = _with(call, left_out) if left_out is not None else None
+        if near is None:
+            added = [f"{name}={name if name in own else '...'}" for name in missing]
+            near = f"{span.text}({', '.join([*_written(call), *added])})"
+        yield ClassFault(kind="missing base argument", name=Word(span.text, span), near=near,
+                         owner=call.owner, more=listed(missing))  # fmt: skip
+
+
+def _written(call: _Call) -> list[str]:
+    """The texts of the arguments of a call."""
+    text = call.module.text
+    values = [*call.node.args, *(each.value for each in call.node.keywords)]
+    names = [*([""] * len(call.node.args)), *(f"{each.arg}=" for each in call.node.keywords)]
+    return [f"{name}{' '.join(text.span(value).text.split())}"
+            for name, value in zip(names, values, strict=True)]  # fmt: skip
+
+
+def _left_out(call: _Call) -> int | None:
+    """The position of a parameter that the derived constructor has too and does not pass, and for
+    which the call passes a list."""
+    own = {each.arg for each in call.maker.args.args[1:]}
+    used = {each.id for each in ast.walk(call.node) if isinstance(each, ast.Name)}
+    used |= {each.arg or "" for each in call.node.keywords}
+    for at, (name, value) in enumerate(zip(call.positional, call.arguments, strict=False)):
+        if name in own - used and isinstance(value, ast.List) and at < len(call.positional) - 1:
+            return at
+    return None
+
+
+def _with(call: _Call, at: int) -> str:
+    """The call with the parameter at a position as one more argument."""
+    name = call.positional[at]
+    known = name in {each.arg for each in call.maker.args.args}
+    written = _written(call)
+    at += len(call.node.args) - len(call.arguments)  # behind `self`
+    head = call.module.text.span(call.node.func).text
+    return f"{head}({', '.join([*written[:at], name if known else '...', *written[at:]])})"
+
+
+def _shifted(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
+    """Lists that are one parameter too early: the outcomes that `execute` returns are passed as
+    another parameter than `outcomes`, which gets none of them."""
+    found = own.method("execute")
+    positional = call.positional
+    many = len(call.arguments) >= len(positional) and call.taken.vararg is None
+    if found is None or "outcomes" not in positional or many:
+        return
+    at = positional.index("outcomes") - 1
+    if at < 0 or len(call.arguments) < at + 2:
+        return
+    returned = {each.value for line in returns_of(found[1].body) if line.value is not None
+                for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
+    early, late = _texts(call.arguments[at]), _texts(call.arguments[at + 1])
+    if early is None or late is None or not early & returned or late & returned:
+        return
+    span = call.module.text.span(call.arguments[at])
+    yield ClassFault(
+        kind="shifted arguments",
+        name=Word(" ".join(span.text.split()), span),
+        near=_with(call, at),
+        owner=call.owner,
+        more=positional[at],
+        file=" ".join(call.module.text.span(call.arguments[at + 1]).text.split()),
+    )
+
+
+def _texts(node: ast.expr) -> set[object] | None:
+    """The texts in a list; None for another expression."""
+    if not isinstance(node, ast.List | ast.Tuple):
+        return None
+    texts = [each.value for each in node.elts if isinstance(each, ast.Constant)]
+    return {*texts} if len(texts) == len(node.elts) else None
+
+
+# --- arguments that have changed places
+
+
+LISTS = ("outcomes", "input_keys", "output_keys")
+"""The parameters of `smach.State.__init__`, in their order."""
+
+
+def _exchanged(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
+    """Two arguments that have changed places: the names in each list are used by `execute` as those
+    of the other one, or an argument has the name of the parameter that gets the outcomes."""
+    roles = _roles(call)
+    uses = _uses(own) if len(roles) > 1 or "outcomes" in roles.values() else None
+    if uses is None:
+        return
+    arguments = [*zip(call.positional, call.arguments, strict=False)]
+    for at, (name, value) in enumerate(arguments):
+        for other, (other_name, other_value) in enumerate(arguments):
+            some, more = _texts(value), _texts(other_value)
+            mine, theirs = roles.get(name), roles.get(other_name)
+            if more is None or mine is None:
+                continue
+            if isinstance(value, ast.Name):
+                found = value.id == other_name and mine == "outcomes" and theirs is None
+                found = found and bool(more & uses[mine])
+            elif some is not None and theirs is not None and at < other:
+                found = some.isdisjoint(uses[mine]) and more.isdisjoint(uses[theirs])
+                found = found and bool(some & uses[theirs]) and bool(more & uses[mine])
+            else:
+                continue
+            if found:
+                yield _exchange(call, *sorted([at, other]))
+                return
+
+
+def _exchange(call: _Call, first: int, second: int) -> ClassFault:
+    text, written = call.module.text, _written(call)
+    shift = len(call.node.args) - len(call.arguments)  # behind `self`
+    some, more = first + shift, second + shift
+    names = written[some], written[more]
+    written[some], written[more] = written[more], written[some]
+    return ClassFault(
+        kind="exchanged arguments",
+        name=Word(names[0], text.span(call.arguments[first])),
+        near=f"{text.span(call.node.func).text}({', '.join(written)})",
+        owner=call.owner,
+        more=names[1],
+    )
+
+
+def _roles(call: _Call) -> dict[str, str]:
+    """The parameters that the constructor of the base class passes to `smach.State` as lists."""
+    found: dict[str, str] = {}
+    calls = [each for each in ast.walk(call.base) if isinstance(each, ast.Call)
+             and isinstance(each.func, ast.Attribute) and each.func.attr == "__init__"]  # fmt: skip
+    if len(calls) != 1:
+        return {}
+    (made,) = calls
+    through_super = isinstance(made.func, ast.Attribute) and isinstance(made.func.value, ast.Call)
+    given = [*zip(LISTS, made.args[0 if through_super else 1 :], strict=False)]
+    given += [(each.arg or "", each.value) for each in made.keywords]
+    for role, value in given:
+        passed = copied(value)
+        if isinstance(passed, ast.Name) and role in LISTS:
+            found[passed.id] = role
+    return found
+
+
+def copied(node: ast.expr) -> ast.expr:
+    """The list of which an expression makes a copy, or the expression itself: `list(keys)`,
+    `[*keys]`, `keys or []`."""
+    match node:
+        case ast.Call(func=ast.Name(id="list" | "tuple"), args=[value], keywords=[]):
+            return copied(value)
+        case ast.List(elts=[ast.Starred(value=value)]):
+            return copied(value)
+        case ast.BoolOp(op=ast.Or(), values=[value, ast.List(elts=[]) | ast.Tuple(elts=[])]):
+            return copied(value)
+    return node
+
+
+def _uses(own: OwnClass) -> dict[str, set[object]] | None:
+    """The outcomes that `execute` returns, and the keys that it reads and writes itself."""
+    found = own.method("execute")
+    if found is None or len(found[1].args.args) != 2:
+        return None
+    userdata = found[1].args.args[1].arg
+    accesses = [access for each in ast.walk(found[1])
+                if (access := access_of(each, userdata)) is not None]  # fmt: skip
+    returned: set[object] = {each.value for line in returns_of(found[1].body) if line.value
+                for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
+    return {
+        "outcomes": returned,
+        "input_keys": {each.key for each in accesses if each.read},
+        "output_keys": {each.key for each in accesses if not each.read},
+    }

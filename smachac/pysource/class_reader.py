@@ -1,0 +1,667 @@
+"""The Python class of a state type: from its text to ClassFacts. The class is never run.
+
+The class is in a template of the state type, or in a module of the user. In a template, parts that
+Jinja replaces are not judged.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
+from smachac.pysource.base_calls import arguments_to_base, base_call_faults, copied
+from smachac.pysource.call_slips import call_slips
+from smachac.pysource.class_members import missing_constants
+from smachac.pysource.class_messages import class_messages
+from smachac.pysource.class_names import (
+    STATE_METHODS,
+    undefined_in_base,
+    undefined_methods,
+    undefined_names,
+)
+from smachac.pysource.class_operations import compared_texts, operation_facts, table_look_ups
+from smachac.pysource.class_slips import (
+    is_uncalled_super,
+    joined_texts,
+    missing_comma,
+    slips,
+    unknown_argument,
+    wrong_base,
+)
+from smachac.pysource.class_values import (
+    kept_parameters,
+    loops,
+    lost_results,
+    texts_as_lists,
+    written_values,
+)
+from smachac.pysource.flow import Flow, Flows
+from smachac.pysource.functions import is_plain
+from smachac.pysource.imports import missing_imports
+from smachac.pysource.library_names import missing_attributes
+from smachac.pysource.local_values import local_values, text_of, unused_values
+from smachac.pysource.lost_outcomes import lost_outcomes
+from smachac.pysource.module_members import module_slips
+from smachac.pysource.modules import (
+    Module,
+    OwnClass,
+    absent_module,
+    file_of,
+    find_class,
+    is_smach_state,
+    load_module,
+    names_of,
+    template_module,
+    with_bases,
+)
+from smachac.pysource.other_modules import module_with
+from smachac.pysource.own_objects import missing_members, uncalled_members
+from smachac.pysource.silent_results import silent_results
+from smachac.pysource.source import PythonText, name_span
+from smachac.pysource.user_code import UserCode
+from smachac.pysource.userdata_parts import parts_of_arguments, parts_read
+
+PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
+"""The parameters of `smach.State.__init__` with lists of names, in their order."""
+
+REGISTERS = re.compile(r"\.(register)?_(outcomes|(io|input|output)_keys)\b")
+"""Methods and attributes that change the declared interface; a class that has one is not read."""
+
+Words = tuple[Word, ...]
+
+
+def read_template(source: Source, name: str, library: UserCode) -> ClassFacts | None:
+    """The facts about the class in the template of a state type; None if there is no such class.
+
+    The class has the name of the type, or is the only one with an `execute`, or the only one.
+    """
+    try:
+        module = template_module(source)
+        node = _in_template(module, re.sub(r"\W+", "_", name)) if module is not None else None
+        return _facts(module, node, library) if module is not None and node is not None else None
+    except (RecursionError, MemoryError, ValueError):  # ValueError: a name in full-width letters
+        return None
+
+
+def _in_template(module: Module, name: str) -> ast.ClassDef | None:
+    classes = [node for node in module.text.tree.body if isinstance(node, ast.ClassDef)]
+    named = [node for node in classes if node.name == name]
+    running = [node for node in classes if any(_is_execute(each) for each in ast.walk(node))]
+    for some in (named, running, classes):
+        if some:
+            return some[0] if len(some) == 1 else None
+    return None
+
+
+def _is_execute(node: ast.AST) -> bool:
+    return getattr(node, "name", "") == "execute"
+
+
+def read_module(word: Word, library: UserCode) -> ClassFacts | None:
+    """The facts about a class of a module, `my_robot.states:Grasp`; None if nothing is known."""
+    path, _, name = word.text.partition(":")
+    at = word.span.text.find(path)
+    start = word.span.start + max(at, 0)
+    place = Word(path, Span(word.span.source, start, min(start + len(path), word.span.end)))
+    try:
+        module = load_module(path, library)
+        if module is None:
+            module = absent_module(place, library)
+        if not isinstance(module, Module):
+            if module is not None and module.kind == "syntax":
+                module = replace(module, file="")
+            return ClassFacts(faults=(module,)) if module is not None else None
+        found = find_class(module, name, library)
+        if isinstance(found, ClassFault) and found.kind == "syntax":
+            return ClassFacts(faults=(found,))
+        if isinstance(found, ClassFault):
+            file = file_of(module)
+            other = module_with(found.name.text, file, library)
+            if other is not None:
+                missing = Word(found.name.text, place.span)
+                return ClassFacts(faults=(replace(found, name=missing, file=file, more=other),))
+            fault = replace(found, file=file)
+            return ClassFacts(faults=(_at_the_name(fault, word),))
+        return _facts(*found, library) if found is not None else None
+    except (RecursionError, MemoryError, ValueError):
+        return None
+
+
+def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
+    """A fault at the name of the class in the interface."""
+    at = word.span.text.rfind(fault.name.text)
+    start = word.span.start + max(at, 0)
+    span = Span(word.span.source, start, min(start + len(fault.name.text), word.span.end))
+    return replace(fault, name=Word(fault.name.text, span))
+
+
+def _facts(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
+    """The facts about a class."""
+    own = with_bases(module, node, library)
+    lists = _declared(own)
+    whole = not any(piece.startswith("{%") for piece in _fillings(module, node))
+    undefined = (*_undefined(own, lists, library),) if whole else ()
+    flow, execute, place = _execute(own, library)
+    if execute is not None and any(_is_userdata(each, execute) for each in undefined):
+        flow = Flow()  # its code uses another name for the userdata
+    return ClassFacts(
+        name=Word(node.name, name_span(module.text, node)),
+        faults=(*_faults(own, module, node), *undefined) if whole else (),
+        parameters=_parameters(own) if whole else None,
+        outcomes=lists.get("outcomes", ()) if lists is not None else None,
+        inputs=_together(lists, "input_keys"),
+        outputs=_together(lists, "output_keys"),
+        passed=tuple(_passed(module.text, node)) if own.root == "state" else (),
+        endings=flow.endings,
+        complete=flow.complete and not flow.passed,
+        execute=place,
+        silent=flow.silent,
+        always_silent=flow.always_silent,
+        open_end=flow.open_end,
+        in_loop=flow.in_loop,
+        reads=flow.reads,
+        writes=flow.writes,
+        closed=bool(flow.endings) and all(each.written is not None for each in flow.endings),
+        stub=execute is not None and all(map(_does_nothing, execute.body)),
+        checks_stop=any(_checks_stop(each) for _, each in own.classes),
+        values=written_values(own, execute, library) if execute is not None else (),
+        unused=unused_values(own, execute) if execute is not None else (),
+        local=local_values(text_of(own, execute), execute) if execute is not None else (),
+        loops=loops(own) if whole else (),
+        compared=tuple(compared_texts(own, kept_parameters(own), execute)) if whole else (),
+        tables=tuple(table_look_ups(own, kept_parameters(own), execute)) if whole else (),
+        hooks=_hooks(own),
+        messages=class_messages(own),
+        parts=(*parts_read(text_of(own, execute), execute), *parts_of_arguments(own, execute))
+        if execute is not None and flow.reads
+        else (),
+        **operation_facts(own, execute if flow.reads or flow.writes else None),
+    )
+
+
+HOOKS = ("on_enter", "on_exit", "on_start", "on_stop", "on_pause", "on_resume")
+"""The methods that FlexBE calls around `execute`."""
+
+
+def _hooks(own: OwnClass) -> tuple[str, ...]:
+    """The methods with a name of FlexBE's that no code of the class uses."""
+    found = [name for name in HOOKS if own.method(name) is not None]
+    if not found or own.root != "state":
+        return ()
+    used = {each.attr for _, node in own.classes for each in ast.walk(node)
+            if isinstance(each, ast.Attribute)}  # fmt: skip
+    return tuple(name for name in found if name not in used)
+
+
+def _undefined(
+    own: OwnClass, lists: dict[str, Words | None] | None, library: UserCode
+) -> Iterator[ClassFault]:
+    """The names and attributes that nothing defines, and other slips in the code."""
+    modules = {module.name: module for module, _ in own.classes if module.name}.values()
+    imports = [each for module in modules
+               for each in missing_imports(module, library)]  # fmt: skip
+    yield from imports
+    absent = {each.name.text for each in imports}
+    names = {key: [word.text for word in words or ()] for key, words in (lists or {}).items()}
+    for module, node in own.classes:
+        found = undefined_names(own, module, node, names)
+        yield from (each for each in found if each.near not in absent)
+        yield from missing_attributes(module, node, library)
+    yield from undefined_methods(own)
+    yield from undefined_in_base(own)
+    yield from slips(own)
+    yield from lost_results(own)
+    yield from lost_outcomes(own, library)
+    yield from missing_members(own, library)
+    yield from uncalled_members(own, library)
+    yield from missing_constants(own, library)
+    yield from module_slips(own, library)
+    yield from texts_as_lists(own)
+    yield from silent_results(own, library)
+    yield from call_slips(own, library)
+
+
+def _is_userdata(fault: ClassFault, execute: ast.FunctionDef) -> bool:
+    """Whether a fault is another name for the userdata in `execute`."""
+    parameter = execute.args.args[1].arg
+    return fault.kind == "other userdata" or (
+        fault.kind == "undefined name" and fault.near == parameter
+    )
+
+
+def _fillings(module: Module, node: ast.stmt) -> list[str]:
+    return module.text.fillings(module.text.span(node))
+
+
+# --- execute
+
+
+def _execute(own: OwnClass, library: UserCode) -> tuple[Flow, ast.FunctionDef | None, Span | None]:
+    """The flow of `execute`, its definition, and the place of its name."""
+    found = own.method("execute")
+    if found is None:
+        return Flow(), None, None
+    module, function = found
+    named = sum(_is_execute(each) for _, node in own.classes for each in ast.walk(node))
+    plain = is_plain(function) and len(function.args.args) == 2 and not function.args.posonlyargs
+    tags = any(piece.startswith("{%") for piece in _fillings(module, function))
+    overridden = sum("execute" in names for names in own.names)
+    if not plain or tags or named != overridden:
+        return Flow(), None, None
+    flow = Flows(own, library).of(module, function, function.args.args[1].arg)
+    return flow or Flow(), function, name_span(module.text, function)
+
+
+def _does_nothing(node: ast.stmt) -> bool:
+    """Whether a statement of `execute` is one of a stub: a constant that is kept or returned."""
+    match node:
+        case ast.Pass() | ast.Expr(value=ast.Constant()):
+            return True
+        case ast.Assign(value=value) | ast.Return(value=value):
+            return isinstance(value, ast.Constant)
+    return False
+
+
+def _checks_stop(node: ast.ClassDef) -> bool:
+    """Whether a class uses a method with a name such as `preempt_requested`."""
+    attributes = (each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute))
+    return any("preempt" in name for name in attributes)
+
+
+# --- the structure of the class
+
+
+def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFault]:
+    """The certain faults of a class."""
+    found = _twice(module, node)
+    if own.root == "unknown":
+        return [*found, *_data_class_fault(module, node), *wrong_base(*own.classes[-1])]
+    if own.root == "object":
+        certain = not own.binds("get_registered_outcomes")
+        return [*found, _at_class("no state", module, node)] if certain else found
+    return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own),
+            *_call_faults(own), *base_call_faults(own), *_list_faults(own)]  # fmt: skip
+
+
+def _at_class(
+    kind: FaultKind, module: Module, node: ast.ClassDef, near: str | None = None
+) -> ClassFault:
+    return ClassFault(kind=kind, name=Word(node.name, name_span(module.text, node)), near=near)
+
+
+def _at_method(kind: FaultKind, module: Module, node: ast.FunctionDef) -> ClassFault:
+    return ClassFault(kind=kind, name=Word(node.name, name_span(module.text, node)))
+
+
+def _twice(module: Module, node: ast.ClassDef) -> list[ClassFault]:
+    """The later ones of two definitions of the class, and of two plain methods of one name."""
+    found = []
+    same = [each for each in module.text.tree.body if getattr(each, "name", "") == node.name]
+    if len(same) > 1 and same[-1] is node:
+        found.append(_at_class("defined twice", module, node))
+    methods: dict[str, ast.FunctionDef] = {}
+    for each in node.body:
+        if isinstance(each, ast.FunctionDef) and not each.decorator_list:
+            if each.name in methods:
+                found.append(_at_method("defined twice", module, each))
+            methods[each.name] = each
+    return found
+
+
+def _execute_faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFault]:
+    if not own.binds("execute"):
+        if "execute" in own.assigned() or any("__getattr__" in names for names in own.names):
+            return []
+        methods = [name for name in own.names[0] if own.method(name) is not None]
+        near = guesser(methods)("execute")
+        found = own.method(near) if near is not None else None
+        if found is not None and found[1] in node.body:
+            name = Word(found[1].name, name_span(module.text, found[1]))
+            return [ClassFault(kind="no execute", name=name, near=near)]
+        return [_at_class("no execute", module, node, near)]
+    bound = own.names[0].get("execute", ())
+    if bound and isinstance(bound[-1], ast.AsyncFunctionDef) and not bound[-1].decorator_list:
+        return [_at_class("coroutine", module, node)]
+    found = own.method("execute")
+    if found is None or found[1].decorator_list:
+        return []
+    module, function = found
+    if not is_plain(function):
+        return [_at_method("no method", module, function)]
+    taken = function.args
+    positional = len(taken.posonlyargs) + len(taken.args)
+    few = positional < 2 and taken.vararg is None
+    many = positional - len(taken.defaults) > 2 or None in taken.kw_defaults
+    return [_at_method("arguments", module, function)] if few or many else []
+
+
+def _names_super(node: ast.AST) -> bool:
+    return isinstance(node, ast.Name) and node.id == "super"
+
+
+def _constructor_faults(own: OwnClass) -> list[ClassFault]:
+    """A constructor that does not call the one of `smach.State`, or none at all."""
+    module, node = own.classes[0]
+    if own.binds("__new__") or any(_registers(each) for _, each in own.classes):
+        return []
+    if not own.binds("__init__"):
+        return [_at_class("no outcomes", module, node)]
+    found = own.method("__init__")
+    if found is None:
+        return []
+    owner = next(each for (_, each), names in zip(own.classes, own.names, strict=True)
+                 if "__init__" in names)  # fmt: skip
+    calls = any(
+        (isinstance(each, ast.Call) and _names_super(each.func))
+        or (
+            isinstance(each, ast.Attribute)
+            and each.attr == "__init__"
+            and not _names_super(each.value)
+        )
+        for each in ast.walk(owner)
+    )
+    calls = calls or any(map(is_uncalled_super, ast.walk(owner)))  # "super not called"
+    return [] if calls else [_without_call(own, *found)]
+
+
+def _without_call(own: OwnClass, module: Module, maker: ast.FunctionDef) -> ClassFault:
+    """The fault of a constructor that does not call that of its base class, with the call where it
+    is one of the user's classes."""
+    at = next(index for index, (_, node) in enumerate(own.classes) if maker in node.body)
+    bases = [names["__init__"][-1] for names in own.names[at + 1 :] if "__init__" in names]
+    if not bases or not isinstance(bases[0], ast.FunctionDef):
+        return _at_method("no constructor call", module, maker)
+    taken, known = bases[0].args, {each.arg for each in maker.args.args[1:]}
+    positional = [*taken.posonlyargs, *taken.args]
+    required = positional[1 : len(positional) - len(taken.defaults)]
+    required += [each for each, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+                 if default is None]  # fmt: skip
+    given = [f"{each.arg}={each.arg if each.arg in known else '...'}" for each in required]
+    name = Word(maker.name, name_span(module.text, maker))
+    near = f"super().__init__({', '.join(given)})"
+    return ClassFault(kind="no base constructor call", name=name, near=near)
+
+
+def _data_class_fault(module: Module, node: ast.ClassDef) -> Iterator[ClassFault]:
+    """A `@dataclass` derived from `smach.State`: the `__init__` that it makes does not call that of
+    its base."""
+    if len(node.decorator_list) != 1:
+        return
+    (decorator,) = node.decorator_list
+    if isinstance(decorator, ast.Call) and all(each.arg != "init" for each in decorator.keywords):
+        decorator = decorator.func
+    if ast.unparse(decorator) not in ("dataclass", "dataclasses.dataclass"):
+        return
+    names, _ = names_of(node.body)
+    own = {"__init__", "__post_init__", "__new__"}.isdisjoint(names)
+    if own and len(node.bases) == 1 and is_smach_state(module, node.bases[0]):
+        yield _at_class("data class", module, node)
+
+
+def _call_faults(own: OwnClass) -> Iterator[ClassFault]:
+    """Calls of the `__init__` of the base class with the wrong `self`, or of another class."""
+    found = own.method("__init__")
+    if found is None or not found[1].args.args:
+        return
+    module, maker = found
+    owner = next(each for _, each in own.classes if maker in each.body)
+    names = {each.name for _, each in own.classes}
+    others = own.root != "state" or sum("__init__" in each for each in own.names) != 1
+    me = maker.args.args[0].arg
+    for call in ast.walk(maker):
+        match call:
+            case ast.Call(func=ast.Attribute(value=base, attr="__init__")):
+                span = module.text.span(call)
+            case _:
+                continue
+        if module.text.is_filled(span):
+            continue
+        first = call.args[0] if call.args else None
+        passes = isinstance(first, ast.Name) and first.id == me
+        match base:
+            case ast.Call(func=ast.Name(id="super"), args=[ast.Name(id=name) as place, *_]):
+                bound = module.names.get(name, ())
+                alone = len(bound) == 1 and isinstance(bound[0], ast.ClassDef)
+                if name not in names and alone and own.root == "state":
+                    word = Word(name, module.text.span(place))
+                    yield ClassFault(kind="other class", name=word, near=owner.name)
+                    continue
+            case ast.Call(func=ast.Name(id="super")):
+                pass
+            case _ if is_smach_state(module, base):
+                lists = ast.List | ast.Tuple | ast.Constant | ast.Set
+                if isinstance(first, lists) or (first is None and call.keywords):
+                    yield ClassFault(kind="no self", name=Word(me, module.text.span(base)))
+                continue
+            case _:
+                continue
+        if passes and first is not None and not others:
+            yield ClassFault(kind="self twice", name=Word(me, module.text.span(first)))
+
+
+def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
+    """The arguments of `smach.State.__init__` that do not exist or are no lists, as SMACH joins the
+    lists of keys, and items of lists without a comma between them."""
+    found = own.method("__init__")
+    if found is None or len(own.classes) > 1:
+        return
+    module, maker = found
+    for call in ast.walk(maker):
+        if not isinstance(call, ast.Call) or not _is_super(call):
+            continue
+        for keyword in call.keywords:
+            if keyword.arg is not None and keyword.arg not in PARAMETERS and own.root == "state":
+                yield unknown_argument(module.text, keyword, PARAMETERS)
+        for key, value in (_given(call) or {}).items():
+            span = module.text.span(value)
+            for item in value.elts if isinstance(value, ast.List | ast.Tuple | ast.Set) else ():
+                if isinstance(item, ast.Constant) and isinstance(item.value, str):
+                    yield from missing_comma(module.text, item)
+            kinds = ast.Tuple | ast.Set | ast.Dict | ast.SetComp | ast.GeneratorExp
+            text = value.value if isinstance(value, ast.Constant) else None
+            wrong = isinstance(text, str) or (key != "outcomes" and isinstance(value, kinds))
+            if key not in PARAMETERS or not wrong or module.text.is_filled(span):
+                continue
+            items = [word.text for word in _words(module.text, value) or ()]
+            items = [text] if isinstance(text, str) else items
+            listed = ", ".join(f'"{each}"' for each in items)
+            near = f"{key}=[{listed}]" if items else None
+            yield ClassFault(kind="no list", name=Word(key, span), near=near)
+
+
+def _registers(node: ast.ClassDef) -> bool:
+    return REGISTERS.search(ast.unparse(node)) is not None
+
+
+def _hidden(own: OwnClass) -> list[ClassFault]:
+    """The methods of `smach.State` that an attribute of the object hides."""
+    return [
+        ClassFault(kind="hidden method", name=Word(name, span))
+        for name, entries in own.assigned().items()
+        if name in STATE_METHODS
+        for _, value, span in entries
+        if isinstance(value, ast.Constant | ast.Compare | ast.List | ast.Dict | ast.Tuple)
+        or _is_text(own, value)
+    ]
+
+
+def _is_text(own: OwnClass, value: ast.expr | None) -> bool:
+    """Whether an expression is a parameter of `__init__` whose default is a text or a number."""
+    found = own.method("__init__")
+    if not isinstance(value, ast.Name) or found is None:
+        return False
+    given = found[1].args
+    pairs = zip(reversed([*given.posonlyargs, *given.args]), reversed(given.defaults), strict=False)
+    constants = {name.arg for name, default in pairs
+                 if isinstance(default, ast.Constant) and default.value is not None}  # fmt: skip
+    return value.id in constants
+
+
+# --- the constructor
+
+
+def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
+    """The parameters of the constructor that can be passed by name."""
+    if own.binds("__new__"):
+        return None
+    if not own.binds("__init__"):
+        place = name_span(own.classes[0][0].text, own.classes[0][1])
+        fixed = (Parameter(word=Word(name, place), required=False) for name in PARAMETERS)
+        return tuple(fixed) if own.root == "state" else None
+    found = own.method("__init__")
+    if found is None or found[1].decorator_list or found[1].args.kwarg is not None:
+        return None
+    module, function = found
+    given = function.args
+    positional = [*given.posonlyargs, *given.args]
+    first = len(positional) - len(given.defaults)
+    required = set(positional[:first])
+    required |= {
+        each
+        for each, default in zip(given.kwonlyargs, given.kw_defaults, strict=True)
+        if default is None
+    }
+    named = [each for each in [*given.args, *given.kwonlyargs] if each is not positional[0]]
+    words = {each: Word(each.arg, _place(module.text, each)) for each in named}
+    if any(module.text.is_filled(word.span) for word in words.values()):
+        return None
+    uses: dict[str, tuple[Span, ...]] = {}
+    for each in ast.walk(function):
+        if isinstance(each, ast.Name):
+            uses[each.id] = (*uses.get(each.id, ()), module.text.span(each))
+    return tuple(
+        Parameter(word=word, required=each in required, uses=uses.get(word.text, ()))
+        for each, word in words.items()
+    )
+
+
+def _place(text: PythonText, node: ast.arg) -> Span:
+    start = text.offset(node.lineno, node.col_offset)
+    return Span(text.source, start, start + len(node.arg))
+
+
+def _declared(own: OwnClass) -> dict[str, Words | None] | None:
+    """The lists that a class passes to `smach.State`, itself or through the constructor of a base
+    class of the project; None if that is not known."""
+    found = _base_call(own.classes[0][0].text, own.classes[0][1])
+    if found is not None:
+        return {key: _words(own.classes[0][0].text, value) for key, value in found[1].items()}
+    last, node = own.classes[-1]
+    made = _base_call(last.text, node) if len(own.classes) > 1 else None
+    passed = arguments_to_base(own) if made is not None else None
+    if made is None or passed is None or any(_registers(each) for _, each in own.classes):
+        return None
+    lists: dict[str, Words | None] = {}
+    for key, value in made[1].items():
+        name = copied(value)
+        known = (last.text, value)
+        if isinstance(name, ast.Name):
+            known = passed.get(name.id, known)
+        lists[key] = _words(*known)
+    return lists
+
+
+def _passed(text: PythonText, node: ast.ClassDef) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The lists that a constructor passes to `smach.State` as it gets them, by parameter, each with
+    the names in the default value."""
+    found = _base_call(text, node)
+    if found is None or "io_keys" in found[1]:
+        return
+    maker, given = found
+    arguments = maker.args.args
+    pairs = zip(reversed(arguments), reversed(maker.args.defaults), strict=False)
+    defaults = {each.arg: default for each, default in pairs}
+    changed = {
+        each.id if isinstance(each, ast.Name) else ast.unparse(each.value)
+        for each in ast.walk(maker)
+        if (isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load))
+        or isinstance(each, ast.Attribute)
+    }
+    for key in ("outcomes", "input_keys", "output_keys"):
+        value = given.get(key)
+        if not isinstance(value, ast.Name) or value.id in changed:
+            continue
+        default = defaults.get(value.id)
+        none = default is None or (isinstance(default, ast.Constant) and default.value is None)
+        words = () if none else _words(text, default) if default is not None else ()
+        if words is not None and value.id in {each.arg for each in arguments}:
+            yield key, tuple(word.text for word in words)
+
+
+def _base_call(
+    text: PythonText, node: ast.ClassDef
+) -> tuple[ast.FunctionDef, dict[str, ast.expr]] | None:
+    """The constructor of a class and the arguments by name that it passes to `smach.State`; None if
+    it is more than one `__init__` of a plain `smach.State`."""
+    bases = [ast.unparse(base) for base in node.bases]
+    makers = [each for each in node.body if getattr(each, "name", "") == "__init__"]
+    plain = bases in (["smach.State"], ["State"]) and not node.keywords and not node.decorator_list
+    if not plain or len(makers) != 1 or _registers(node):
+        return None
+    (maker,) = makers
+    if not isinstance(maker, ast.FunctionDef) or maker.decorator_list:
+        return None
+    if any(piece.startswith("{%") for piece in text.fillings(text.span(maker))):
+        return None
+    calls = [each for each in ast.walk(maker) if isinstance(each, ast.Call) and _is_super(each)]
+    alone = [each.value for each in maker.body if isinstance(each, ast.Expr)]
+    if len(calls) != 1 or calls[0] not in alone:
+        return None
+    given = _given(calls[0])
+    return (maker, given) if given is not None else None
+
+
+def _is_super(call: ast.Call) -> bool:
+    """Whether a call is that of the `__init__` of the base class."""
+    match call.func:
+        case ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr="__init__"):
+            return True
+        case ast.Attribute(value=owner, attr="__init__"):
+            return ast.unparse(owner) in ("smach.State", "State")
+    return False
+
+
+def _given(call: ast.Call) -> dict[str, ast.expr] | None:
+    """The arguments by name; None where some are in `*args` or `**kwargs`."""
+    arguments = list(call.args)
+    if isinstance(call.func, ast.Attribute) and not isinstance(call.func.value, ast.Call):
+        arguments = arguments[1:]  # the first one is `self`
+    if any(isinstance(each, ast.Starred) for each in arguments):
+        return None
+    found: dict[str, ast.expr] = dict(zip(PARAMETERS, arguments, strict=False))
+    for keyword in call.keywords:
+        if keyword.arg is None:
+            return None
+        meant = keyword.arg if keyword.arg in PARAMETERS else guesser(PARAMETERS)(keyword.arg)
+        if meant is None:
+            return None
+        found.setdefault(meant, keyword.value)
+    return found
+
+
+def _words(text: PythonText, value: ast.expr) -> Words | None:
+    """The names in a list of string literals; None for other expressions."""
+    if not isinstance(value, ast.List | ast.Tuple | ast.Set):
+        return None
+    found = []
+    for each in value.elts:
+        span = text.span(each)
+        if not (isinstance(each, ast.Constant) and isinstance(each.value, str)):
+            return None
+        if text.is_filled(span):
+            return None
+        found += joined_texts(text, each)
+    return None if text.is_filled(text.span(value)) else tuple(found)
+
+
+def _together(lists: dict[str, Words | None] | None, key: str) -> Words | None:
+    """The names in a list of the constructor, and those in the list of both kinds of keys."""
+    if lists is None:
+        return None
+    some, both = lists.get(key, ()), lists.get("io_keys", ())
+    return None if some is None or both is None else (*some, *both)

@@ -1,0 +1,203 @@
+"""Imports of modules of the project that fail: of a module that does not exist, or of a name that
+the module does not define.
+
+Only imports at the top of a file are judged, not those in `try`, `if` or a function. Modules that
+are in no folder of the project can be installed ones.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
+
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.diagnostics.spelling import guesser
+from smachac.ir.class_facts import ClassFault
+from smachac.ir.python_code import parse_module
+from smachac.pysource.modules import (
+    Module,
+    absent_module,
+    is_module,
+    load_module,
+    source_module,
+)
+from smachac.pysource.other_modules import module_with
+from smachac.pysource.renamed_members import renamed_member
+from smachac.pysource.source import PythonText
+from smachac.pysource.user_code import UserCode
+
+MAKES_NAMES = frozenset(["exec", "globals", "locals", "vars", "setattr", "__import__"])
+"""Functions that can define a name of a module at run time."""
+
+GENERATED = re.compile(r"\.(msg|srv|action|cfg|_?version)\b|_pb2\b|_pb2_grpc\b")
+"""Names of modules that other tools write, such as those of the messages of a ROS package."""
+
+_WORD = re.compile(r"[^\W\d]\w*")
+_BLOCK = re.compile(
+    r"\{%[-+]?\s*block\s+(?:base_)?imports\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.S
+)
+_IMPORT = re.compile(r"^(?:from[ \t]+[\w.]+[ \t]+import[ \t]+(?:\([^()]*\)|.+)|import .+)$", re.M)
+
+
+class Import(NamedTuple):
+    """A statement that imports from a module, with the dotted name as it is written, its place, and
+    the dotted name from the top. `names` are those that it imports from it, each at its place."""
+
+    written: Word
+    module: str
+    names: tuple[Word, ...] = ()
+
+
+def missing_imports(module: Module, library: UserCode) -> list[ClassFault]:
+    """The imports of a module of the user that fail."""
+    return [fault for each in _statements(module) for fault in _faults(each, library, module.text)]
+
+
+def missing_in_template(source: Source, library: UserCode) -> list[tuple[ClassFault, bool]]:
+    """The imports in the block `imports` of a template that fail, each with whether it is certainly
+    printed: the block has no tags of Jinja. A line with a tag is not judged."""
+    return [
+        (fault, is_printed)
+        for statement, is_printed in _lines(source)
+        for fault in _faults(statement, library)
+    ]
+
+
+def _statements(module: Module) -> Iterator[Import]:
+    text = module.text
+    for node in module.text.tree.body:
+        if isinstance(node, ast.Import | ast.ImportFrom) and not text.is_filled(text.span(node)):
+            yield from _imports(node, text.span(node), module)
+
+
+def _lines(source: Source) -> Iterator[tuple[Import, bool]]:
+    for block in _BLOCK.finditer(source.text):
+        is_printed = "{%" not in block[1]
+        for found in _IMPORT.finditer(source.text, block.start(1), block.end(1)):
+            if "{{" in found[0] or "{%" in found[0]:
+                continue
+            try:
+                (node,) = parse_module(found[0]).body
+            except (SyntaxError, ValueError):
+                continue
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                for statement in _imports(node, Span(source, found.start(), found.end()), None):
+                    yield statement, is_printed
+
+
+def _imports(
+    node: ast.Import | ast.ImportFrom, span: Span, module: Module | None
+) -> Iterator[Import]:
+    """The imports of one statement at a place."""
+    if isinstance(node, ast.Import):
+        for alias in node.names:
+            yield Import(_placed(alias.name, span, 0), alias.name)
+        return
+    if node.level and (module is None or not module.name):
+        return
+    top = source_module(module, node) if module is not None else node.module or ""
+    dots = "." * node.level
+    written = _placed(f"{dots}{node.module or ''}", span, 0)
+    if node.module:
+        place = Span(span.source, written.span.start + node.level, written.span.end)
+        written = Word(node.module, place)
+    words = [alias.name for alias in node.names if alias.name != "*"]
+    after = span.source.text.find("import", written.span.end) - span.start
+    yield Import(written, top, tuple(_placed(word, span, max(after, 0) + 6) for word in words))
+
+
+def _placed(name: str, span: Span, after: int) -> Word:
+    """The place of a name in a statement, behind a number of its characters."""
+    found = re.compile(rf"(?<![\w.]){re.escape(name)}(?![\w.])").search(
+        span.source.text, span.start + after, span.end
+    )
+    start = found.start() if found is not None else span.start
+    return Word(name, Span(span.source, start, start + len(name)))
+
+
+def _faults(one: Import, library: UserCode, user: PythonText | None = None) -> Iterator[ClassFault]:
+    """The faults of an import: of the module or a name, or of the text of the module. `user` is the
+    code that has the import."""
+    head, path = one.module.partition(".")[0], one.module.replace(".", "/")
+    if not one.module or head in sys.stdlib_module_names:
+        return
+    files = (f"{path}/__init__.py", f"{path}.py")
+    file = next((each for each in files if library.code(each) is not None), None)
+    if file is not None:
+        other = load_module(one.module, library)
+        if isinstance(other, ClassFault):
+            yield other
+        elif other is not None:
+            yield from _no_names(one, file, other, library, user)
+        return
+    folder = library.code_names(path)
+    if not folder:
+        yield from _no_module(one.module, one.written, library)
+    elif any(is_module(each) for each in folder):
+        for word in one.names:
+            inner = f"{one.module}.{word.text}"
+            other = load_module(inner, library)
+            if isinstance(other, ClassFault):
+                yield other
+            elif other is None and not library.code_names(f"{path}/{word.text}"):
+                for fault in _no_module(inner, word, library):
+                    yield replace(fault, file=path)
+
+
+def _no_names(
+    one: Import, file: str, other: Module, library: UserCode, user: PythonText | None
+) -> Iterator[ClassFault]:
+    """The names that a module does not define."""
+    words = set(_WORD.findall(other.text.source.text))
+    if all(word.text in words for word in one.names):
+        return
+    if other.dynamic or makes_names(other.text.tree):
+        return
+    inside = library.code_names(file.rpartition("/")[0]) if other.package else ()
+    known = {*other.names, *(each.partition(".")[0] for each in inside)}
+    guess = guesser(sorted(name for name in known if not name.startswith("__")))
+    for word in one.names:
+        if word.text not in known | words and not word.text.startswith("__"):
+            other_module = module_with(word.text, file, library) or ""
+            near = guess(word.text) or renamed_member(word.text, other, user, library)
+            yield ClassFault(
+                kind="no imported name",
+                name=word,
+                near=near,
+                file=file,
+                more=other_module,
+                lines=_lines_with(word.text, user) if user is not None and near else (),
+            )
+
+
+def _lines_with(name: str, user: PythonText) -> tuple[int, ...]:
+    """The lines of code that use a name, each once."""
+    found = (each for each in ast.walk(user.tree) if isinstance(each, ast.Name))
+    spans = [user.span(each) for each in found if each.id == name]
+    return tuple(sorted({span.line for span in spans}))
+
+
+def _no_module(name: str, place: Word, library: UserCode) -> Iterator[ClassFault]:
+    """The fault that a module does not exist, at its name in an import, if another module has
+    nearly the same name. Beside a folder that is no package, it can be an installed one: then the
+    names are one slip apart."""
+    if "." not in name or GENERATED.search(name):
+        return
+    found = absent_module(Word(name, place.span), library)
+    if found is None or found.near is None:
+        return
+    exists = library.code(f"{found.near.replace('.', '/')}.py") is not None
+    is_package = library.code(f"{name.partition('.')[0]}/__init__.py") is not None
+    if not exists or not (is_package or guesser([found.near]).sure(name)):
+        return
+    near = found.near if "." in place.text else found.near.rpartition(".")[2]
+    yield ClassFault(kind="no imported module", name=Word(name, place.span), near=near)
+
+
+def makes_names(tree: ast.Module) -> bool:
+    """Whether code of a module can define names in another way than by a statement at its top."""
+    return any(isinstance(each, ast.Name) and each.id in MAKES_NAMES for each in ast.walk(tree))

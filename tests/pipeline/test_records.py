@@ -1,0 +1,121 @@
+"""`records.dataclass` makes classes that behave like those of `dataclasses.dataclass`."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import inspect
+import math
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from smachac import records
+
+OPTIONS: list[dict[str, bool]] = [
+    {},
+    {"frozen": True},
+    {"frozen": True, "slots": True},
+    {"frozen": True, "slots": True, "kw_only": True},
+    {"frozen": True, "slots": True, "eq": False},
+    {"slots": True, "unsafe_hash": True},
+    {"slots": True},
+]
+
+
+def point(decorator: Callable[..., Any], options: dict[str, bool]) -> Any:
+    @decorator(**options)
+    class Point:
+        x: float
+        y: float = 0.0
+        names: tuple[str, ...] = dataclasses.field(default=(), repr=False)
+        place: list[int] = dataclasses.field(default_factory=list, compare=False)
+
+    Point.__qualname__ = "Point"
+    return Point
+
+
+@pytest.mark.parametrize("options", OPTIONS, ids=str)
+def test_a_class_behaves_as_that_of_the_standard_library(options: dict[str, bool]) -> None:
+    made, own = (point(each, options) for each in (records.dataclass, dataclasses.dataclass))
+    assert str(inspect.signature(made)) == str(inspect.signature(own))
+    assert made.__match_args__ == own.__match_args__
+    assert hasattr(made(x=1), "__dict__") is hasattr(own(x=1), "__dict__")
+    values: list[dict[str, Any]] = [
+        {"x": 1},
+        {"x": 1, "y": 2},
+        {"x": 1, "place": [1]},
+        {"x": math.nan},
+        {"x": [1]},
+    ]
+    for one in values:
+        assert repr(made(**one)) == repr(own(**one))
+        for other in values:
+            assert (made(**one) == made(**other)) is (own(**one) == own(**other))
+    hashable: list[dict[str, Any]] = [{"x": 1}, {"x": 1, "y": 2, "names": ("a",)}]
+    if own.__hash__ is None:
+        assert made.__hash__ is None
+    elif own.__hash__ is not object.__hash__:
+        assert [hash(made(**each)) for each in hashable] == [hash(own(**each)) for each in hashable]
+    assert made(x=1) != own(x=1)
+    with pytest.raises(TypeError, match="'x'"):
+        made()
+    with pytest.raises(TypeError, match="colour"):
+        made(x=1, colour=2)
+
+
+@records.dataclass(frozen=True, slots=True, kw_only=True)
+class _Named:
+    name: str
+    known: dict[str, int] = records.field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<{self.name}>"
+
+
+@records.dataclass(frozen=True)
+class _Empty:
+    pass
+
+
+def test_objects_can_be_replaced_copied_and_pickled() -> None:
+    made = _Named(name="a", known={"b": 1})
+    assert dataclasses.replace(made, name="c") == _Named(name="c", known={"b": 1})
+    assert dataclasses.asdict(made) == {"name": "a", "known": {"b": 1}}
+    for other in (copy.copy(made), copy.deepcopy(made), pickle.loads(pickle.dumps(made))):
+        assert type(other) is _Named
+        assert other == made
+    assert _Named(name="a").known is not _Named(name="a").known
+
+
+def test_own_methods_stay() -> None:
+    assert repr(_Named(name="a")) == "<a>"
+    assert _Empty() == _Empty()
+    assert hash(_Empty()) == hash(_Empty())
+
+
+def test_methods_are_shared() -> None:
+    """They are what takes the time of `dataclasses`: one function for each class and method."""
+    assert vars(_Named)["__eq__"] is vars(_Empty)["__eq__"]
+    assert vars(_Named)["__hash__"] is vars(_Empty)["__hash__"]
+
+
+@records.dataclass(slots=True, unsafe_hash=True)
+class _Link:
+    inner: Any
+
+
+def test_a_deep_value_takes_linear_time() -> None:
+    """A field is compared and hashed once: twice would be 2 to the power of the depth."""
+    one, other = (deep(200) for _ in range(2))
+    assert one == other
+    assert hash(one) == hash(other)
+
+
+def deep(levels: int) -> _Link:
+    link = _Link(None)
+    for _ in range(levels):
+        link = _Link(link)
+    return link

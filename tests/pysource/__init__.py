@@ -1,0 +1,1 @@
+"""Reading the code of the user in Python and C++."""
