@@ -303,7 +303,19 @@ def did_you_mean_file(name: str, candidates: Iterable[str]) -> str | None:
     parts.sort(key=lambda part: part[1] != ending)
     by_stem = {part[0]: part[2] for part in reversed(parts)}
     near = stem if stem in by_stem else _nearest(stem, tuple(by_stem))
+    near = near or _only_part(stem, by_stem)
     return None if near is None else f"did you mean `{by_stem[near]}`?"
+
+
+def _only_part(stem: str, names: Iterable[str]) -> str | None:
+    """The only name whose words, separated by `_`, are all in a name, or have all of its words:
+    `drop` for `drop_block`."""
+    words = set(stem.casefold().split("_"))
+    found = [
+        name for name in names
+        if (others := set(name.casefold().split("_"))) <= words or words <= others
+    ]  # fmt: skip
+    return found[0] if len(found) == 1 else None
 
 
 def _stem_and_ending(name: str) -> tuple[str, str]:

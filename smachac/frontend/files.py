@@ -28,7 +28,7 @@ from smachac.frontend.config import (
     read_project,
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
-from smachac.frontend.loader import SUFFIXES, Library, Ros
+from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library, Ros
 from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.frontend.text.yaml_tree import Tree
 from smachac.robots import xacro_files
@@ -426,6 +426,7 @@ def disk_library(
         script_folders=lambda caller: searched(script_folders(caller)),
         template_folders=lambda: searched(template_folders[: -len(BUILT_IN)]),
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
+        robot_names=lambda caller: _with_ending(script_folders(caller), ROBOT_FILES),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,
         ros=project.ros if ros is None else ros,
@@ -565,6 +566,16 @@ def _stems(folders: Sequence[Path], suffixes: Sequence[str]) -> list[str]:
                         names.append(path.name.removesuffix(suffix))
                         break
     return list(dict.fromkeys(names))
+
+
+def _with_ending(folders: Sequence[Path], endings: tuple[str, ...]) -> list[str]:
+    """The names of the files in folders that have one of some endings."""
+    names: dict[str, None] = {}
+    for folder in folders:
+        with contextlib.suppress(OSError):
+            found = (path.name for path in sorted(folder.iterdir()))
+            names |= dict.fromkeys(name for name in found if name.lower().endswith(endings))
+    return [*names]
 
 
 Stamp: TypeAlias = "tuple[int, int] | None"

@@ -16,6 +16,7 @@ from smachac.pysource.user_code import UserCode
 from smachac.records import dataclass, field
 from smachac.robots.files import Packages
 from smachac.robots.xacro_files import EXPAND, XacroError
+from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
 
 Ros = Literal[1, 2]
 """A major version of ROS, for which programs are generated."""
@@ -30,6 +31,10 @@ SUFFIXES = ("", ".yml", ".yaml")
 def no_xacro(file: str, arguments: Mapping[str, str], packages: Packages) -> str:
     """Raise XacroError: texts in memory are not expanded."""
     raise XacroError("a xacro file is expanded only on disk", EXPAND, Path(file))
+
+
+ROBOT_FILES = (".urdf", XACRO_SUFFIX)
+"""The endings of robot files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +61,7 @@ class Library(UserCode):
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
+    robot_names: Callable[[str], Sequence[str]] = lambda caller: ()
     template_names: Callable[[], Sequence[str]] = lambda: ()
     parse: Callable[[Source, Report], Tree | None] = parse
     ros: Ros = DEFAULT_ROS
@@ -108,6 +114,11 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         script_folders=lambda caller: [caller.rpartition("/")[0] or "."],
         template_folders=lambda: ["templates", *built_in.template_folders()],
         script_names=lambda caller: _stems(_inside(caller.rpartition("/")[0], sources)),
+        robot_names=lambda caller: [
+            name
+            for name in _inside(caller.rpartition("/")[0], sources)
+            if name.lower().endswith(ROBOT_FILES)
+        ],
         template_names=lambda: [
             *(name.partition(".")[0] for name in _inside("templates", sources)),
             *built_in.template_names(),

@@ -7,12 +7,13 @@ import copy
 import json
 import math
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import did_you_mean
 from smachac.diagnostics.spelling import MOST_EXPLAINED, is_plain
+from smachac.diagnostics.wording import listed
 from smachac.interpreter.behaviours import preemptible
 from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
@@ -283,7 +284,7 @@ class _StepReader:
             return ScenarioStep()
         for key in entry:
             if key not in STEP_FIELDS:
-                help_ = did_you_mean(str(key), STEP_FIELDS)
+                help_ = _name_help(str(key), STEP_FIELDS)
                 self.problem(number, f"unknown key `{key}`", help_)
         writes = entry.get("set") or {}
         if not isinstance(writes, dict):
@@ -292,7 +293,7 @@ class _StepReader:
         declared = [key.name for key in self.place.leaf.outputs]
         for key in writes:
             if not self.place.unrestricted and key not in declared:
-                help_ = did_you_mean(str(key), declared)
+                help_ = _name_help(str(key), declared)
                 self.problem(number, f"`{key}` is not one of its output keys", help_)
         for key in ("wait", "stop"):
             if not isinstance(entry.get(key, False), bool):
@@ -314,7 +315,7 @@ class _StepReader:
         name = str(given).lower() if isinstance(given, bool) else str(given)
         declared = outcome_names(self.place.leaf)
         if not self.place.leaf.open and name not in declared:
-            help_ = did_you_mean(name, declared)
+            help_ = _name_help(name, declared)
             self.problem(number, f"`{name}` is not one of its outcomes", help_)
         return name
 
@@ -415,6 +416,11 @@ def _not_found(name: str, machine: Machine, leaves: _Leaves) -> tuple[str, str |
     shown = [each.paths[0] for each in leaves.by_path.values()]
     names = [*shown, *(path.rpartition("/")[2] for path in shown)]
     return f"there is no state `{name}`", did_you_mean(name, names)
+
+
+def _name_help(name: str, known: Collection[str]) -> str | None:
+    """The known name that is meant, or all of them."""
+    return did_you_mean(name, known) or (f"use one of {listed(known)}" if known else None)
 
 
 def _example(leaves: _Leaves, path: str = "") -> str:

@@ -82,6 +82,7 @@ FaultKind = Literal[
     "never set",
     "extra argument",
     "lacking argument",
+    "unknown keyword",
     "no list",
     "no comma",
     "no tuple",

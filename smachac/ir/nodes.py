@@ -89,7 +89,7 @@ DEFINITION_KINDS: Mapping[VariableRole, DefinitionKind] = {
 
 KeyRole = Literal[
     "", "argument", "result", "listed", "joint_positions", "goal_pose", "goal_offset",
-    "message", "limb", "joint", "frame", "model", "body",
+    "message", "key_names", "limb", "joint", "frame", "model", "body",
 ]  # fmt: skip
 """The meaning of a userdata key for a state (docs/state_types.md, Facts)."""
 

@@ -9,7 +9,8 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from inspect import isbuiltin, isclass, isfunction
 
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import ClassFault
 from smachac.pysource.class_members import enumeration_of
 from smachac.pysource.functions import is_plain, returns_of
@@ -229,12 +230,24 @@ def _wrong_counts(code: MethodCode) -> Iterator[ClassFault]:
         missing = [name for name in due if name not in passed]
         span = module.text.span(call)
         head = " ".join(module.text.span(call.func).text.split())
+        by_name = [each.arg for each in (*taken.args, *taken.kwonlyargs)]
+        unknown = [each.arg for each in call.keywords if each.arg and each.arg not in by_name]
+        is_base = called.name == "__init__" and isinstance(call.func, ast.Attribute)
+        if unknown and taken.kwarg is None and not is_base:
+            free = [name for name in by_name if name not in passed and name != "self"]
+            near = guesser(free)(unknown[0]) or (free[0] if len(free) == 1 else None)
+            keyword = next(each for each in call.keywords if each.arg == unknown[0])
+            start = module.text.offset(keyword.lineno, keyword.col_offset)
+            place = Span(module.text.source, start, start + len(unknown[0]))
+            word = Word(unknown[0], place)
+            yield ClassFault(kind="unknown keyword", name=word, near=near, owner=head)
+            continue
         if len(call.args) > len(names) and taken.vararg is None:
             more = module.text.span(call.args[len(names)])
             near = ", ".join([*names, *(each.arg for each in taken.kwonlyargs)])
             word = Word(" ".join(more.text.split()), more)
             yield ClassFault(kind="extra argument", name=word, near=f"{head}({near})", owner=head)
-        elif missing and not (called.name == "__init__" and isinstance(call.func, ast.Attribute)):
+        elif missing and not is_base:
             near, lacking = _completed(module, method, call, names, missing[0])
             yield ClassFault(
                 kind="lacking argument", name=Word(head, span), more=lacking, near=near

@@ -103,7 +103,7 @@ def number_writes(module: Module, function: ast.FunctionDef) -> tuple[Span, ...]
     values = _written_values(every, function.args.args[1].arg)
     if not values:
         return ()
-    local = dict(_local_values(every))
+    local = dict(bound_once(every))
     found = (each for each in values if _is_number(each, module, local, 10))
     return tuple(module.text.span(each) for each in found)
 
@@ -117,7 +117,7 @@ def collection_writes(
     values = _written_values(every, function.args.args[1].arg)
     if not values:
         return
-    local = dict(_local_values(every))
+    local = dict(bound_once(every))
     bound = {each.arg for each in every if isinstance(each, ast.arg)} | local.keys()
     for each in values:
         match local.get(each.id) if isinstance(each, ast.Name) else each:
@@ -130,7 +130,7 @@ def collection_writes(
                     yield module.text.span(each), "dict" if name == "dict" else "list"
 
 
-def _local_values(every: list[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
+def bound_once(every: list[ast.AST]) -> Iterator[tuple[str, ast.expr]]:
     """The local names that are bound once, by an assignment, each with its value."""
     stored = [each for each in every if isinstance(each, ast.Name)]
     bound = Counter(each.id for each in stored if not isinstance(each.ctx, ast.Load))

@@ -8,8 +8,10 @@ from collections.abc import Iterator
 
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import ClassFault
+from smachac.pysource.class_operations import bound_once
 from smachac.pysource.functions import alternatives, is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function, of_other_objects
+from smachac.pysource.source import PythonText
 from smachac.pysource.user_code import UserCode
 
 NOTHING_RETURNED = frozenset(
@@ -23,7 +25,8 @@ Written = tuple[tuple[str, Word], ...]
 def written_values(own: OwnClass, execute: ast.FunctionDef, library: UserCode) -> Written:
     """The expressions that a class writes to userdata keys: `userdata.key = value`, in `execute`
     and in its other methods that have the userdata. Of a call of a function of the user, the texts
-    that it returns are added."""
+    that it returns are added; of a local variable with the result of one, the values that it can
+    have, at the place of the variable."""
     found = []
     for module, function, userdata in _with_userdata(own, execute):
         for node in ast.walk(function):
@@ -34,6 +37,8 @@ def written_values(own: OwnClass, execute: ast.FunctionDef, library: UserCode) -
             if not module.text.is_filled(span):
                 found.append((key, Word(span.text, span)))
                 found += [(key, word) for word in _results(own, module, node.value, library)]
+                result = _result_in_local(own, module, function, node.value, library)
+                found += [(key, Word(text, span)) for text in result]
     return tuple(found)
 
 
@@ -68,6 +73,17 @@ def _written_key(node: ast.AST, userdata: str) -> str | None:
 
 def _results(own: OwnClass, module: Module, value: ast.expr, library: UserCode) -> Iterator[Word]:
     """The texts that a function or method of the user returns, if a value is a call of one."""
+    for text, each in _returned(own, module, value, library):
+        if isinstance(each, ast.Constant) and isinstance(each.value, str):
+            span = text.span(each)
+            if not text.is_filled(span):
+                yield Word(span.text, span)
+
+
+def _returned(
+    own: OwnClass, module: Module, value: ast.expr, library: UserCode
+) -> Iterator[tuple[PythonText, ast.expr]]:
+    """The values that a function or method of the user returns, if a value is a call of one."""
     if not isinstance(value, ast.Call):
         return
     match value.func:
@@ -79,13 +95,60 @@ def _results(own: OwnClass, module: Module, value: ast.expr, library: UserCode) 
             return
     if found is None or not is_plain(found[1]):
         return
-    text = found[0].text
     for one in returns_of(found[1].body):
         for each in alternatives(one.value) if one.value is not None else ():
-            if isinstance(each, ast.Constant) and isinstance(each.value, str):
-                span = text.span(each)
-                if not text.is_filled(span):
-                    yield Word(span.text, span)
+            yield found[0].text, each
+
+
+def _result_in_local(
+    own: OwnClass, module: Module, function: ast.FunctionDef, value: ast.expr, library: UserCode
+) -> list[str]:
+    """The values of a local variable that is bound once, to the result of a function or method of
+    the user: texts, or lists. Empty if it can have other values beside None, or if `function`
+    tests which one it has."""
+    if not isinstance(value, ast.Name):
+        return []
+    every = [*ast.walk(function)]
+    result = dict(bound_once(every)).get(value.id)
+    if result is None or _is_tested(every, value.id):
+        return []
+    returned = [
+        (text.span(each), each)
+        for text, each in _returned(own, module, result, library)
+        if not (isinstance(each, ast.Constant) and each.value is None)
+        and not text.is_filled(text.span(each))
+    ]
+    kinds = {
+        "text" if isinstance(each, ast.Constant) and isinstance(each.value, str) and each.value
+        else "list" if isinstance(each, ast.List) and each.elts
+        else "other"
+        for _, each in returned
+    }  # fmt: skip
+    return [span.text for span, _ in returned] if kinds in ({"text"}, {"list"}) else []
+
+
+def _is_tested(every: list[ast.AST], name: str) -> bool:
+    """Whether code compares a variable with more than None, uses its attributes, or passes it to
+    `isinstance`: then some of its values may not be written."""
+
+    def is_it(node: ast.AST) -> bool:
+        return isinstance(node, ast.Name) and node.id == name
+
+    for each in every:
+        match each:
+            case ast.Compare(left=left, comparators=others):
+                sides = [left, *others]
+                constants = [side for side in sides if not is_it(side)]
+                is_none = all(isinstance(side, ast.Constant) and side.value is None
+                              for side in constants)  # fmt: skip
+                if any(map(is_it, sides)) and not is_none:
+                    return True
+            case ast.Attribute(value=owner) | ast.Match(subject=owner) if is_it(owner):
+                return True
+            case ast.Call(func=ast.Name(id="isinstance" | "type"), args=[first, *_]):
+                if is_it(first):
+                    return True
+    return False
 
 
 # --- loops over what the constructor gets

@@ -153,6 +153,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
         found += _exchanged_values(path, item.span)
         found += _repeated_parts(path, span.source, 1.0 if span is item.span else 1.1)
         found += _other_types(path, around.types)
+        found += _lengths(item, path, around.others)
         found += _moved_out(path, span.source)
         found += _moved_states(path, span.source)
     unique = {made.repair.edits: made for made in sorted(found, key=_order, reverse=True)}
@@ -426,6 +427,26 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
     for name in (*kinds, *(fitting if len(fitting) <= MOST_NEAR else ())):
         cost = 1.2 if name in kinds else 1.7
         yield candidate(cost, RENAME, Edit(span=entry.value.span, text=name))
+
+
+_LENGTH = re.compile(r"\[\d+\]")
+
+
+def _lengths(
+    item: Diagnostic, path: list[Tree | Entry], others: Sequence[str]
+) -> Iterator[Candidate]:
+    """The length of the list at a finding in place of that in the type of the innermost entry, if
+    the type is an argument of another finding too: then several lists do not fit it."""
+    entry = path[-2] if len(path) > 1 else None
+    text, value = item.span.text, entry.value if isinstance(entry, Entry) else None
+    if not isinstance(value, Scalar) or text[:1] != "[" or value.value not in others:
+        return
+    length = parse(Source("", text), [])
+    found = _LENGTH.search(value.span.text)
+    if isinstance(length, Seq) and found is not None and value.value in item.finding.arguments:
+        type_ = _LENGTH.sub(f"[{len(length.items)}]", value.span.text, count=1)
+        edit = Edit(span=value.span, text=type_)
+        yield candidate(1.2, "write the length of the lists", edit)
 
 
 def _moved_out(path: list[Tree | Entry], source: Source) -> Iterator[Candidate]:

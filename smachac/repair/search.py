@@ -182,13 +182,14 @@ class Proof(NamedTuple):
     left: Counter[Mark]
 
 
-def _rank(proof: Proof) -> tuple[int, bool, bool]:
+def _rank(proof: Proof) -> tuple[int, bool, bool, bool]:
     """What a report names first: the repair after which fewer findings are left, then the one of an
-    error, then the one on the line of its finding."""
+    error, then one of a rule, then the one on the line of its finding."""
     item = proof.item
     place = proof.candidate.repair.edits[0].span
     is_there = place.source is item.span.source and place.line == item.span.line
-    return (proof.left.total(), _is_no_error(item), not is_there)
+    is_own = proof.candidate.repair in item.finding.all_repairs
+    return (proof.left.total(), _is_no_error(item), not is_own, not is_there)
 
 
 def _is_no_error(item: Diagnostic) -> bool:

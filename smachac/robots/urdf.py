@@ -7,8 +7,9 @@ file leaves out has the default of the URDF specification.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 
 from smachac.robots.fields import guess, listed
 from smachac.robots.urdf_format import check_format, number, numbers
@@ -123,16 +124,30 @@ def read(text: str) -> Urdf:
         elif element.tag == "joint":
             joint = _joint(element, text, _name(element, text, joints))
             joints[joint.name] = joint
-    for joint in joints.values():
-        for link in (joint.parent, joint.child):
-            if link not in links:
-                message = f"joint `{joint.name}` names the link `{link}`, which does not exist"
-                help = f'add `<link name="{link}"/>` to the file, or correct the name'
-                raise XmlError(message, joint.place, help)
+    _check_links(joints, links, robot, text)
     _check_leaders(joints)
     root = _root(links, joints, text)
     name = robot.attributes.get("name", "")
     return Urdf(name=name, root=root, links=tuple(links), joints=joints, text=text, tree=robot)
+
+
+def _check_links(
+    joints: Mapping[str, UrdfJoint], links: Collection[str], robot: Element, text: str
+) -> None:
+    """Raise XmlError unless the links of all joints exist. The first choice for another one is a
+    link to which no joint leads."""
+    children = {joint.child for joint in joints.values()}
+    for element in robot.all("joint"):
+        for end in (*element.all("parent"), *element.all("child")):
+            link = end.attributes["link"]
+            if link in links:
+                continue
+            message = f"joint `{element.attributes['name']}` names the link `{link}`, which does"
+            free = [name for name in links if name not in children and end.tag == "child"]
+            near = get_close_matches(link, free, n=1) or get_close_matches(link, links, n=1)
+            help = f'add `<link name="{link}"/>` to the file, or correct the name'
+            help = f"did you mean `{near[0]}`?" if near else help
+            raise XmlError(f"{message} not exist", end.place(text, "link"), help)
 
 
 def check_sdf(text: str) -> None:

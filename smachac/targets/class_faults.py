@@ -230,6 +230,10 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`{owner}` has no parameter for `{word}`",
         "its parameters are those of `{near}`",
     ),
+    "unknown keyword": (
+        "`{owner}` has no parameter `{word}`",
+        "remove it, or add it to the parameters",
+    ),
     "lacking argument": (
         "this call of `{word}` does not pass `{more}`",
         "write `{near}`",
@@ -466,6 +470,7 @@ EFFECTS: Mapping[FaultKind, str] = {
     "other order": "the comparison has the same result in every run",
     "swapped arguments": "{more}",
     "extra argument": "the call raises TypeError when it runs: the machine stops",
+    "unknown keyword": "the call raises TypeError when it runs: the machine stops",
     "lacking argument": "the call raises TypeError when it runs: the machine stops",
     "number of values": "the code raises {word} when it runs: the machine stops",
     "no module here": "the code raises AttributeError when it runs: the machine stops",

@@ -144,6 +144,9 @@ def _call_fault(
     if made is None:
         return None
     name, maker, text = made
+    unknown = _unknown_class(text, body, name, leaf, names)
+    if unknown is not None:
+        return ClassFault(kind="undefined name", name=unknown, near=name), name
     parameters = [each.arg for each in maker.args.args[1:]]
     callee = _callee(name, leaf)
     unfit = _argument_fault(text, body, name, maker, leaf)
@@ -180,6 +183,24 @@ def _call_fault(
             near = f"'{word.text}'"
             return ClassFault(kind="no quotes", name=word, near=near, more=value), name
     return None
+
+
+def _unknown_class(
+    text: PythonText, body: re.Match[str], name: str, leaf: Leaf, names: set[str]
+) -> Word | None:
+    """The only call of a class in the block `body`, of a name that is like that of the only class
+    of the template, and that no template of the user binds."""
+    if _callee(name, leaf).search(text.source.text, *body.span(1)):
+        return None
+    guess = guesser([name])
+    found = [
+        Word(each.func.id, span)
+        for each in ast.walk(text.tree)
+        if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
+        if (span := text.span(each.func)) and body.start(1) <= span.start < body.end(1)
+        if each.func.id not in names and not text.is_filled(span)
+    ]
+    return found[0] if len(found) == 1 and guess.sure(found[0].text) else None
 
 
 def _callee(name: str, leaf: Leaf) -> re.Pattern[str]:

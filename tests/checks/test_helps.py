@@ -397,3 +397,77 @@ output_keys: [more]
 """
     report = analysed({"main.yml": text}).report
     assert [each.help for each in report if each.code in ("SM311", "SM312")] == [help]
+
+
+SENSE = """\
+name: sm
+template: Base
+outcomes: [explored]
+states:
+  - SENSE:
+      template: Concurrence
+      outcomes: [safe, gas, blind]
+      outcome_map:
+        safe: {CAMERA: clear, GAS: clean}
+        gas: {GAS: methane, CAMERA: clear}
+        blind: {CAMERA: dusty, GAS: clean}
+      transitions: {safe: explored, gas: explored, blind: explored}
+      states:
+        - CAMERA: {template: ScriptedState, outcomes: [clear, dusty]}
+        - GAS: {template: ScriptedState, outcomes: [clean, methane]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "help"),
+    [
+        (
+            "",
+            "",
+            "remove `CAMERA: clear` from the rule for `gas`, or remove `GAS: clean` from the rule"
+            " for `blind`; or write a `default_outcome` for all combinations without a rule",
+        ),
+        (
+            "        gas: {GAS: methane, CAMERA: clear}\n",
+            "",
+            "write a `default_outcome` for all combinations without a rule, or add a rule, as in"
+            " `gas: {GAS: methane}`",
+        ),
+        (
+            "blind",
+            "failed",
+            "write `default_outcome: failed` for all combinations without a rule",
+        ),
+    ],
+)
+def test_no_outcome_is_chosen_for_a_combination_but_a_failure(
+    tmp_path: Path, old: str, new: str, help: str
+) -> None:
+    report = _report(tmp_path, SENSE.replace(old, new) if old else SENSE)
+    assert [item.help for item in report if item.code == "SM401"] == [help]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "help"),
+    [
+        (
+            "gas: {GAS: methane, CAMERA: clear}",
+            "clear: {CAMERA: gas}",
+            "write `gas: {CAMERA: clear}`: a rule begins with an outcome of `SENSE`",
+        ),
+        (
+            "gas: {GAS: methane, CAMERA: clear}",
+            "methane: {GAS: gas}",
+            "write `gas: {GAS: methane}`: a rule begins with an outcome of `SENSE`",
+        ),
+        (
+            "gas: {GAS: methane, CAMERA: clear}",
+            "toxic: {GAS: methane}",
+            "add `toxic` to the outcomes of `SENSE` and to its transitions",
+        ),
+    ],
+)
+def test_a_transposed_rule_is_one_finding(tmp_path: Path, old: str, new: str, help: str) -> None:
+    report = _report(tmp_path, SENSE.replace(old, new))
+    assert [item.help for item in report if item.code == "SM103"] == [help]
+    assert "SM403" not in [item.code for item in report]

@@ -522,3 +522,73 @@ def test_a_class_of_the_script_or_of_its_base_is_no_common_message() -> None:
     )
     assert faults(own, {"cell_msgs/msg/Path.msg": "float64 length\n"}) == []
     assert faults(script, {"templates/ROSBase.tpl.py": "from cell_msgs.msg import Path\n"}) == []
+
+
+LOOP = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+userdata: {{places: {places}}}
+states:
+  - GRASP:
+      template: ServiceState
+      service_namespace: gripper
+      service: cell_msgs/Reach
+      request_slots: [place]
+      input_keys: [place]
+      for_each: {{item: place, in: places}}
+      transitions: {{succeeded: done, aborted: failed, preempted: failed}}
+"""
+REACH = {
+    "cell_msgs/srv/Reach.srv": "Place place\n---\n",
+    "cell_msgs/msg/Place.msg": "float64 x\nfloat64 angle\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("places", "found"),
+    [
+        ("[{x: 1.0, angle: 0.0}, {x: 2.0, angle: 1.0}]", []),
+        ("[{x: 1.0, angle: 0.0}, {x: 2.0, angel: 1.0}]", [("angel", "did you mean `angle`?")]),
+        ("[{x: 1.0, angel: 0.0}, {x: 2.0}, {y: 1.0, angle: 1.0}]",
+         [("angel", "did you mean `angle`?"), ("y", "write `x`")]),
+        ("[{x: 1.0, angle: far}]", [("far", "write a value of the type `float64`, such as `1.5`")]),
+    ],
+)  # fmt: skip
+def test_the_items_of_a_loop_are_messages(places: str, found: list[tuple[str, str]]) -> None:
+    marked = faults(LOOP.format(places=places), REACH)
+    assert [(text, help) for text, _, help in marked] == found
+
+
+SCAN = """
+name: sm
+template: ROSBase
+outcomes: [done, failed]
+states:
+  - SCAN:
+      template: WaitForMsgState
+      topic: scan
+      msg_type: cell_msgs/Scan
+      msg_cb: 'lambda message, userdata: {code}'
+      transitions: {{succeeded: done, aborted: failed, preempted: failed}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "help"),
+    [
+        ("message.ranges > 100",
+         "write `len(message.ranges) > 100` for the number of its items, or compare one item"),
+        ("100 <= message.ranges and message.ok",
+         "write `100 <= len(message.ranges)` for the number of its items, or compare one item"),
+        ("message.names < 1",
+         "write `len(message.names) < 1` for the number of its items, or compare one item"),
+        ("len(message.ranges) > 100", None),
+        ("message.ranges[0] > 100", None),
+        ("message.ok == 1 and message.ranges is not None", None),
+    ],
+)  # fmt: skip
+def test_the_order_of_a_list_and_a_number(code: str, help: str | None) -> None:
+    files = {"cell_msgs/msg/Scan.msg": "float32[] ranges\nstring[3] names\nbool ok\n"}
+    found = faults(SCAN.format(code=code), files)
+    assert [each[2] for each in found] == ([help] if help else [])

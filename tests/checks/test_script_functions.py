@@ -77,7 +77,7 @@ def findings(rules: str, main: str = MAIN, base: str = BASE) -> list[tuple[str, 
         ("userdata.parts", "userdata.partz",
          ("SM310", "bin/rules.py:2 partz", "did you mean `parts`?")),
         ("userdata.best[", "userdata.choice[",
-         ("SM310", "bin/rules.py:6 choice", "write `input_keys: [best, choice]` in `SURE`")),
+         ("SM310", "bin/rules.py:6 choice", "did you mean `best`?")),
     ],
 )  # fmt: skip
 def test_a_fault_in_a_function(old: str, new: str, expected: tuple[str, str, str]) -> None:

@@ -63,6 +63,10 @@ def places(tree: Tree) -> list[tuple[int, int]]:
         ("1.2.3", "1.2.3"),
         ("12:30", "12:30"),
         ("!!str 12", "12"),
+        ("!!float 12", 12.0),
+        ("!!int '12'", 12),
+        ("!!bool 'true'", True),
+        ("!!null ~", None),
         ("9" * 400, "9" * 400),
     ],
 )
@@ -71,6 +75,28 @@ def test_scalars_follow_the_core_schema(text: str, value: object) -> None:
     assert isinstance(tree, Scalar)
     assert tree.value == value
     assert type(tree.value) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: !mine 3", "only the YAML tags `!!str`, `!!int`, `!!float`, `!!bool`, `!!null`,"),
+        ("a: !!int abc", "`abc` is not a value of the type `!!int`"),
+        ("a: !!float 'x'", "`x` is not a value of the type `!!float`"),
+        ("a: !!map [1]", "only the YAML tags"),
+        ("a: !!seq {b: 1}", "only the YAML tags"),
+    ],
+)
+def test_a_wrong_tag_is_one_finding(text: str, message: str) -> None:
+    report: Report = []
+    parse(Source("main.yml", text), report)
+    assert [item.message[: len(message)] for item in report] == [message]
+
+
+def test_the_tags_of_lists_and_mappings_are_accepted() -> None:
+    report: Report = []
+    assert parse(Source("main.yml", "{a: !!seq [1], b: !!map {c: !!str 2}}"), report) is not None
+    assert report == []
 
 
 def test_every_part_knows_its_place() -> None:

@@ -203,7 +203,33 @@ code: {cpp: {header: glue.hpp, class: Glue}}
 """,
 }
 
+POSES = {
+    MAIN: """\
+name: sm
+template: Base
+outcomes: [done, failed]
+userdata: {rest: [0.0, 0.1], left: [1.0, 1.5]}
+states:
+  - LEFT:
+      template: MoveArm
+      remapping: {angles: left}
+      transitions: {there: REST, stuck: failed}
+  - REST:
+      template: MoveArm
+      remapping: {angles: rest}
+      transitions: {there: done, stuck: failed}
+""",
+    "templates/MoveArm.yml": """\
+name: MoveArm
+input_keys: {angles: "float<rad>[2]"}
+outcomes: {there: {}, stuck: {failure: true}}
+code: {cpp: {header: move.hpp, class: MoveArm}}
+""",
+}
+
 ROWS = [
+    (POSES, "templates/MoveArm.yml", "float<rad>[2]", "float<rad>[3]"),
+    (POSES, "templates/MoveArm.yml", "float<rad>[2]", "float<rad>[1]"),
     (TRIES, MAIN, "{on: [slipped], max: 3}", "{on: 3, max: [slipped]}"),
     (
         TRIES,
@@ -252,3 +278,9 @@ def test_a_slip_is_one_finding_with_the_text_to_write(
     }
     assert len(items) == 1
     assert any(part in (items[0].help or "") for part in re.split(r": |\n *", right.rstrip(":")))
+
+
+def test_one_list_of_another_length_changes_no_interface() -> None:
+    text = POSES[MAIN].replace("[0.0, 0.1]", "[0.0]")
+    _, repair = shown(analysed({**POSES, MAIN: text}))
+    assert repair is None

@@ -65,7 +65,7 @@ AB = joint("j", "a", "b")
         (text(links="a a"), "there are two links `a`", "a"),
         (text(link(AB)), "`<joint>` is inside `<link>`", '<joint name="j" type="fixed">'),
         (text(joint("j", "a", "b", more='<link name="x"/>')), "`<link>` is inside `<joint>`", None),
-        (text(joint("j", "a", "d")), "joint `j` names the link `d`, which does not exist", "j"),
+        (text(joint("j", "a", "d")), "joint `j` names the link `d`, which does not exist", "d"),
         (text('<joint name="j" type="fixed"><child link="b"/></joint>'), "joint `j` has no `<parent>`", None),
         (text('<joint name="j" type="fixed"><parent/><child link="b"/></joint>'), "`<parent>` has no `link`", "<parent/>"),
         # Followers

@@ -3,7 +3,7 @@ with them.
 
 `people/*.yml` are correct projects, in the form of `unusual/`. Each row of `people/slips.json` is a
 slip in one of them: `old` becomes `new` in `file`. `places` are the lines at which a finding helps,
-`lost` the words that were meant. `found` and `named` are what was measured: 177 and 170 of the 193
+`lost` the words that were meant. `found` and `named` are what was measured: 185 and 183 of the 193
 rows, and nothing in the correct projects. Neither may be lost; a row that gains one is changed.
 """
 

@@ -615,8 +615,11 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
     for places in calls_of.values():
         known = {key.name for _, node, _, _ in places for key in (*node.inputs, *node.outputs)}
         path, node, slot, facts = places[0]
+        around = path.rpartition("/")[0]
         used = {word.text for word in facts.reads}
-        guess = guesser(key.name for key in node.inputs if key.name not in used)
+        unread = [key.name for key in node.inputs if key.name not in used]
+        guess = guesser(unread)
+        inside = context.types.cells.keys()
         for word in {each.text: each for each in reversed(facts.reads)}.values():
             if word.text not in known:
                 yield Finding(
@@ -624,7 +627,13 @@ def unknown_function_reads(context: Context) -> Iterator[Finding]:
                     message=f"`{facts.word.text}` reads `{word.text}`, which is not an input key of"
                     f" `{node.name}`",
                     arguments=(word.text,),
-                    help=did_you_mean(guess(word.text)) or listing([node], "input_keys", word.text),
+                    help=did_you_mean(guess(word.text))
+                    or did_you_mean(
+                        unread[0]
+                        if len(unread) == 1 and (around, word.text) not in inside
+                        else None
+                    )
+                    or listing([node], "input_keys", word.text),
                     related=other_place(slot.code.span, f"`{node.name}` calls it here"),
                     node=path,
                 )

@@ -16,7 +16,7 @@ from smachac.analysis.outcome_rules import (
 )
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
-from smachac.checks.outcomes.outcomes import inverted_rules
+from smachac.checks.outcomes.outcomes import inverted_rules, transposed_rules
 from smachac.checks.rule import rule
 from smachac.checks.timing.timeouts import missing_joins, turned_renames
 from smachac.checks.types.value_places import place_of_value
@@ -25,7 +25,7 @@ from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Leaf, Node, OutcomeRule
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
 UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
@@ -118,8 +118,9 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
     guess = guesser(children)
     states = f"use one of its states: {listed(children)}" if children else "add states to it"
     inverted = [each.rule for each in inverted_rules(container)]
+    transposed = transposed_rules(container)
     for entry in container.rules:
-        if entry in inverted:  # SM103 reports those that begin with a state
+        if entry in inverted or entry.outcome in transposed:  # SM103 reports them
             continue
         for word in entry.ignored:
             if word.text not in children:
@@ -428,24 +429,18 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             continue
         needed = rules.shown(missed, {}, rules.all)
         shown = written(needed) or "any combination"
-        rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
         if node.default_outcome:
             severity, span = Severity.INFO, node.default_span
             message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
             message += f" `{node.default_outcome}`"
+            rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
             help = f"if another outcome is meant, add a rule for it, as in `OUTCOME: {{{rule}}}`"
             effect = ""
         else:
             severity, span = Severity.ERROR, node.span
             effect = None
             message = f"no rule of `{node.name}` matches {shown}, and `default_outcome` is missing"
-            bad = (outcome_names(node) or ["failed"])[-1]
-            help = f"write `default_outcome: {bad}` for all combinations without a rule"
-            if rule and not node.rules:
-                rule = f"outcome_map: {{{outcome_names(node)[0]}: {{{rule}}}}}"
-                help = f"write rules for its outcomes, as in `{rule}`, and `default_outcome: {bad}`"
-            elif rule and (free := _without_rule(node)):
-                help += f", or add a rule, as in `{free}: {{{rule}}}`"
+            help = _covering(node, needed)
         yield Finding(
             span=span,
             message=message,
@@ -458,11 +453,37 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
         )
 
 
+MOST_WIDENED = 3
+"""The most rules that a help names for a combination without a rule."""
+
+
+def _covering(node: Concurrence, needed: Mapping[str, str]) -> str:
+    """The help for a combination without a rule. No outcome is chosen but a failure."""
+    names = outcome_names(node)
+    bad = next((name for name in reversed(names) if fails(node, name)), None)
+    default = f"`default_outcome: {bad}`" if bad else "a `default_outcome`"
+    rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
+    if rule and not node.rules:
+        rule = f"outcome_map: {{OUTCOME: {{{rule}}}}}"
+        return f"write rules for its outcomes, as in `{rule}`, and {default}"
+    every = f"write {default} for all combinations without a rule"
+    wider = []
+    for entry in node.rules if needed else ():
+        others = [part for part in entry.when if needed.get(part.child) != part.outcome]
+        if len(others) == 1 and len(entry.when) > 1:
+            condition = f"{others[0].child}: {others[0].outcome}"
+            wider.append(f"remove `{condition}` from the rule for `{entry.outcome}`")
+    if wider and not bad:
+        return f"{', or '.join(wider[:MOST_WIDENED])}; or {every}"
+    free = _without_rule(node)
+    return f"{every}, or add a rule, as in `{free}: {{{rule}}}`" if rule and free else every
+
+
 def _without_rule(node: Concurrence) -> str:
-    """The last outcome without a rule, as an outcome has one entry in the map; empty if all have
-    rules."""
+    """The only outcome without a rule, as an outcome has one entry in the map; else empty."""
     taken = {rule.outcome for rule in node.rules}
-    return next((name for name in reversed(outcome_names(node)) if name not in taken), "")
+    free = [name for name in outcome_names(node) if name not in taken]
+    return free[0] if len(free) == 1 else ""
 
 
 def _names(combination: Mapping[str, str]) -> tuple[str, ...]:

@@ -30,7 +30,15 @@ from smachac.ir.nodes import (
     OutcomeRule,
     Transition,
 )
-from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, fails, failures_of, successes
+from smachac.ir.outcome_names import (
+    GOOD,
+    PREEMPTED,
+    SUCCESSES,
+    fails,
+    failures_of,
+    is_failure,
+    successes,
+)
 from smachac.ir.traversal import outcome_names
 
 
@@ -96,6 +104,7 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
         results.append(("`default_outcome` is", container.default_outcome, container.default_span))
     declared = frozenset(outcome_names(container))
     guess = places_of(container)
+    transposed = transposed_rules(container)
     inverted = inverted_rules(container)
     if inverted:
         yield _inverted(path, container, inverted)
@@ -107,21 +116,42 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
                 span=span,
                 message=f"{source} `{name}`, which is not an outcome of `{container.name}`",
                 arguments=(own_name(container, span), name),
-                help=did_you_mean(meant if meant in declared else None) or _added(container, name),
+                help=transposed.get(name)
+                or did_you_mean(meant if meant in declared else None)
+                or _added(container, name),
                 related=calls(container, span),
                 node=path,
             )
 
 
 def _added(container: Container, name: str) -> str:
-    """The help that adds an outcome to a container, with a transition where it has others."""
+    """The help that adds an outcome to a container, and to its transitions where it has some. No
+    target is chosen but a failure."""
     help = f"add `{name}` to the outcomes of `{container.name}`"
     target = next((step.target for step in reversed(container.transitions) if step.target), "")
-    return (
-        f"{help}, and `{name}: {target}` to its transitions"
-        if target and name != PREEMPTED
-        else help
-    )
+    if name == PREEMPTED or not target:
+        return help
+    transition = f", and `{name}: {target}` to its transitions"
+    return f"{help}{transition if is_failure(target) else ' and to its transitions'}"
+
+
+def transposed_rules(container: Concurrence) -> dict[str, str]:
+    """The rules of an outcome map in which the outcome of the concurrence and that of the states
+    have changed places, by the outcome that they begin with, and how they are written right."""
+    declared = frozenset(outcome_names(container))
+    children = {child.name: outcome_names(child) for child in container.children}
+    found = {}
+    for entry in container.rules:
+        results = {part.outcome for part in entry.when}
+        if entry.outcome in declared or len(results) != 1 or not results <= declared:
+            continue
+        if all(entry.outcome in children.get(part.child, ()) for part in entry.when):
+            states = ", ".join(f"{part.child}: {entry.outcome}" for part in entry.when)
+            found[entry.outcome] = (
+                f"write `{results.pop()}: {{{states}}}`: a rule begins with an"
+                f" outcome of `{container.name}`"
+            )
+    return found
 
 
 class Inverted(NamedTuple):
@@ -300,10 +330,33 @@ def _targets(
             free.remove(choice)
     for outcome in rest[:MOST_EXPLAINED]:
         if outcome not in found:
-            found[outcome] = _target(container, child, outcome, outcome in sure)
+            is_good = outcome in sure or (good == [outcome] and _is_only_good(child, outcome))
+            found[outcome] = _target(container, child, outcome, is_good)
     last = found[rest[:MOST_EXPLAINED][-1]]
     found |= dict.fromkeys(rest[MOST_EXPLAINED:], last)
     return {name: found[name] for name in rest}
+
+
+def _is_only_good(child: Node, outcome: str) -> bool:
+    """Whether all other outcomes of a state are failures or a stop, and one is a failure."""
+    others = [name for name in outcome_names(child) if name not in (outcome, PREEMPTED)]
+    return bool(others) and all(fails(child, name) for name in others)
+
+
+def _before_detour(container: Linear, child: Node, target: str) -> str:
+    """The only state that leads to a state, if another of its outcomes leads to `target`, which is
+    meant for a success of that state: it may have to run again. Empty without one."""
+    before = [
+        state for state in container.children
+        if state is not child and any(step.target == child.name for step in state.transitions)
+    ]  # fmt: skip
+    if len(before) != 1 or all(step.target != target for step in before[0].transitions):
+        return ""
+    return before[0].name
+
+
+UNDECIDED = "..."
+"""In a help in place of a target that is not certain."""
 
 
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
@@ -329,8 +382,10 @@ def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str
         targets = [*names[names.index(child.name) + 1 :], *successes(container)]
     else:
         used = {step.target for each in container.children for step in each.transitions}
-        targets = [name for name in ends if name not in used and name != PREEMPTED]
-        targets += [*others, *failed]
+        unused = [name for name in ends if name not in used and name != PREEMPTED]
+        targets = [*(unused if len(unused) == 1 else ()), *others, *failed]
+        if not targets and len(ends) + len(names) > 2:
+            return UNDECIDED
     plain = [name for name in ends if name != PREEMPTED]
     return next(iter([*targets, *reversed(plain), *ends, *names]))
 
@@ -462,6 +517,8 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         )
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
+    again = _before_detour(container, child, target) if not fails(child, outcome.name) else ""
+    again = f", or `{outcome.name}: {again}` to run `{again}` again" if again else ""
     field = _field_that_adds(child, outcome.name)
     origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
     why = ""
@@ -474,7 +531,7 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{outcome.name}: {target}` to the transitions of `{child.name}`",
+        help=f"{why}add `{outcome.name}: {target}` to the transitions of `{child.name}`{again}",
         related=(
             *(other_place(outcome.span, origin) if inside else ()),
             *calls(child, child.span),

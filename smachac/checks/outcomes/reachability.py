@@ -418,6 +418,37 @@ def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:
     return before
 
 
+def _copied_target(container: Linear, wanted: str) -> str | None:
+    """The help that leads to a name to which nothing leads, if one state of the container leads two
+    of its outcomes to one state: one of the two targets may be a copy. It is that of the success if
+    only failures of other states lead there, that of the failure if the name is one."""
+    names = {child.name for child in container.children}
+    found: list[tuple[Node, str, list[str]]] = []
+    leading: dict[str, list[bool]] = {}
+    for child in container.children:
+        ends: dict[str, list[str]] = {}
+        for step in child.transitions if child.name != wanted else ():
+            if step.origin == "written" and step.outcome != PREEMPTED and step.target in names:
+                ends.setdefault(step.target, []).append(step.outcome)
+        for target, outcomes in ends.items():
+            if len(outcomes) == 2:
+                found.append((child, target, outcomes))
+            else:
+                leading.setdefault(target, []).extend(fails(child, name) for name in outcomes)
+    if len(found) != 1:
+        return None
+    ((child, target, outcomes),) = found
+    others = leading.get(target, [])
+    is_failure = fails(container, wanted) if wanted not in names else False
+    fitting = [name for name in outcomes if fails(child, name) == is_failure]
+    if len(fitting) == 1 and (is_failure or (others and all(others))):
+        return f"write `{fitting[0]}: {wanted}` in the transitions of `{child.name}`"
+    return (
+        f"add a transition to `{wanted}`, for example in `{child.name}`, which leads"
+        f" {both(outcomes)} to `{target}`"
+    )
+
+
 def _why_unreachable(container: Linear, group: list[Node]) -> str:
     if isinstance(container, Sequence):
         return (
@@ -425,6 +456,9 @@ def _why_unreachable(container: Linear, group: list[Node]) -> str:
             " transition: a sequence continues with that outcome"
         )
     names = both(each.name for each in group)
+    copied = _copied_target(container, group[0].name)
+    if copied is not None:
+        return f"{copied}, or remove {names}"
     return f"add a transition to `{group[0].name}`, or remove {names}"
 
 
@@ -536,6 +570,9 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
     effect = None
     if "/" not in path:
         effect = f"a caller of `{name}` that waits for this outcome never gets it"
+    if isinstance(container, StateMachine):
+        copied = _copied_target(container, outcome.name)
+        help = f"{copied}, or {removed}" if copied is not None else help
     if isinstance(container, Concurrence):
         help = f"add a rule for `{outcome.name}`, or {removed}"
         if outcome.name == PREEMPTED:

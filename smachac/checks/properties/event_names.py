@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Finding, did_you_mean
 from smachac.diagnostics.negation import are_opposite
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import guesser, respelt, words_of
 from smachac.diagnostics.wording import either, listed
 from smachac.ir.nodes import Data, Leaf
 from smachac.ir.outcome_names import fails, is_failure
@@ -106,7 +106,8 @@ def _unnamed(known: Sequence[str], context: Context) -> str | None:
     """The help for an unknown event: the only state that no property names."""
     named = {atom.name.rpartition("/")[2] for each in context.machine.properties
              for atom in atoms(each.form) if atom.subject == "path"}  # fmt: skip
-    left = [name for name in known if name not in named]
+    root = context.machine.root.name
+    left = [name for name in known if name not in named and name != root]
     return f"write `{left[0]}`, the only state that no property names" if len(left) == 1 else None
 
 
@@ -162,10 +163,28 @@ def _as_failure(
 def _with_the_words(atom: Atom, known: Sequence[str]) -> str | None:
     """The guess for the path of a state whose words are words of the name of one state only:
     `LOCK` of `LOCK_TOOL`, although `DOCK` has but one other letter."""
-    words = set(atom.name.split("_"))
-    found = [name for name in known if words <= set(name.split("_"))]
+    words = words_of(atom.name)
+    found = [name for name in known if all(map(_has_word(name), words))]
+    found = [name for name in found if len(words_of(name)) == len(words)] or found
     fits = atom.subject == "path" and len(found) == 1 and not are_opposite(atom.name, found[0])
     return f"did you mean `{found[0]}`?" if fits else None
+
+
+SHORTEST_STEM = 4
+"""The letters of a word that has another ending in another name: `CLOSE` and `CLOSED`."""
+
+
+def _has_word(name: str) -> Callable[[str], bool]:
+    """Whether a name has a word, or one that is the same without its ending."""
+
+    def has(word: str) -> bool:
+        pairs = [sorted((word, other), key=len) for other in words_of(name)]
+        return any(
+            long == short or (len(short) >= SHORTEST_STEM and long.startswith(short))
+            for short, long in pairs
+        )
+
+    return has
 
 
 def _by_words(atom: Atom, known: Sequence[str]) -> str | None:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.code_slots import code_slots
 from smachac.analysis.context import Context
@@ -17,6 +17,7 @@ from smachac.analysis.message_code import (
     message_code,
     nested_messages,
 )
+from smachac.analysis.type_inference import TypeFlow
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.classes.class_messages import faults_in_classes
 from smachac.checks.help_text import calls, did_you_mean
@@ -56,6 +57,7 @@ from smachac.checks.userdata.edits import listing
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.wording import both, listed
+from smachac.ir import nodes
 from smachac.ir.leaf import given_fields, key_names, type_text, variable, variable_of
 from smachac.ir.message_types import (
     FLOATS,
@@ -78,7 +80,7 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
-from smachac.ir.traversal import outer_inputs, outer_outputs
+from smachac.ir.traversal import outer_inputs, outer_outputs, remapping
 from smachac.ir.types import Type
 
 TYPE_KEY = "msg_type"
@@ -399,33 +401,55 @@ def _mapping_faults(
     effect: str,
 ) -> Iterator[Finding]:
     """The faults of the mappings in a key of a state for a message."""
-    cell = context.types.cells.get((path, name))
-    flows = [each for alike in cell.flows.values() for each in alike] if cell else []
-    for flow in flows:
-        if flow.how != "value" or not isinstance(flow.value, Struct):
+    for flow, item, value in (*_flows(context, path, name), *_items(context, path, name)):
+        if not isinstance(value, Struct):
             continue
-        faults = [list(value_faults(flow.value, each, found)) for each in messages]
-        levels = with_levels(flow.value, faults[0] if all(faults) else (), found)
-        for (steps, message, wanted, value), level in levels:
+        faults = [list(value_faults(value, each, found)) for each in messages]
+        levels = with_levels(value, faults[0] if all(faults) else (), found)
+        for (steps, message, wanted, given), level in levels:
             fields = sorted(each.name for each in message.fields)
             text = f"{described(message)} has no field `{steps[-1]}`"
             help = level or did_you_mean(near_field(steps[-1], fields))
-            help = help or _only_missing(flow.value, steps, message)
+            help = help or _only_missing(value, steps, message)
             known = f"use one of its fields: {listed(fields)}" if fields else "it has no fields"
             help = help or known
             if wanted is not None:
                 text = f"the value of `{steps[-1]}` does not fit: the field of"
                 text += f" {described(message)} is `{wanted}`"
-                help = value_help(value, wanted)
+                help = value_help(given, wanted)
             yield at(
                 flow,
                 text,
                 help,
-                (message.name, *steps),
-                part=steps,
+                (message.name, *map(str, item), *steps),
+                part=(*item, *steps),
                 key=wanted is None,
                 effect=effect,
             )
+
+
+_Literal: TypeAlias = "tuple[TypeFlow, tuple[int, ...], Data]"
+"""A literal that arrives at a key, the steps to its part that does so, and that part."""
+
+
+def _flows(context: Context, path: str, name: str) -> Iterator[_Literal]:
+    """The literals that arrive at a key of a state."""
+    cell = context.types.cells.get((path, name))
+    for alike in cell.flows.values() if cell is not None else ():
+        yield from ((flow, (), flow.value) for flow in alike if flow.how == "value")
+
+
+def _items(context: Context, path: str, name: str) -> Iterator[_Literal]:
+    """The items of the literal lists over which the loop around a state gives it a key."""
+    around = path.rpartition("/")[0]
+    loop, node = (context.routes.nodes.get(each) for each in (around, path))
+    if not isinstance(loop, nodes.Iterator) or not loop.items_key or node is None:
+        return
+    if remapping(node)[name] != loop.item_key:
+        return
+    for flow, _, items in _flows(context, around, loop.items_key):
+        for number, item in enumerate(items if isinstance(items, tuple) else ()):
+            yield flow, (number,), item
 
 
 def _only_missing(data: Data, steps: Sequence[str], message: Message) -> str | None:

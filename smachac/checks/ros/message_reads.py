@@ -21,7 +21,8 @@ from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.ros.message_values import an_example, constants_for, named_constants
 from smachac.diagnostics.diagnostic import Finding, Related
 from smachac.diagnostics.meanings import by_words
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.repair import Certainty, Edit, Repair
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.function_facts import Operand, Part
@@ -44,12 +45,20 @@ SHORTEST_PART = 3
 """A shorter name is the beginning of too many others."""
 
 
+ORDERS = ("<", "<=", ">", ">=")
+
+
 def wrong_comparisons(
     path: str, leaf: Leaf, code: MessageCode, found: Definitions, here: tuple[Related, ...]
 ) -> Iterator[Finding]:
-    """Comparisons of a number in a message with a text, or the reverse."""
+    """Comparisons of a number in a message with a text, or the reverse, and of the order of a list
+    and a number."""
     for part, operator, value, span in code.uses.comparisons:
         content = content_of(part, code, found)
+        lists = [each for each in content if isinstance(each, FieldType) and each.array]
+        if lists and len(lists) == len(content) and operator in ORDERS:
+            yield _ordered_list(path, leaf, part, operator, value, span, lists[0], here)
+            continue
         fields = [each for each in content if isinstance(each, FieldType) and not each.array]
         wrong = NUMBERS if isinstance(value, str) else TEXTS
         if not fields or len(fields) != len(content) or {each.name for each in fields} - {*wrong}:
@@ -71,6 +80,32 @@ def wrong_comparisons(
             related=(*here, *calls(leaf, span)),
             node=path,
         )
+
+
+def _ordered_list(
+    path: str,
+    leaf: Leaf,
+    part: Part,
+    operator: str,
+    value: str | float,
+    span: Span,
+    type_: FieldType,
+    here: tuple[Related, ...],
+) -> Finding:
+    """The finding on a list that is compared with one value, by their order."""
+    text = span.text.replace(part.text, f"len({part.text})", 1)
+    edits = (Edit(span=span, text=text),) if not here and span.text != text else ()
+    length = Repair(edits=edits, certainty=Certainty.LIKELY, operator="compare its length")
+    return Finding(
+        span=span,
+        message=f"`{part.text}` is a list (`{type_}`), but `{operator}` compares it with one value",
+        arguments=(part.text, operator, repr(value)),
+        help=f"write `{text}` for the number of its items, or compare one item",
+        effect="the function fails with a TypeError or ValueError",
+        repairs=(length,) if edits else (),
+        related=(*here, *calls(leaf, span)),
+        node=path,
+    )
 
 
 def code_places(leaf: Leaf, slot: CodeSlot, code: MessageCode) -> tuple[Related, ...]:

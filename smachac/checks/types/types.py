@@ -161,12 +161,20 @@ def _without_items(context: Context) -> Iterator[Finding]:
             continue
         origins = {alike[0].origin: None for alike in cell.flows.values()}
         type_ = cell.holds or cell.declared
+        lists = [
+            name
+            for name in (each.name for each in container.inputs)
+            if (other := context.types.cells.get((path, name))) is not None
+            and kinds(other.holds or other.declared) == {"list"}
+        ]
         yield Finding(
             span=container.items_span,
             message=f"`{container.name}` needs a list of items in `{key}`, but `{key}` is"
             f" {in_words(type_)}",
             arguments=(key, str(widened(type_)), "list"),
-            help=f"write a list for `{key}`, such as `[1, 2, 3]`",
+            help=f"did you mean `{lists[0]}`, the only list here?"
+            if len(lists) == 1
+            else f"write a list for `{key}`, such as `[1, 2, 3]`",
             related=(
                 *(place for each in origins for place in other_place(each.span, written(each))),
                 *calls(container, container.items_span),
@@ -533,7 +541,9 @@ def _help(clash: Clash) -> str:
     if given.name == "none":
         return f"give it a value, or declare it as `{wanted}?` where it is read"
     if given.name == "optional" and fits(inside(given), wanted):
-        return f"declare it as `{given}` where it is read, because it can be absent"
+        cell = clash.flow.origin.cell
+        first = f"set `{cell.key}` on each path to the read, or " if cell.role == "scope" else ""
+        return f"{first}declare it as `{given}` where it is read, because it can be absent"
     if given.name == "float" and wanted.name == "int":
         value = clash.flow.origin.value
         if isinstance(value, float) and math.isfinite(value):

@@ -11,7 +11,7 @@ from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import is_plain
 from smachac.diagnostics.wording import listed
-from smachac.ir.nodes import Container, Key, Node
+from smachac.ir.nodes import Key, Node
 from smachac.ir.script_paths import name_in_script
 
 KeyList = Literal["input_keys", "output_keys"]
@@ -25,9 +25,9 @@ _BODY = re.compile(
 """The text between the name of a state and the first of its fields."""
 
 
-def with_input(container: Container, key: str) -> tuple[Edit, ...]:
-    """The edit that adds a key to the `input_keys` of a container, where its place is certain."""
-    return _with_key(container, container.inputs, "input_keys", key)
+def with_input(node: Node, key: str) -> tuple[Edit, ...]:
+    """The edit that adds a key to the `input_keys` of a state, where its place is certain."""
+    return _with_key(node, node.inputs, "input_keys", key)
 
 
 def with_output(node: Node, key: str) -> tuple[Edit, ...]:

@@ -21,18 +21,18 @@ from smachac.checks.classes.class_code import (
     used_here,
 )
 from smachac.checks.code.code_slots import unknown_function_reads
-from smachac.checks.help_text import calls, did_you_mean
+from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.value_places import place_of_part
 from smachac.checks.userdata.candidate_keys import keys_around
-from smachac.checks.userdata.edits import listing, with_key_list, with_output
+from smachac.checks.userdata.edits import listing, with_input, with_key_list, with_output
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.code_places import key_place
-from smachac.ir.leaf import functions, variable_of
+from smachac.ir.leaf import functions, key_names, variable_of
 from smachac.ir.nodes import Container, Leaf, StateType, Struct
 
 
@@ -197,6 +197,40 @@ def undeclared_access(context: Context) -> Iterator[Finding]:
     yield from unknown_reads(context)
     yield from _unlisted(context, "input")
     yield from unknown_function_reads(context)
+    yield from _unknown_key_names(context)
+
+
+def _unknown_key_names(context: Context) -> Iterator[Finding]:
+    """The names in lists of input keys (`role: key_names`) that are no input keys."""
+    for path, leaf in context.states:
+        if not isinstance(leaf, Leaf):
+            continue
+        inputs = [each.name for each in leaf.inputs]
+        for key in key_names(leaf.inputs, "key_names"):
+            cell = context.types.cells.get((path, key))
+            flows = [flow for alike in cell.flows.values() for flow in alike] if cell else []
+            for flow in flows:
+                names = flow.value if flow.how == "value" and isinstance(flow.value, tuple) else ()
+                free = [name for name in inputs if name not in names and name != key]
+                for at, name in enumerate(names):
+                    if isinstance(name, str) and name not in inputs:
+                        span = place_of_part(flow.origin.span, (at,))
+                        near = guesser(free)(name)
+                        is_known = (path.rpartition("/")[0], name) in context.types.cells
+                        added = with_input(leaf, name) if is_known else ()
+                        yield Finding(
+                            span=span,
+                            message=f"`{leaf.name}` reads the key `{name}` of the list `{key}`,"
+                            " which is not one of its input keys",
+                            arguments=(leaf.name, name),
+                            help=did_you_mean(near) or listing([leaf], "input_keys", name),
+                            related=other_place(cell.span, f"`{leaf.name}` reads the list here")
+                            if cell is not None
+                            else (),
+                            effect=f"`{leaf.name}` cannot read this key: it fails",
+                            edits=respelt(Word(name, span), near) if near else added,
+                            node=path,
+                        )
 
 
 def _undeclared_accesses(

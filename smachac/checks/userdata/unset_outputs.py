@@ -268,15 +268,30 @@ def _broken_promise(
     does, where = ("returns", "before") if place is None else ("can return", "on each path to")
     past = other_place(place.span, WAY_PAST[place.text].format(key=key)) if place else ()
     promise = _promise(type_, ending.outcome.text, key)
+    setting = _setting(leaf, type_, ending, key, where)
     other = f"correct `writes:` in the interface `{leaf.type}`"
     if promise:
         other = f"remove `{key}` from `{ending.outcome.text}` in the `writes:` of the interface"
+        meant = _promised_elsewhere(leaf, type_, key)
+        if meant and never:
+            setting = f"write `{key}` for `{meant}`, not for `{ending.outcome.text}`, in the"
+            setting += " `writes:` of the interface"
+            other = f"set `{key}` before this `return`"
     yield Finding(
         span=ending.outcome.span,
         message=f"`{leaf.type}` {does} `{ending.outcome.text}` without setting its output key"
         f" `{key}`",
         arguments=(leaf.type, key, ending.outcome.text),
-        help=f"{_setting(leaf, type_, ending, key, where)}, or {other}",
+        help=f"{setting}, or {other}",
         related=(*past, *promise, *used_here(leaf)),
         node=path,
     )
+
+
+def _promised_elsewhere(leaf: Leaf, type_: StateType, key: str) -> str:
+    """The outcome before which a class sets a key, if that is the only one and `writes:` does not
+    have it; else empty."""
+    endings = leaf.class_facts.endings if leaf.class_facts is not None else ()
+    found = {each.outcome.text for each in endings if key in (each.written or ())}
+    promised = {outcome for outcome, keys in type_.writes if key in keys}
+    return found.pop() if len(found) == 1 and found.isdisjoint(promised) else ""

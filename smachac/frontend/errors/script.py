@@ -292,14 +292,18 @@ variables of its own."""
 _LONGEST_NUMBER = 20
 
 
+_DECIMALS = re.compile(r"[0-9]+ ?[A-Za-zµ%]*")
+"""The digits of a number after its decimal comma, with a unit."""
+
+
 def number_before(word: Word) -> str:
-    """The digits before a comma in front of a word of digits: `0` in `{time: 0,5}`, where YAML
-    reads an entry `5`. Empty without them."""
+    """The digits before a comma in front of a word of digits, also with a unit: `0` in
+    `{time: 0,5s}`, where YAML reads an entry `5s`. Empty without them."""
     start = word.span.start
     text = word.span.source.text[max(0, start - _LONGEST_NUMBER) : start]
     before = text.removesuffix(",")
     digits = before[len(before.rstrip("0123456789")) :]
-    return digits if word.text.isdigit() and before != text else ""
+    return digits if _DECIMALS.fullmatch(word.text) and before != text else ""
 
 
 @problem(

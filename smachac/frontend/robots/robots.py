@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any, Literal, TypeAlias, TypeVar
 
-from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
+from smachac.diagnostics.diagnostic import Related, Report, did_you_mean, did_you_mean_file
 from smachac.diagnostics.source import NOWHERE, Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import bad_robot, package_help
-from smachac.frontend.loader import Library
+from smachac.frontend.loader import ROBOT_FILES, Library
 from smachac.frontend.resolved_script import State
 from smachac.frontend.robots.urdf import checked_joint, robot_of_urdf
 from smachac.frontend.text.data_files import plain, span_at
@@ -165,6 +165,12 @@ class _Reader:
             near = guesser(self.library.script_names(self.source.name))(stem)
             if near is not None and dot + ending in DESCRIPTIONS:
                 help = f"did you mean `{near}{dot}{ending}`? (searched in {searched})"
+            elif word.text.lower().endswith(ROBOT_FILES):
+                robots = self.library.robot_names(self.source.name)
+                guess = did_you_mean_file(word.text, robots)
+                if guess is None and len(robots) == 1:
+                    guess = f"write `{robots[0]}`, the only robot file there is"
+                help = f"{guess} (searched in {searched})" if guess else help
             message = f"the file `{word.text}` was not found"
             self.wrong(word, message, help, ("file", word.text))
         return found

@@ -11,7 +11,13 @@ from typing import Any
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser_of, words_of, written_name
+from smachac.diagnostics.spelling import (
+    MOST_EXPLAINED,
+    guesser_of,
+    is_plain,
+    words_of,
+    written_name,
+)
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
 from smachac.frontend.errors.script import (
@@ -109,6 +115,7 @@ def read_fields(
     if owner == "state" and not type_.open:
         check_interface(read, type_, report)
     if type_.variables:
+        _check_lists(entries, type_, report)
         for part, keys in _listed_keys(entries, type_):
             read[part] = (*read.get(part, ()), *keys)
     examples = {}
@@ -467,6 +474,15 @@ def _example(variable: VariableType) -> str:
         shown += ".0"
     inside = low < float(shown) < high or (float(shown) in (low, high) and not limits.exclusive)
     return shown if inside else "..."
+
+
+def _check_lists(entries: Entries, type_: StateType, report: Report) -> None:
+    """Reports one name in place of a list of keys: a program reads its letters as the keys."""
+    for name, variable in type_.variables.items():
+        is_list = variable.keys in ("input", "output") and variable.type == ANY
+        value = entries[name].value if is_list and name in entries else None
+        if isinstance(value, Scalar) and isinstance(value.value, str) and is_plain(value.value):
+            wrong(value, "keys", report)
 
 
 def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys]]:

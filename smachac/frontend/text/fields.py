@@ -479,9 +479,9 @@ def listed_keys(tree: Tree) -> Keys:
     if isinstance(tree, Map):
         return tuple((key, parse_type(type_.text)) for key, type_ in pairs_of(tree))
     found: dict[str, Word] = {}
-    for item in tree.items if isinstance(tree, Seq) else ():
+    for item in tree.items if isinstance(tree, Seq) else (tree,):
         word = name_of(item)
-        if word is not None:
+        if word is not None and word.text:
             found.setdefault(word.text, word)
     return tuple((word, None) for word in found.values())
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import gc
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
@@ -196,6 +196,13 @@ def events(text: str) -> Iterator[Any]:
 
     return iter(CParser(text).get_event, None)
 
+
+_CORE = "tag:yaml.org,2002:"
+
+_SCALAR_TAGS: Mapping[str, type] = {
+    "int": int, "float": float, "bool": bool, "null": type(None)
+}  # fmt: skip
+"""The tags of scalars in the core schema of YAML 1.2, beside text, with their types."""
 
 _WITHOUT_END = (
     "while parsing a flow",
@@ -383,7 +390,7 @@ class _Builder:
             self.end = end
             value: bool | int | float | str | None = text
             if event.tag is not None:
-                self._check_tag(event)
+                value = self._tagged(event)
             elif plain and (not text.isidentifier() or text in WORDS):  # most texts are names
                 value = value_of(text)
                 if " " in text or text[-1:] in _LAST_SIGNS:
@@ -429,9 +436,31 @@ class _Builder:
         """Whether the innermost open collection is in brackets or braces."""
         return bool(self.stack) and self.stack[-1][2]
 
+    def _tagged(self, event: Any) -> bool | int | float | str | None:
+        """The value of a scalar with a tag of the core schema of YAML 1.2; another tag, or one that
+        the text does not fit, is reported."""
+        text: str = event.value
+        tag = str(event.tag).removeprefix(_CORE)
+        if tag in ("str", "!"):
+            return text
+        value = value_of(text)
+        if tag == "float" and type(value) is int:
+            return float(value)
+        if tag not in _SCALAR_TAGS:
+            self._unknown_tag(event)
+        elif type(value) is not _SCALAR_TAGS[tag]:
+            span = Span(self.source, event.start_mark.index, event.end_mark.index)
+            message = f"`{text}` is not a value of the type `!!{tag}`"
+            help = "correct the value, or write it without a tag"
+            self.report.append(wrong_shape(span, message, help, arguments=("tag", tag, text)))
+        return value
+
     def _check_tag(self, event: Any) -> None:
-        """Reports a tag of a scalar that is not for text."""
-        if str(event.tag) not in ("tag:yaml.org,2002:str", "!"):
+        """Reports a tag of a list or a mapping that is not its own."""
+        from yaml import events as kinds
+
+        own = "map" if type(event) is kinds.MappingStartEvent else "seq"
+        if str(event.tag) not in (f"{_CORE}{own}", "!"):
             self._unknown_tag(event)
 
     def _unknown_tag(self, event: Any) -> None:
@@ -439,7 +468,8 @@ class _Builder:
         self.report.append(
             wrong_shape(
                 span,
-                "YAML tags other than `!!str` are not supported",
+                "only the YAML tags `!!str`, `!!int`, `!!float`, `!!bool`, `!!null`, `!!seq` and"
+                " `!!map` are supported",
                 "write the value without a tag",
                 arguments=("tag", str(event.tag)),
             )
@@ -448,7 +478,7 @@ class _Builder:
     def _open(self, event: Any) -> None:
         start = event.start_mark.index
         if event.tag is not None:
-            self._unknown_tag(event)
+            self._check_tag(event)
         depth = len(self.stack)
         if depth >= MAX_DEPTH:
             self.report.append(_too_deep(self.source, start))

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source, Word
-from smachac.diagnostics.spelling import guesser_of
+from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.frontend.errors.script import Owner, bad_type, unknown_variable
 from smachac.frontend.text.fields import PRESET_FIELDS, as_pairs, is_long_form
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Tree, is_known_wrong
@@ -37,7 +37,9 @@ def read_aliases(tree: Tree, report: Report) -> Aliases:
 
 def explain_aliases(aliases: Aliases, source: Source, report: Report) -> set[str]:
     """The names of aliases that other files than the script use as types, where they are unknown
-    (SM017): the help of these findings is the type to write there."""
+    (SM017): the help of these findings is the type to write there. For an unknown type in the
+    script it is the alias that is meant."""
+    guess = guesser_of(tuple(aliases))
     found: set[str] = set()
     for index, item in enumerate(report) if aliases else ():
         finding = item.finding
@@ -47,6 +49,10 @@ def explain_aliases(aliases: Aliases, source: Source, report: Report) -> set[str
             meant = _filled(finding.arguments[0], aliases)
             help = f"an interface does not use the `types:` of a script: write `{meant}`"
             report[index] = replace(item, finding=replace(finding, help=help))
+        elif unknown and finding.span.source is source and (near := guess.sure(unknown)):
+            edits = respelt(Word(unknown, finding.span), near)
+            help = f"did you mean `{near}`?"
+            report[index] = replace(item, finding=replace(finding, help=help, edits=edits))
     return found
 
 

@@ -174,7 +174,8 @@ def _bound(tree: Map, name: str, type_: Type, report: Report) -> float | None:
     else:
         message = f"expected a number, found {kind_of(entry.value)}"
         meant = _number_in(entry.value)
-        help = f"write `{name}: {meant}`" if meant else "write a number, such as `0`"
+        which = "smallest" if name == "min" else "largest"
+        help = f"write `{name}: {meant}`" if meant else f"write the {which} number that is allowed"
     report.append(wrong_shape(entry.value.span, message, help, arguments=(name, str(value))))
     return None
 

@@ -14,6 +14,7 @@ from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
+from smachac.pysource.jinja_tags import tags
 
 if TYPE_CHECKING:
     from jinja2 import Template, nodes
@@ -286,6 +287,7 @@ _EXTENDS = re.compile(r"\{%[-+]?\s*extends\s+[\"']([^\"']+)")
 _INNERMOST = re.compile(r"innermost block that needs to be closed is '(\w+)'")
 _UNKNOWN = re.compile(r"No (filter|test) named '(\w+)'")
 _UNEXPECTED = re.compile(r"unexpected '(.{1,20})'$")
+_STATEMENT = re.compile(r"\{%[-+]?\s*(\w+)")
 _UNCLOSED = re.compile(r"^Unexpected end of template\..* needs to be closed is '(\w+)'")
 
 
@@ -336,6 +338,8 @@ class _ErrorConverter:
             near = guesser(sorted(self.names() if self.names else ())).sure(name)
             help = f"did you mean `{near}`?" if near is not None else help
             span = _marked(span, rf"\b{re.escape(name)}\b")
+        opening = _unclosed_tag(error, span.source)
+        span = span if opening is None else opening
         found = _at_a_word(error, self.blocks._environment.filters)
         if found is not None:
             message, help, pattern = found
@@ -375,6 +379,21 @@ class _ErrorConverter:
         starts = source.line_starts
         start = starts[min(line, len(starts)) - 1]
         return Span(source, start, start + len(source.line(line)))
+
+
+def _unclosed_tag(error: Exception, source: Source) -> Span | None:
+    """The last tag of a template that is not closed, if that is the error."""
+    unclosed = _UNCLOSED.search(getattr(error, "message", None) or "")
+    if unclosed is None:
+        return None
+    opened: list[Span] = []
+    for start, end in tags(source.text, "#%"):
+        word = _STATEMENT.match(source.text, start, end)
+        if word is not None and word[1] == unclosed[1]:
+            opened.append(Span(source, start, end))
+        elif word is not None and word[1] == f"end{unclosed[1]}" and opened:
+            opened.pop()
+    return opened[-1] if opened else None
 
 
 def _at_a_word(error: Exception, filters: Iterable[str]) -> tuple[str, str | None, str] | None:
