@@ -12,11 +12,11 @@ from smachac.checks.concurrence import concurrence, races
 from smachac.checks.names import names
 from smachac.checks.outcomes import failures, outcomes, reachability
 from smachac.checks.properties import properties
-from smachac.checks.robot import bodies, grip, motion, open_grip, robot, workspace
+from smachac.checks.robot import bodies, grip, motion, open_grip, robot, values, workspace
 from smachac.checks.ros import message_fields
 from smachac.checks.rule import Rule
 from smachac.checks.timing import loops, stops, timeouts
-from smachac.checks.types import types, values
+from smachac.checks.types import types
 from smachac.checks.userdata import (
     declarations,
     initial_values,

@@ -11,8 +11,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from smachac.analysis.context import Context
+from smachac.checks.classes.renamed_names import renamed_in_interface
 from smachac.checks.help_text import did_you_mean, other_place
-from smachac.checks.names.renamed_names import renamed_in_interface
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation

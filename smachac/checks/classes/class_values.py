@@ -27,7 +27,7 @@ from smachac.analysis.type_lattice import (
 )
 from smachac.checks.classes.class_code import leaves_by_type
 from smachac.checks.help_text import did_you_mean, other_place
-from smachac.checks.types.type_words import HELP, example, in_words
+from smachac.checks.type_words import HELP, example, in_words
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.spelling import guesser

@@ -35,11 +35,11 @@ from smachac.checks.code.function_results import (
     slot_owner,
 )
 from smachac.checks.code.outcome_results import wrong_outcomes
+from smachac.checks.edits import listing
 from smachac.checks.help_text import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.number_help import number_meant
 from smachac.checks.types.types import written
-from smachac.checks.userdata.edits import listing
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span

@@ -17,11 +17,11 @@ from smachac.checks.classes.class_values import (
     wrong_operations,
     wrong_parts,
 )
+from smachac.checks.edits import adding_outcome
 from smachac.checks.help_text import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.types import written
 from smachac.checks.types.value_places import place_of_fault, place_of_part
-from smachac.checks.userdata.edits import adding_outcome
 from smachac.checks.userdata.null_keys import null_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
@@ -29,11 +29,7 @@ from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, in_quotes, respelt
 from smachac.diagnostics.wording import listed
-from smachac.ir.code_places import (
-    node_range,
-    place_in,
-    python_tree,
-)
+from smachac.ir.code_places import node_range, place_in, python_tree
 from smachac.ir.code_slips import Slip, corrected, slips
 from smachac.ir.expressions import print_expression
 from smachac.ir.leaf import functions, variable, variable_of

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from smachac.checks.help_text import calls, other_place
-from smachac.checks.types.type_words import placeholder
+from smachac.checks.type_words import placeholder
 from smachac.diagnostics.diagnostic import Finding
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed

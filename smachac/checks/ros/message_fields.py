@@ -11,17 +11,13 @@ from typing import NamedTuple, TypeAlias
 
 from smachac.analysis.code_slots import code_slots
 from smachac.analysis.context import Context
-from smachac.analysis.message_code import (
-    MOST_CODE,
-    leaf_definitions,
-    message_code,
-    nested_messages,
-)
+from smachac.analysis.message_code import MOST_CODE, leaf_definitions, message_code, nested_messages
 from smachac.analysis.type_inference import TypeFlow
 from smachac.analysis.type_lattice import fits, present
-from smachac.checks.classes.class_messages import faults_in_classes
+from smachac.checks.edits import listing
 from smachac.checks.help_text import calls, did_you_mean
 from smachac.checks.robot.robot import at
+from smachac.checks.ros.class_messages import faults_in_classes
 from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
 from smachac.checks.ros.message_reads import (
     code_places,
@@ -53,7 +49,6 @@ from smachac.checks.ros.message_values import (
 )
 from smachac.checks.rule import rule
 from smachac.checks.types.value_places import place_of_part
-from smachac.checks.userdata.edits import listing
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.wording import both, listed

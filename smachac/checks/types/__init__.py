@@ -1,1 +1,1 @@
-"""Rules over values and their types, limits and units."""
+"""Rules over values and their types."""

@@ -28,6 +28,7 @@ from smachac.analysis.units import conversion
 from smachac.checks.classes.class_values import wrong_loops, wrong_writes
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
+from smachac.checks.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.types.number_help import (
     decimal_commas,
     list_meant,
@@ -42,7 +43,6 @@ from smachac.checks.types.record_fields import (
     swapped_fields_help,
     without_fields,
 )
-from smachac.checks.types.type_words import HELP, example, in_words, named, place_in_words
 from smachac.checks.types.value_places import part_at, place_of_part, steps_to_misfit, type_at
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.meanings import of_same_meaning

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.analysis.empty_remaps import EmptyRemap
 from smachac.analysis.unset_reads import container_name, provided_keys
+from smachac.checks.edits import listing
 from smachac.checks.help_text import calls, did_you_mean, other_place
-from smachac.checks.userdata.edits import listing
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.text.unquoted import is_name

@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
-from smachac.analysis.accesses import (
-    callback_names,
-    scripted_steps,
-)
+from smachac.analysis.accesses import callback_names, scripted_steps
 from smachac.analysis.code_slots import undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
@@ -21,11 +18,11 @@ from smachac.checks.classes.class_code import (
     used_here,
 )
 from smachac.checks.code.code_slots import unknown_function_reads
+from smachac.checks.edits import listing, with_input, with_key_list, with_output
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.value_places import place_of_part
 from smachac.checks.userdata.candidate_keys import keys_around
-from smachac.checks.userdata.edits import listing, with_input, with_key_list, with_output
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt

@@ -11,12 +11,9 @@ from smachac.analysis.definite_assignment import DataFlow
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
+from smachac.checks.edits import with_remapping
 from smachac.checks.help_text import added_remapping, calls, other_place
-from smachac.checks.userdata.candidate_keys import (
-    may_be,
-    unread_output,
-)
-from smachac.checks.userdata.edits import with_remapping
+from smachac.checks.userdata.candidate_keys import may_be, unread_output
 from smachac.checks.userdata.initial_presets import counts, initial_value
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Certainty, Repair

@@ -11,14 +11,9 @@ from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
-from smachac.analysis.unset_reads import (
-    Missing,
-    Searches,
-    Witness,
-    container_name,
-    reader_at,
-)
+from smachac.analysis.unset_reads import Missing, Searches, Witness, container_name, reader_at
 from smachac.checks.concurrence.races import raced_keys
+from smachac.checks.edits import listing, with_input, with_output
 from smachac.checks.help_text import added_remapping, calls, did_you_mean, other_place
 from smachac.checks.outcomes.misled_failures import Misled, misled_failures
 from smachac.checks.outcomes.reachability import keys_of_hidden_states
@@ -34,12 +29,8 @@ from smachac.checks.userdata.candidate_keys import (
     unread_output,
 )
 from smachac.checks.userdata.declarations import swapped_loop
-from smachac.checks.userdata.edits import listing, with_input, with_output
 from smachac.checks.userdata.empty_remaps import empty_remap_findings
-from smachac.checks.userdata.initial_presets import (
-    missing_together,
-    together_finding,
-)
+from smachac.checks.userdata.initial_presets import missing_together, together_finding
 from smachac.checks.userdata.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
 from smachac.checks.userdata.unset_read_findings import unset_read
 from smachac.checks.userdata.unwritten_keys import read_unwritten, unwritten_keys
