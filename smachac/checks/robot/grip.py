@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.checks.help_text import calls, names_apart, other_place
+from smachac.checks.robot.gripper_effects import (
+    MOST_VISITS,
+    Effect,
+    comes_to_body,
+    grip_of,
+    keeps_gripper,
+)
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.meanings import of_same_meaning
@@ -15,11 +22,8 @@ from smachac.diagnostics.spelling import words_of
 from smachac.diagnostics.wording import listed
 from smachac.ir.graph import Event
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import Leaf, Node
+from smachac.ir.nodes import Leaf
 from smachac.ir.outcome_names import fails, successes
-
-MOST_VISITS = 200_000
-"""The most events that the searches of one machine visit; beyond them nothing more is found."""
 
 
 @rule(
@@ -243,41 +247,7 @@ def _closed_before(context: Context, leaves: Mapping[str, Leaf], path: str) -> _
     return _Closed(tuple(closed), tuple(moved) if closed else (), len(seen), checked)
 
 
-Effect = Literal["open", "close", "unknown"]
-
-
-def grip_of(leaf: Leaf) -> Effect | None:
-    """What a state does to its gripper, by the value of its variable."""
-    held = variable_of(leaf, "grip")
-    if held is None:
-        return None
-    return (
-        "open"
-        if held.value.data == "open"
-        else "close"
-        if held.value.data == "close"
-        else "unknown"
-    )
-
-
 def _effect(leaf: Leaf, outcome: str) -> Effect | None:
     """What a state has done to its gripper when it ends with an outcome."""
     found = grip_of(leaf)
     return found if found is None or outcome in successes(leaf) else "unknown"
-
-
-def keeps_gripper(leaf: Leaf) -> bool:
-    """Whether a state surely leaves the gripper as it is."""
-    return bool(leaf.built_in) and not leaf.stand_in and not leaf.open
-
-
-def comes_to_body(node: Node) -> bool:
-    """Whether a state moves the tool to the pose of a body."""
-    if not isinstance(node, Leaf) or not node.claims:
-        return False
-    held = variable_of(node, "grasp")
-    offset = any(
-        key.role == "goal_offset" and any(remap.key == key.name for remap in node.remaps)
-        for key in node.inputs
-    )
-    return held is not None and held.value.data is True and not offset

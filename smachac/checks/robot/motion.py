@@ -9,8 +9,9 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import Read, last_writers
 from smachac.analysis.uses import place_of
 from smachac.checks.help_text import calls, other_place
-from smachac.checks.robot.robot import as_float, at, frame_of, role_of
+from smachac.checks.robot.literal_parts import as_float, frame_of, role_of
 from smachac.checks.rule import rule
+from smachac.checks.types.literals import at
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.ir.graph import START

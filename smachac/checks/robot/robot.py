@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator
-from typing import Literal
 
 from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
-from smachac.analysis.type_inference import Cell, TypeFlow
-from smachac.analysis.type_lattice import inside, present, unit_of
+from smachac.analysis.type_inference import TypeFlow
+from smachac.analysis.type_lattice import inside, present
 from smachac.checks.code.expressions import mixed_units
 from smachac.checks.code.function_results import wrong_units
-from smachac.checks.help_text import calls, did_you_mean, other_place
+from smachac.checks.help_text import did_you_mean, other_place
+from smachac.checks.robot.joint_limits import _angles, joint_faults, within_limits
+from smachac.checks.robot.literal_parts import (
+    as_float,
+    frame_of,
+    moves_arm,
+    names_in,
+    part_named,
+    role_of,
+)
+from smachac.checks.robot.simulated_world import is_simulated, loaded_too_late, uses_simulation
 from smachac.checks.rule import rule
+from smachac.checks.types.literals import at, reader
 from smachac.checks.types.number_help import decimal_commas
 from smachac.checks.types.types import clash_findings
-from smachac.checks.types.value_places import place_of_part
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed
 from smachac.ir.nodes import Data, Leaf, Struct, is_number
@@ -27,9 +36,6 @@ from smachac.ir.types import Type
 ROTATION_TOLERANCE = 10e-3
 """Tolerance for the squared length of a quaternion, with which tf2 accepts transforms (geometry2,
 tf2/src/buffer_core.cpp, QUATERNION_NORMALIZATION_TOLERANCE)."""
-
-JOINT_TOLERANCE = 1e-4
-"""Tolerance for joint limits in rad or m: they are given with four decimals."""
 
 
 @rule(
@@ -162,11 +168,11 @@ def _seems_degrees(joint: Joint, angle: Data) -> bool:
 def _position_help(joint: Joint, position: float, limits: str) -> str:
     """The help for a position outside the limits of a joint: that with the other sign, or in
     metres, if it is within them."""
-    if not joint.turns and _within(joint, position / 1000):
+    if not joint.turns and within_limits(joint, position / 1000):
         return f"write `{position / 1000:g}`: positions of joints that slide are in metres"
     help = f"write {'an angle' if joint.turns else 'a position'} from {limits}, in "
     help += "radians" if joint.turns else "metres"
-    return f"{help}: did you mean `{-position:g}`?" if _within(joint, -position) else help
+    return f"{help}: did you mean `{-position:g}`?" if within_limits(joint, -position) else help
 
 
 def _in_degrees(flow: TypeFlow, robot: Robot, faults: list[tuple[int, Joint, Data]]) -> Finding:
@@ -197,49 +203,6 @@ def _in_degrees(flow: TypeFlow, robot: Robot, faults: list[tuple[int, Joint, Dat
 def _radians(angle: Data) -> str:
     """An angle in degrees as text in radians."""
     return f"{math.radians(as_float(angle)):.4g}"
-
-
-def joint_faults(flow: TypeFlow, robot: Robot) -> list[tuple[int, Joint, Data]]:
-    """The angles of a literal that are outside the limits of their joints, each with the number of
-    the joint."""
-    return [
-        (number, joint, angle)
-        for number, (joint, angle) in enumerate(_angles(flow.value, robot), 1)
-        if is_number(angle) and not _within(joint, as_float(angle))
-    ]
-
-
-def _within(joint: Joint, angle: float) -> bool:
-    return joint.lower - JOINT_TOLERANCE <= angle <= joint.upper + JOINT_TOLERANCE
-
-
-def _angles(value: Data, robot: Robot) -> list[tuple[Joint, Data]]:
-    """The angles of a literal with their joints; for a list, the joints of the limb of that length
-    with the fewest angles outside the limits."""
-    if isinstance(value, Struct):
-        joints = {joint.name: joint for joint in robot.joints}
-        return [(joints[name], angle) for name, angle in value.entries if name in joints]
-    assert isinstance(value, tuple)
-    limbs = [limb for limb in robot.limbs if len(limb) == len(value)]
-    pairs = [list(zip(limb, value, strict=True)) for limb in limbs]
-    return min(pairs, key=_misses, default=[])
-
-
-def _misses(pairs: list[tuple[Joint, Data]]) -> int:
-    return sum(not _within(joint, as_float(angle)) for joint, angle in pairs)
-
-
-def moves_arm(flow: TypeFlow) -> bool:
-    """Whether a literal holds angles, in a list or by joint name, that a state with a claim on an
-    arm reads."""
-    node, wanted = flow.cell.node, present(flow.cell.declared)
-    if flow.cell.role != "input" or not isinstance(node, Leaf):
-        return False
-    held = any(claim == "arm" or claim.startswith("arm.") for claim in node.claims)
-    if not held or unit_of(inside(wanted)) != "rad":
-        return False
-    shape = {"list": tuple, "array": tuple, "dict": Struct}.get(wanted.name)
-    return shape is not None and isinstance(flow.value, shape)
 
 
 @rule(
@@ -364,50 +327,6 @@ def unit_mismatch(context: Context) -> Iterator[Finding]:
     yield from clash_findings(context.clashes["unit"], context.machine.aliases)
     yield from mixed_units(context)
     yield from wrong_units(context)
-
-
-def as_float(data: Data) -> float:
-    """A number as a float; one that is too large for it is infinite."""
-    try:
-        return float(data) if isinstance(data, int | float) else math.nan
-    except OverflowError:
-        return math.inf
-
-
-def at(
-    flow: TypeFlow,
-    message: str,
-    help: str | None,
-    names: tuple[str, ...] = (),
-    more: tuple[Related, ...] = (),
-    severity: Severity | None = None,
-    part: tuple[int | str, ...] = (),
-    key: bool = False,
-    effect: str | None = None,
-) -> Finding:
-    """A finding at a literal, with the place where it is read; its arguments are the key of the
-    literal and `names`. `part` are the steps to a part of the literal, `key` means its key."""
-    origin, cell = flow.origin, flow.cell
-    span = place_of_part(origin.span, part, key=key)
-    related: tuple[Related, ...] = ()
-    if cell.span != origin.span and cell is not origin.cell:
-        related = other_place(cell.span, f"{reader(flow)} reads it here as `{cell.key}`")
-    node = origin.cell.node
-    return Finding(
-        span=span,
-        message=message,
-        arguments=(origin.cell.key, *names),
-        help=help,
-        related=(*related, *more, *(calls(node, span) if node is not None else ())),
-        severity=severity,
-        node=origin.cell.path,
-        effect=effect,
-    )
-
-
-def reader(flow: TypeFlow) -> str:
-    """The state that reads a literal, in a message."""
-    return f"`{flow.cell.node.name}`" if flow.cell.node is not None else "the base"
 
 
 USUAL = frozenset(["base", "base_footprint", "base_link", "earth", "map", "odom", "world"])
@@ -574,52 +493,6 @@ def _late_frames(context: Context, robot: Robot) -> Iterator[Finding]:
                 )
 
 
-def loaded_too_late(
-    context: Context,
-    flow: TypeFlow,
-    name: str,
-    what: Literal["frame", "body"],
-    otherwise: str,
-    *,
-    part: tuple[int | str, ...] = (),
-    key: bool = False,
-) -> Iterator[Finding]:
-    """The finding for a body, or its frame, that is loaded only after the state of a literal that
-    names it. `otherwise` is the help if that state itself loads the body; `part`, `key`: see `at`.
-    """
-    path = context.loading_order.loaded_later(flow.cell.path, name)
-    if path is None:
-        return
-    later = context.routes.nodes[path]
-    when, help = f"{reader(flow)} itself loads it", otherwise
-    if later is not flow.cell.node:
-        when = f"{reader(flow)}: `{later.name}` loads it later"
-        help = f"run `{later.name}` before {reader(flow)}: the {what} exists only after it"
-    missing = "the simulation has no frame" if what == "frame" else "there is no body"
-    yield at(
-        flow,
-        f"{missing} `{name}` before {when}",
-        help,
-        (name,),
-        other_place(later.span, f"`{name}` is loaded here"),
-        severity=Severity.ERROR,
-        part=part,
-        key=key,
-    )
-
-
-def uses_simulation(context: Context, cell: Cell) -> bool:
-    """Whether the state of a cell uses the simulated world."""
-    known = context.machine.state_types.get(cell.node.type) if cell.node is not None else None
-    return known is not None and known.simulation
-
-
-def is_simulated(context: Context) -> bool:
-    """Whether the program runs in the simulated world."""
-    base = context.machine.state_types.get(context.machine.base)
-    return base is not None and base.simulation
-
-
 def _frames_in(flow: TypeFlow) -> Iterator[str]:
     """The frames that a literal names."""
     cell, wanted = flow.cell, present(flow.cell.declared)
@@ -629,15 +502,6 @@ def _frames_in(flow: TypeFlow) -> Iterator[str]:
         name = frame_of(flow.value)
         if name is not None:
             yield name
-
-
-def frame_of(pose: Data) -> str | None:
-    """The frame in a literal that is read as a PoseStamped."""
-    held = dict(pose.entries) if isinstance(pose, Struct) else {}
-    header = held.get("header")
-    inner = dict(header.entries) if isinstance(header, Struct) else held
-    name = inner.get("frame_id")
-    return name if isinstance(name, str) else None
 
 
 def frame_place(pose: Data) -> tuple[str, ...]:
@@ -655,14 +519,6 @@ def _holds_frame(flow: TypeFlow) -> bool:
     return last == "frame" or role_of(cell) == "frame"
 
 
-def role_of(cell: Cell) -> str:
-    """The role of the key or variable of a cell."""
-    if not isinstance(cell.node, Leaf):
-        return ""
-    held = cell.node.inputs if cell.role == "input" else cell.node.variables
-    return next((each.role for each in held if each.name == cell.key), "")
-
-
 def _unknown_joints(context: Context, robot: Robot) -> Iterator[Finding]:
     """The unknown joints in mappings of joint names to angles."""
     joints = [joint.name for joint in robot.joints]
@@ -673,23 +529,6 @@ def _unknown_joints(context: Context, robot: Robot) -> Iterator[Finding]:
             names = list(names_in(flow.value))
             if not set(joints).isdisjoint(names):  # else the names are not those of joints
                 yield from _strangers(flow, names, joints, robot)
-
-
-def names_in(data: Data) -> Iterator[str]:
-    """The names in a literal: itself, the items of a list, the keys of a mapping."""
-    if isinstance(data, str):
-        yield data
-    elif isinstance(data, tuple):
-        yield from (item for item in data if isinstance(item, str))
-    elif isinstance(data, Struct):
-        yield from (name for name, _ in data.entries)
-
-
-def part_named(data: Data, name: str) -> tuple[tuple[int | str, ...], bool]:
-    """The step to a name in a literal (`names_in`), and whether it is a key."""
-    if isinstance(data, tuple):
-        return (data.index(name),), False
-    return ((name,), True) if isinstance(data, Struct) else ((), False)
 
 
 def _strangers(

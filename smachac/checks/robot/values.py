@@ -14,19 +14,12 @@ from smachac.analysis.units import FULL_TURN, conversion, other_units
 from smachac.checks.classes.class_values import wrong_operations
 from smachac.checks.code.expressions import doubtful_comparisons
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.robot.joint_limits import joint_faults
+from smachac.checks.robot.literal_parts import moves_arm, names_in, part_named, role_of
 from smachac.checks.robot.misnamed_bodies import misnamed_body
-from smachac.checks.robot.robot import (
-    at,
-    is_simulated,
-    joint_faults,
-    loaded_too_late,
-    moves_arm,
-    names_in,
-    part_named,
-    role_of,
-    uses_simulation,
-)
+from smachac.checks.robot.simulated_world import is_simulated, loaded_too_late, uses_simulation
 from smachac.checks.rule import rule
+from smachac.checks.types.literals import at
 from smachac.checks.types.value_places import parts_of, place_of_part, steps_to_number
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
