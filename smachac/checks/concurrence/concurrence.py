@@ -18,7 +18,8 @@ from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
 from smachac.checks.outcomes.outcomes import inverted_rules, transposed_rules
 from smachac.checks.rule import rule
-from smachac.checks.timing.timeouts import missing_joins, turned_renames
+from smachac.checks.timing.iterator_stops import turned_renames
+from smachac.checks.timing.watched_branches import missing_joins
 from smachac.checks.types.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser, written_name

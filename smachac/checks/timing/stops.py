@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.possible_outcomes import Judged, results
 from smachac.analysis.stop_paths import (
     Resumed,
@@ -16,11 +15,12 @@ from smachac.analysis.stop_paths import (
 )
 from smachac.checks.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, PathStep, Related, Severity, ended, entered
+from smachac.checks.timing.stop_answers import answered_here, led_out, way_out, witness
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.graph import stopped_endings
-from smachac.ir.nodes import Container, Leaf
+from smachac.ir.nodes import Leaf
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outcome_names
 
@@ -144,7 +144,7 @@ def stop_as_success(context: Context) -> Iterator[Finding]:
             message=f"after a preempt request in `{child.name}`, `{container.name}` ends with"
             f" `{found.end}`, as if its task were done",
             arguments=(own_name(child, step.span), step.outcome, found.end),
-            help=_led_out(container, step.outcome),
+            help=led_out(container, step.outcome),
             related=(*answered_here(found), *calls(child, step.span)),
             path=witness(found),
             node=f"{path}/{child.name}",
@@ -283,7 +283,7 @@ def task_after_stop(context: Context) -> Iterator[Finding]:
             message=f"after a preempt request in `{child.name}` the task continues: `{mover.name}`"
             f" holds {listed(held)}",
             arguments=(own_name(child, step.span), step.outcome, mover.name),
-            help=f"{_led_out(container, step.outcome)}, or lead `{step.outcome}` to a state that"
+            help=f"{led_out(container, step.outcome)}, or lead `{step.outcome}` to a state that"
             " only makes the robot safe",
             related=(
                 *answered_here(found),
@@ -299,46 +299,3 @@ def _inside(found: Resumed) -> str:
     """Where the request is answered, if that is inside the state that starts again."""
     origin, child = found.stop.origin, found.stop.child
     return "" if isinstance(child, Leaf) or origin is child else f" in `{origin.name}`"
-
-
-def answered_here(found: Resumed) -> tuple[Related, ...]:
-    """The place of the state that answers a request, if it is inside another one."""
-    origin, child = found.stop.origin, found.stop.child
-    if origin is child or origin.span == child.span:
-        return ()
-    return other_place(origin.span, "this state answers the preempt request")
-
-
-def way_out(found: Resumed) -> str:
-    """What to do where a state starts again after a request."""
-    _, container, child, step, _ = found.stop
-    if step.outcome == PREEMPTED:
-        return _led_out(container, PREEMPTED)
-    return (
-        f"let `{child.name}` end with an outcome of its own after a preempt request, such as"
-        f" `preempted`, and lead that to an outcome of `{container.name}`"
-    )
-
-
-def _led_out(container: Container, outcome: str) -> str:
-    """The help that leads an outcome of a stopped state out of its container."""
-    written = f"write `{outcome}: {PREEMPTED}`"
-    if PREEMPTED in outcome_names(container):
-        return written
-    return f"add `{PREEMPTED}` to the outcomes of `{container.name}`, and {written}"
-
-
-def witness(found: Resumed) -> tuple[PathStep, ...]:
-    """The witness path: the state that answers, and the states that follow."""
-    path, _, child, step, _ = found.stop
-    leads = [(step.outcome, step.target)]
-    if step.target == found.end and not found.way:
-        return (
-            entered(child.name, f"{path}/{child.name}"),
-            ended(step.outcome),
-            entered(found.end, None),
-        )
-    steps = [entered(child.name, f"{path}/{child.name}")]
-    for outcome, target in [*leads, *found.way][-MOST_STEPS:]:
-        steps += [ended(outcome), entered(target, f"{path}/{target}")]
-    return tuple(steps)

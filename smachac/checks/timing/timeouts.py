@@ -5,35 +5,29 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from math import ceil, isfinite
-from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import is_open
 from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit, time_limit_span
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
 from smachac.checks.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
-from smachac.checks.timing.stops import answered_here, way_out, witness
+from smachac.checks.timing.iterator_stops import turned_renames, undeclared_stops
+from smachac.checks.timing.stop_answers import answered_here, way_out, witness
+from smachac.checks.timing.watched_branches import (
+    Watched,
+    is_limited,
+    time_limits,
+    watched_branches,
+)
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.graph import stopped_endings
 from smachac.ir.leaf import variable_of
-from smachac.ir.nodes import (
-    Concurrence,
-    Container,
-    Data,
-    Leaf,
-    OutcomeRule,
-    StateType,
-    VariableType,
-)
-from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.ir.nodes import Concurrence, Leaf, VariableType
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import outcome_names
-
-TIMEOUTS = frozenset(["timeout", "timed_out"])
 
 
 @rule("SM207", "no-timeout", Severity.INFO)
@@ -93,7 +87,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
     around: dict[str, Concurrence] = {}
     watched = {each.branch for each in watched_branches(context)}
     stoppable = stoppable_branches(context.containers, context.endings)
-    limits = _time_limits(context.machine.state_types)
+    limits = time_limits(context.machine.state_types)
     for path, node in context.states:
         if not isinstance(node, Leaf):
             outer = node if isinstance(node, Concurrence) else around.get(path)
@@ -101,7 +95,7 @@ def no_timeout(context: Context) -> Iterator[Finding]:
                 around.update((f"{path}/{child.name}", outer) for child in node.children)
         elif not node.blocking or path in watched:
             continue  # SM407 is about the watched ones
-        elif not _is_limited(node, limits.get(node.type, ())):
+        elif not is_limited(node, limits.get(node.type, ())):
             outer = around.get(path)
             answers = PREEMPTED in outcome_names(node)
             timed = outer is not None and outer.sugar == "timeout"
@@ -158,37 +152,6 @@ def _unlimited(leaf: Leaf, outer: Concurrence | None) -> str:
     if answers:
         return f"`{leaf.name}` can {waits} forever: it has no time limit, and nothing preempts it"
     return f"`{leaf.name}` can {waits} forever: it has no time limit and no outcome `preempted`"
-
-
-def _is_limited(leaf: Leaf, limits: Collection[VariableType]) -> bool:
-    """Whether a wait ends by itself. `limits` are those of its type that limit it."""
-    names = frozenset(outcome_names(leaf))
-    if leaf.open or not TIMEOUTS.isdisjoint(names):
-        return True
-    values = {one.name: one.default.data if one.default else None for one in limits}
-    given = [one for one in leaf.variables if one.name in values or one.name.endswith("timeout")]
-    values.update((one.name, one.value.data) for one in given)
-    tries = {one.name for one in limits if one.role == "tries"}
-    if any(_limits(value, name in tries) for name, value in values.items()):
-        return True
-    return PREEMPTED in names and not values and len(names) > 2
-
-
-def _limits(value: Data, tries: bool) -> bool:
-    """Whether a value is a limit: a negative number of tries is none."""
-    return value is not None and not (tries and isinstance(value, int) and value < 0)
-
-
-def _time_limits(types: Mapping[str, StateType]) -> dict[str, list[VariableType]]:
-    """By state type the variables for a time limit or a limit of tries."""
-    return {
-        name: [
-            one
-            for one in type_.variables.values()
-            if one.role == "tries" or one.name.endswith("timeout")
-        ]
-        for name, type_ in types.items()
-    }
 
 
 @rule(
@@ -261,77 +224,6 @@ def never_ends(context: Context) -> Iterator[Finding]:
     for path, container in concurrences:
         yield from _lasting(path, container, found, endless)
     yield from _starting_again(context)
-
-
-STOPS = (PREEMPTED, "cancelled", "canceled", "interrupted", "stopped")
-"""The names of outcomes of a container that was stopped."""
-
-
-class Watched(NamedTuple):
-    """A concurrence at `path` that waits for all branches, of which the one at `branch` waits
-    without a limit. `other` is a rule without it, and another rule is about this branch only; or
-    `other` requires that this branch was preempted, although another one has ended by itself."""
-
-    path: str
-    container: Concurrence
-    branch: str
-    leaf: Leaf
-    other: OutcomeRule
-
-
-def watched_branches(context: Context) -> tuple[Watched, ...]:
-    """The concurrences whose rules are meant for `join: any`, which they lack."""
-    limits: dict[str, list[VariableType]] | None = None
-    found: list[Watched] = []
-    for path, container in context.containers:
-        if not isinstance(container, Concurrence) or container.sugar or container.join == "any":
-            continue
-        for child in container.children:
-            if not isinstance(child, Leaf) or not child.blocking:
-                continue
-            if variable_of(child, "duration"):  # it ends by itself
-                continue
-            rules = [({part.child for part in rule.when}, rule) for rule in container.rules]
-            alone = [rule for names, rule in rules if names == {child.name}
-                     and rule.when[0].outcome != PREEMPTED]  # fmt: skip
-            others = [rule for names, rule in rules if names and child.name not in names]
-            others = others if alone else []
-            others += [rule for rule in container.rules if _stops(container, rule, child.name)]
-            if not others or PREEMPTED not in outcome_names(child):
-                continue
-            if limits is None:
-                limits = _time_limits(context.machine.state_types)
-            if not _is_limited(child, limits.get(child.type, ())):
-                branch = f"{path}/{child.name}"
-                found.append(Watched(path, container, branch, child, others[0]))
-    return tuple(found)
-
-
-def _stops(container: Concurrence, rule: OutcomeRule, name: str) -> bool:
-    """Whether a rule requires that the branch `name` was preempted and that another one has ended
-    by itself; not a rule for a failure or a stop of the whole concurrence."""
-    ends = {part.child: part.outcome for part in rule.when}
-    return (
-        ends.get(name) == PREEMPTED
-        and any(outcome != PREEMPTED for outcome in ends.values())
-        and not fails(container, rule.outcome)
-        and rule.outcome not in (*STOPS, container.default_outcome)
-    )
-
-
-def missing_joins(context: Context) -> frozenset[str]:
-    """The paths of the concurrences that wait for all branches, of which one never ends or is meant
-    to be stopped by another one (SM407)."""
-    ever, unstopped = context.endings
-    found = {each.path for each in watched_branches(context)}
-    for path, container in context.containers:
-        if isinstance(container, Concurrence) and container.join == "all":
-            branches = [f"{path}/{child.name}" for child in container.children]
-            if any(unstopped[here] for here in branches) and any(
-                ever[here] and not unstopped[here] for here in branches
-            ):
-                found.add(path)
-    return frozenset(found)
 
 
 def _without_join(watched: Watched) -> Finding:
@@ -479,27 +371,6 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
             severity=Severity.WARNING if counted_on else None,
             node=path,
         )
-
-
-def turned_renames(container: Container) -> list[tuple[str, str]]:
-    """The entries of the final outcome map of an iterator in which the two names have changed
-    places: its state ends with the second one only."""
-    if not isinstance(container, nodes.Iterator) or any(map(is_open, container.children)):
-        return []
-    ends = {name for child in container.children for name in outcome_names(child)}
-    ends.add(container.exhausted_outcome)
-    own = outcome_names(container)
-    return [each for each in container.final_map
-            if each[0] not in ends and each[1] in ends and each[0] in own]  # fmt: skip
-
-
-def undeclared_stops(container: nodes.Iterator) -> list[str]:
-    """The undeclared outcomes with which an iterator ends after a preempt request."""
-    if container.catches or not container.item_key:  # without an item: SM004 or SM005
-        return []
-    own = outcome_names(container)
-    ends = stopped_endings(container)
-    return [each for each, result in ends.items() if result not in own]
 
 
 @rule(
