@@ -39,7 +39,7 @@ from smachac.checks.edits import listing
 from smachac.checks.help_text import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.number_help import number_meant
-from smachac.checks.types.types import written
+from smachac.checks.types.type_origins import written
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span

@@ -20,7 +20,7 @@ from smachac.checks.classes.class_values import (
 from smachac.checks.edits import adding_outcome
 from smachac.checks.help_text import calls, did_you_mean, in_quotes_for, other_place
 from smachac.checks.rule import rule
-from smachac.checks.types.types import written
+from smachac.checks.types.type_origins import written
 from smachac.checks.types.value_places import place_of_fault, place_of_part
 from smachac.checks.userdata.null_keys import null_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity

@@ -23,9 +23,9 @@ from smachac.checks.robot.literal_parts import (
 )
 from smachac.checks.robot.simulated_world import is_simulated, loaded_too_late, uses_simulation
 from smachac.checks.rule import rule
+from smachac.checks.types.clash_findings import clash_findings
 from smachac.checks.types.literals import at, reader
 from smachac.checks.types.number_help import decimal_commas
-from smachac.checks.types.types import clash_findings
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import MOST_LISTED, listed
