@@ -8,33 +8,27 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from smachac.analysis.context import Context
-from smachac.analysis.expression_errors import Fault, FaultKind
+from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite
-from smachac.analysis.units import conversion
 from smachac.checks.classes.class_values import (
     missing_choices,
     wrong_comparisons,
     wrong_operations,
     wrong_parts,
 )
-from smachac.checks.edits import adding_outcome
-from smachac.checks.help_text import calls, did_you_mean, in_quotes_for, other_place
+from smachac.checks.code.operand_findings import code_owner, fault_finding, faults_of
+from smachac.checks.help_text import calls
 from smachac.checks.rule import rule
-from smachac.checks.types.type_origins import written
-from smachac.checks.types.value_places import place_of_fault, place_of_part
+from smachac.checks.types.value_places import place_of_part
 from smachac.checks.userdata.null_keys import null_keys
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.negation import is_negation
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser, in_quotes, respelt
-from smachac.diagnostics.wording import listed
+from smachac.diagnostics.spelling import in_quotes
 from smachac.ir.code_places import node_range, place_in, python_tree
 from smachac.ir.code_slips import Slip, corrected, slips
-from smachac.ir.expressions import print_expression
-from smachac.ir.leaf import functions, variable, variable_of
-from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct, is_number
-from smachac.ir.traversal import expressions, outcome_names, values
+from smachac.ir.leaf import functions
+from smachac.ir.nodes import Data, Expression, Leaf, Node, Struct
+from smachac.ir.traversal import expressions, values
 
 
 @rule(
@@ -196,71 +190,6 @@ def _example(leaf: Leaf) -> str:
     return f"ud.{leaf.inputs[0].name}" if leaf.inputs else "1"
 
 
-def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
-    """The unknown outcomes in the conditions and steps of a leaf (SM102)."""
-    outcomes = outcome_names(leaf) if leaf.variables and not leaf.open else []
-    if not outcomes:
-        return
-    for word, what, effect in _endings(leaf):
-        if word.text not in outcomes:
-            meant = did_you_mean(guesser(outcomes)(word.text)) or _only_left(leaf, word.text)
-            is_used = any(step.outcome == word.text for step in leaf.transitions)
-            yield Finding(
-                span=word.span,
-                message=f"{what} `{word.text}`, which is not one of its outcomes",
-                arguments=(word.text,),
-                help=meant
-                or f"add `{word.text}` to the `outcomes` of `{leaf.name}` and to its transitions,"
-                f" or use one of its outcomes: {listed(outcomes)}",
-                effect=effect,
-                related=calls(leaf, word.span),
-                node=path,
-                repairs=adding_outcome(leaf, word.text) if is_used else (),
-            )
-
-
-def _only_left(leaf: Leaf, word: str) -> str | None:
-    """The help that names the only outcome of a leaf to which no condition leads, if one condition
-    leads to an unknown one."""
-    conditions = functions(leaf, "conditions") or {}
-    default = variable(leaf, "default_outcome")
-    names = outcome_names(leaf)
-    left = [name for name in names if name not in {*conditions, default, leaf.catches}]
-    unknown = [name for name in conditions if name not in names]
-    if unknown != [word] or len(left) != 1 or is_negation(word, left[0]):
-        return None
-    return f"write `{left[0]}` in place of `{word}`: no condition leads to `{left[0]}`"
-
-
-def _endings(leaf: Leaf) -> Iterator[tuple[Word, str, str]]:
-    """The outcomes in the conditions and steps of a leaf, each with the start of its message, and
-    with the effect of an unknown one."""
-    conditions = variable_of(leaf, "conditions")
-    for outcome, site in (functions(leaf, "conditions") or {}).items():
-        span = site.span
-        if conditions is not None and outcome not in outcome_names(leaf):
-            place = place_of_part(conditions.value.span, (outcome,), key=True)
-            span = place if place != conditions.value.span else span
-        what = f"a condition of `{leaf.name}` leads to"
-        yield Word(outcome, span), what, f"`{leaf.name}` never uses the condition"
-    held = variable_of(leaf, "steps")
-    if held is None or not isinstance(held.value.data, tuple):
-        return
-    for at, step in enumerate(held.value.data):
-        end = dict(step.entries).get("outcome") if isinstance(step, Struct) else None
-        if isinstance(end, str) and end and end not in outcome_names(leaf):
-            place = place_of_part(held.value.span, (at, "outcome"))
-            what = f"a step of `{leaf.name}` ends with"
-            effect = (
-                "SMACH raises InvalidTransitionError for an undeclared outcome: the machine stops"
-            )
-            yield Word(end, place), what, effect
-
-
-MOST_SOURCES = 3
-"""Limit on the origins of values that a finding shows."""
-
-
 @rule(
     "SM311",
     "impossible-operation",
@@ -311,10 +240,10 @@ def impossible_operation(context: Context) -> Iterator[Finding]:
               callbacks: {limb: 'lambda ud: ud.limb + "_2"'}
               transitions: {succeeded: done}
     """
-    for site, fault in _faults(context, "operation"):
+    for site, fault in faults_of(context, "operation"):
         does = "fails" if fault.always else "can fail"
         severity = None if fault.always else Severity.WARNING
-        finding = _finding(site, fault, f"{_owner(site)} {does}: {fault.what}", severity)
+        finding = fault_finding(site, fault, f"{code_owner(site)} {does}: {fault.what}", severity)
         help = _number_in_quotes(site, fault)
         yield replace(finding, help=help) if help else finding
     yield from null_keys(context)
@@ -363,49 +292,12 @@ def constant_comparison(context: Context) -> Iterator[Finding]:
               default_outcome: other
               transitions: {shut: shut, other: other}
     """
-    for site, fault in _faults(context, "comparison"):
-        yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
+    for site, fault in faults_of(context, "comparison"):
+        yield fault_finding(site, fault, f"in {code_owner(site)}, {fault.what}")
     yield from wrong_comparisons(context)
 
 
-def mixed_units(context: Context) -> Iterator[Finding]:
-    """The operations on numbers with different units (SM504)."""
-    for site, fault in _faults(context, "unit"):
-        finding = _finding(site, fault, f"in {_owner(site)}, {fault.what}")
-        value = _in_other_unit(site, fault)
-        yield replace(finding, help=f"{finding.help}, {value}") if value else finding
-
-
-def doubtful_comparisons(context: Context) -> Iterator[Finding]:
-    """The comparisons of values in radians with numbers that seem to be in degrees (SM522)."""
-    for site, fault in _faults(context, "doubt"):
-        yield _finding(site, fault, f"in {_owner(site)}, {fault.what}")
-
-
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")
-
-
-def _in_other_unit(site: ExpressionSite, fault: Fault) -> str:
-    """The end of the help for a number in another unit: the initial value of its key in the right
-    one; empty if it has not one value in the script."""
-    text, given, wanted = fault.units or ("", "", "")
-    factor = conversion(given, wanted)
-    for key in fault.keys:
-        cell = site.cells.get(key)
-        flows = cell.flows.values() if cell is not None else ()
-        origins = list(dict.fromkeys(alike[0].origin.cell for alike in flows))
-        factor = conversion(given, wanted)
-        if factor is None or text != f"ud.{key}" or len(origins) != 1:
-            continue
-        node, name = origins[0].node, origins[0].key
-        if node is None or isinstance(node, Leaf):
-            continue
-        for each in node.userdata:
-            if each.key == name and is_number(each.value.data) and each.type.args == (given,):
-                number = f"{each.value.data * factor:.6g}"
-                new = f"{{type: {each.type.name}<{wanted}>, value: {number}}}"
-                return f"or write `{name}: {new}` in the `userdata` of `{node.name}`"
-    return ""
 
 
 def _number_in_quotes(site: ExpressionSite, fault: Fault) -> str | None:
@@ -419,45 +311,3 @@ def _number_in_quotes(site: ExpressionSite, fault: Fault) -> str | None:
                     line = flow.origin.span.line
                     return f"write `{key}: {text}` without quotes in line {line}"
     return None
-
-
-def _faults(context: Context, kind: FaultKind) -> Iterator[tuple[ExpressionSite, Fault]]:
-    return ((site, fault) for site, fault in context.expression_faults if fault.kind == kind)
-
-
-def _owner(site: ExpressionSite) -> str:
-    return f"the code of `{site.node.name}`"
-
-
-def _finding(
-    site: ExpressionSite, fault: Fault, message: str, severity: Severity | None = None
-) -> Finding:
-    guess = did_you_mean(guesser(fault.choices)(fault.word)) if fault.choices else None
-    choices = f"use one of {', '.join(f'`{each}`' for each in fault.choices)}"
-    span = site.expression.span
-    if fault.entry:
-        guess = f"write `{in_quotes_for(fault.entry, span)}` for the entry of the mapping"
-    place = place_of_fault(site.expression, fault)
-    return Finding(
-        span=place,
-        message=message,
-        arguments=(print_expression(fault.expr),),
-        help=guess or (choices if fault.choices else fault.help),
-        related=(*_sources(site, fault), *calls(site.node, span)),
-        node=site.path,
-        severity=severity,
-        effect=fault.effect,
-        edits=respelt(Word(fault.word, place), guesser(fault.choices).sure(fault.word)),
-    )
-
-
-def _sources(site: ExpressionSite, fault: Fault) -> Iterator[Related]:
-    """The origins of the values of the keys."""
-    shown = {site.expression.span}
-    for key in fault.keys:
-        cell = site.cells.get(key)
-        for alike in cell.flows.values() if cell is not None else ():
-            origin = alike[0].origin
-            if not alike[0].judged and origin.span not in shown and len(shown) <= MOST_SOURCES:
-                shown.add(origin.span)
-                yield from other_place(origin.span, written(origin))

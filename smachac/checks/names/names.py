@@ -22,10 +22,10 @@ from smachac.analysis.control_flow import (
     strays,
     unknown_outcomes,
 )
-from smachac.checks.code.expressions import unknown_endings
 from smachac.checks.edits import adding_outcome
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.names.other_outcomes import continuing_outcome, other_outcome
+from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.rule import rule
 from smachac.checks.userdata.meant_keys import meant_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity

@@ -9,8 +9,8 @@ from smachac.analysis.context import Context
 from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import TypeFlow
 from smachac.analysis.type_lattice import inside, present
-from smachac.checks.code.expressions import mixed_units
 from smachac.checks.code.function_results import wrong_units
+from smachac.checks.code.operand_findings import mixed_units
 from smachac.checks.help_text import did_you_mean, other_place
 from smachac.checks.robot.joint_limits import _angles, joint_faults, within_limits
 from smachac.checks.robot.literal_parts import (

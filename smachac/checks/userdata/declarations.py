@@ -18,8 +18,8 @@ from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import Missing, container_name
 from smachac.analysis.uses import place_of
 from smachac.checks.code.code_slots import function_reads
-from smachac.checks.code.expressions import unknown_endings
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
+from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.outcomes.outcomes import meant_default
 from smachac.checks.ros.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.rule import rule
