@@ -6,94 +6,32 @@ of a class is reported once, with the first state of its type as a related place
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Literal, NamedTuple
+from collections.abc import Collection, Iterator
 
 from smachac.analysis.context import Context
 from smachac.checks.classes.renamed_names import renamed_in_interface
+from smachac.checks.classes.types_with_code import (
+    declared_here,
+    leaves_by_type,
+    names_by_type,
+    own_names,
+    own_types,
+    used_here,
+)
 from smachac.checks.help_text import did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.negation import is_negation
-from smachac.diagnostics.source import NOWHERE, Span, Word
+from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import Guesser, guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
-from smachac.ir.class_facts import ANY, ClassFacts, Ending, renamed_name
+from smachac.ir.class_facts import ANY, ClassFacts, Ending
 from smachac.ir.code_places import python_tree
 from smachac.ir.code_slips import texts_of
-from smachac.ir.nodes import Key, Leaf, Outcome, StateType
+from smachac.ir.nodes import Leaf
 from smachac.ir.outcome_names import PREEMPTED, fails, is_failure
-from smachac.ir.traversal import enclosing, outcome_names, outer_outputs, remapping
-
-
-def leaves_by_type(context: Context, *, declared: bool) -> Iterator[tuple[str, Leaf, ClassFacts]]:
-    """A leaf of each type whose code was read, with its path. `declared`: one that can use only
-    the keys it declares, unlike the child of an iterator. The iterator of `retry` and `for_each`
-    has the keys that the state declares."""
-    seen: set[str] = set()
-    for path, leaf, facts, container in context.leaves_with_class:
-        if declared and isinstance(container, nodes.Iterator) and not container.sugar:
-            continue
-        if leaf.type not in seen:
-            seen.add(leaf.type)
-            yield path, leaf, facts
-
-
-def own_types(
-    context: Context, *, declared: bool
-) -> Iterator[tuple[str, Leaf, StateType, ClassFacts]]:
-    """As `leaves_by_type`, for the types of the user."""
-    for path, leaf, facts in leaves_by_type(context, declared=declared):
-        type_ = context.machine.state_types.get(leaf.type)
-        if type_ is not None and not type_.built_in and not type_.open:
-            yield path, leaf, type_, facts
-
-
-class TypeNames(NamedTuple):
-    """The names of outcomes, input keys and output keys that some state of a type declares, or a
-    default value of its constructor."""
-
-    outcomes: tuple[str, ...]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-
-
-def _names_by_type(context: Context) -> Mapping[str, TypeNames]:
-    """The names of the types whose constructors get lists from the script. States of one type can
-    declare different names, so a name is wrong only if none of them declares it."""
-    found: dict[str, TypeNames] = {}
-    for _, leaf, facts, _ in context.leaves_with_class:
-        if facts.passed:
-            given = dict(facts.passed)
-            known = found.get(leaf.type) or TypeNames(
-                given.get("outcomes", ()), given.get("input_keys", ()), given.get("output_keys", ())
-            )
-            pairs = zip(_own_names(leaf), known, strict=True)
-            joined = (tuple(dict.fromkeys((*own, *others))) for own, others in pairs)
-            found[leaf.type] = TypeNames(*joined)
-    return found
-
-
-def _own_names(leaf: Leaf) -> TypeNames:
-    return TypeNames(
-        outcome_names(leaf),
-        tuple(key.name for key in leaf.inputs),
-        tuple(key.name for key in leaf.outputs),
-    )
-
-
-def used_here(leaf: Leaf) -> tuple[Related, ...]:
-    """The first state of a type, as a related place."""
-    return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
-
-
-def declared_here(leaf: Leaf, names: Sequence[Outcome | Key]) -> tuple[Related, ...]:
-    """The place of the first of some names of a state in its interface, or of its outcomes."""
-    spans = [each.span for each in (*names, *leaf.outcomes)]
-    span = next((span for span in spans if span.source is not leaf.span.source), NOWHERE)
-    return other_place(span, f"the interface of `{leaf.type}`")
+from smachac.ir.traversal import outcome_names
 
 
 @rule(
@@ -155,10 +93,10 @@ def undeclared_return(context: Context) -> Iterator[Finding]:
                 return "pressed" if button.wait(10) else "timed_out"
         {% endblock %}
     """
-    names = _names_by_type(context)
+    names = names_by_type(context)
     silent: set[Span] = set()
     for path, leaf, facts in leaves_by_type(context, declared=False):
-        outcomes = names.get(leaf.type, _own_names(leaf)).outcomes
+        outcomes = names.get(leaf.type, own_names(leaf)).outcomes
         yield from _wrong_returns(path, leaf, facts, outcomes)
         lost = not facts.always_silent and any(each.outcomes for each in facts.faults)  # SM609
         if facts.silent and not lost and facts.execute and facts.execute not in silent:
@@ -272,14 +210,6 @@ def _hooks(facts: ClassFacts) -> str:
     return f"; SMACH calls `execute` once and never `{facts.hooks[0]}`: wait in `execute`"
 
 
-def _in_the_class(facts: ClassFacts, field: Literal["input_keys", "output_keys"], key: str) -> str:
-    """The part of a help that adds a key to the list in the constructor, where it has its own."""
-    declared = facts.inputs if field == "input_keys" else facts.outputs
-    if declared is None or field in dict(facts.passed) or key in {word.text for word in declared}:
-        return ""
-    return " and of `__init__`"
-
-
 def _text_alone(facts: ClassFacts, outcomes: Collection[str]) -> tuple[str, ...]:
     """The outcomes that the last line of `execute` has without `return`: one, or a choice."""
     end = facts.open_end
@@ -346,199 +276,6 @@ def _without_tuple(text: str, outcomes: Collection[str]) -> str | None:
     """The help for a tuple that begins with an outcome: `return "found", 1`."""
     name = next((each for each in outcomes if text.startswith(f"('{each}',")), None)
     return f'write `return "{name}"`: a comma makes a tuple' if name is not None else None
-
-
-DICTIONARY_METHODS = frozenset(["copy", "get", "items", "pop", "setdefault", "values"])
-"""Methods of a dictionary that userdata does not have (smach.user_data)."""
-
-
-def _is_called(word: Word) -> bool:
-    """Whether an attribute in a text is called."""
-    return word.span.source.text.startswith("(", word.span.end)
-
-
-def _owner(word: Word) -> str:
-    """The name before the dot of an attribute in a text."""
-    text = word.span.source.text
-    start = word.span.start - 1
-    while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
-        start -= 1
-    return text[start : word.span.start - 1]
-
-
-def unknown_reads(context: Context) -> Iterator[Finding]:
-    """The keys that the code of a type reads without an input in its interface (SM310)."""
-    containers = enclosing(context.machine.root)
-    names = _names_by_type(context)
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        _, inputs, outputs = names.get(leaf.type, _own_names(leaf))
-        above, around = containers[path]
-        levels = [around]
-        while levels[-1].sugar and above in containers:
-            above, container = containers[above]
-            levels.append(container)
-        known = (*inputs, around.item_key) if isinstance(around, nodes.Iterator) else inputs
-        used = {word.text for word in facts.reads}
-        old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)
-        for word in first_of_each(facts.reads, known):
-            effect: str | None = None
-            message = (
-                f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
-                " key of its interface"
-            )
-            near = guesser(key for key in inputs if key not in used)(word.text)
-            help = did_you_mean(near) or (
-                f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
-                + _in_the_class(facts, "input_keys", word.text)
-            )
-            renamed = [each.key for each in leaf.remaps if each.to == word.text]
-            if renamed and renamed[0] in inputs:
-                help = f"write `{_owner(word)}.{renamed[0]}`: `{word.text}` is the name of this key"
-                help += f" around `{leaf.name}`"
-            lone = _lone_input(facts, inputs, known) if word.text not in outputs else None
-            if lone is not None and guesser(inputs)(word.text) is None and not renamed:
-                message += f", and it never reads its input key `{lone}`"
-                help = f"write `{_owner(word)}.{lone}`" if _owner(word) else f"write `{lone}`"
-            if word.text in outputs:
-                message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
-                message += " key of its interface"
-                if _sets_first(facts, word) or not any(
-                    _comes_from_outside(leaf, each, word.text) for each in levels
-                ):
-                    help = _local_variable(word)
-            if word.text in DICTIONARY_METHODS and _is_called(word):
-                name = _owner(word)
-                message = (
-                    f"the code of `{leaf.type}` calls `{name}.{word.text}`, but the userdata of a"
-                    " state has no methods of a dictionary"
-                )
-                help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
-                effect = f"the userdata has no method `{word.text}`: AttributeError"
-            places = declared_here(leaf, leaf.inputs)
-            if old is not None and word.text == old.old and word.text not in outputs:
-                help, places = old.help, (*old.places, *places)
-            yield Finding(
-                span=word.span,
-                message=message,
-                arguments=(word.text,),
-                help=help,
-                effect=effect,
-                related=(*places, *used_here(leaf)),
-                node=path,
-            )
-
-
-def _sets_first(facts: ClassFacts, word: Word) -> bool:
-    """Whether code sets a key that it reads without reading it there, as `+=` does."""
-    places = {each.span for each in facts.reads}
-    return any(each.text == word.text and each.span not in places for each in facts.writes)
-
-
-def _comes_from_outside(leaf: Leaf, around: nodes.Container, key: str) -> bool:
-    """Whether a key of a leaf can have a value before the leaf sets it."""
-    outer = remapping(leaf)[key]
-    known = {each.key for each in around.userdata} | {each.name for each in around.inputs}
-    return outer in known or any(
-        outer in outer_outputs(child) for child in around.children if child is not leaf
-    )
-
-
-def _local_variable(word: Word) -> str:
-    """The help for a read of a key that the code itself sets: the way to do without it."""
-    after = word.span.source.text[word.span.end :][:60].lstrip(" ]")
-    what = "compute the value" if after.startswith(("+=", "-=", "*=", "/=")) else "keep the value"
-    key = f"{_owner(word)}.{word.text}" if _owner(word) else word.span.text
-    whole = _WHOLE.match(after)
-    if whole is not None:
-        return f"write `{key} = {whole[1]}`"
-    if after.startswith(COLLECTS):
-        what = "collect the items"
-    return f"{what} in a local variable, and set `{key}` once, before the return"
-
-
-_WHOLE = re.compile(r"\.(?:extend|update)\((\w+)\)\s*\n")
-"""A call that adds all items of a variable."""
-
-COLLECTS = (".append(", ".extend(", ".insert(", ".add(", ".update(")
-"""The calls by which code collects items in a list, a set or a dictionary."""
-
-
-def dropped_writes(context: Context) -> Iterator[Finding]:
-    """The keys that the code of a type sets without an output in its interface (SM308). Unknown
-    keys that the code also reads are left to SM310."""
-    names = _names_by_type(context)
-    for path, leaf, facts in leaves_by_type(context, declared=True):
-        inputs, outputs = names.get(leaf.type, _own_names(leaf))[1:]
-        unknown = {word.text for word in facts.reads}.difference(inputs)
-        written = {word.text for word in facts.writes}
-        old = renamed_in_interface(leaf, "output_keys", facts, facts.outputs, outputs)
-        for word in first_of_each(facts.writes, [*outputs, *unknown]):
-            only = word.text in inputs
-            what = "only an input key" if only else "not an output key of its interface"
-            unset = [key for key in outputs if key not in written and key not in inputs]
-            near = guesser(unset if only else outputs)(word.text)
-            guess = did_you_mean(near)
-            lone = lone_output(facts, inputs, outputs)
-            if near is None and lone is not None and lone[0] == word.text:
-                near = lone[1]
-                guess = f"write `{_owner(word)}.{near}`" if _owner(word) else f"write `{near}`"
-            never = f", and `{near}` is never set" if near in unset and facts.closed else ""
-            places = declared_here(leaf, leaf.outputs)
-            if old is not None and word.text == old.old and not only:
-                guess, places = old.help, (*old.places, *places)
-            yield Finding(
-                span=word.span,
-                message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
-                f" is discarded{never}",
-                arguments=(word.text,),
-                help=guess
-                or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`"
-                + _in_the_class(facts, "output_keys", word.text),
-                related=(*places, *used_here(leaf)),
-                node=path,
-            )
-
-
-def lone_output(
-    facts: ClassFacts, inputs: Collection[str], outputs: Collection[str]
-) -> tuple[str, str] | None:
-    """The only key that a class sets without an output in its interface, and the only output key
-    that it never sets: both are one slip. None if that is not certain."""
-    listed_ = {word.text for word in facts.outputs or ()}
-    local = {key for key, _ in facts.unused}
-    written = {word.text for word in facts.writes}
-    wrong = written - {*inputs, *outputs, *(word.text for word in facts.reads)}
-    unset = [key for key in outputs if key not in written and key not in inputs]
-    if not facts.closed or len(wrong) != 1 or len(unset) != 1 or local & {*unset}:
-        return None
-    renamed = renamed_name(facts.outputs, outputs)
-    if listed_ & wrong and (renamed is None or renamed[0].text not in wrong):
-        return None
-    return min(wrong), unset[0]
-
-
-def _lone_input(facts: ClassFacts, inputs: Collection[str], known: Collection[str]) -> str | None:
-    """The only input key that the code of a class does not read, where it reads exactly one key
-    that is none of the `known` ones."""
-    read = {word.text for word in facts.reads}
-    wrong = read - {*known} - DICTIONARY_METHODS
-    unread = [key for key in inputs if key not in read]
-    listed_ = {word.text for word in facts.inputs or ()}
-    written = {word.text for word in facts.writes}
-    return (
-        unread[0]
-        if facts.closed and len(wrong) == len(unread) == 1 and not wrong & (listed_ | written)
-        else None
-    )
-
-
-def first_of_each(words: Iterable[Word], known: Iterable[str]) -> list[Word]:
-    """The first occurrence of each unknown word."""
-    found: dict[str, Word] = {}
-    for word in words:
-        found.setdefault(word.text, word)
-    left = found.keys() - set(known)
-    return [word for word in found.values() if word.text in left]
 
 
 @rule(

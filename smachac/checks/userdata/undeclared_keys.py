@@ -9,13 +9,11 @@ from smachac.analysis.accesses import callback_names, scripted_steps
 from smachac.analysis.code_slots import undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
-from smachac.checks.classes.class_code import (
+from smachac.checks.classes.types_with_code import first_of_each, leaves_by_type, used_here
+from smachac.checks.classes.undeclared_accesses import (
     DICTIONARY_METHODS,
     dropped_writes,
-    first_of_each,
-    leaves_by_type,
     unknown_reads,
-    used_here,
 )
 from smachac.checks.code.code_slots import unknown_function_reads
 from smachac.checks.edits import listing, with_input, with_key_list, with_output

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_lattice import is_open, present
-from smachac.checks.classes.class_code import lone_output, own_types, used_here
+from smachac.checks.classes.types_with_code import own_types, used_here
+from smachac.checks.classes.undeclared_accesses import lone_output
 from smachac.checks.help_text import other_place
 from smachac.checks.rule import rule
 from smachac.checks.userdata.candidate_keys import SCALARS
