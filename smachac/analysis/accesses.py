@@ -14,7 +14,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
-from smachac.ir.nodes import Expression, Leaf, Node, Struct, VariableRole
+from smachac.ir.nodes import Container, Expression, Leaf, Node, Struct, VariableRole
 from smachac.ir.outcome_names import fails
 from smachac.ir.traversal import PREEMPTED, remapping
 
@@ -366,3 +366,12 @@ def _renamed(node: Node, keys: Keys) -> Keys:
     for key, origin in keys.items():
         found.setdefault(names[key], origin)
     return found
+
+
+def leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
+    """The leaves in a container that have variables and can use only declared keys: all but open
+    ones and the children of iterators that the script writes."""
+    raw = isinstance(container, nodes.Iterator) and not container.sugar
+    for child in container.children if not raw else ():
+        if isinstance(child, Leaf) and child.variables and not child.open:
+            yield f"{path}/{child.name}", child

@@ -247,3 +247,8 @@ def results(tree: ast.Lambda) -> list[ast.expr]:
             case other:
                 found.append(other)
     return found
+
+
+def is_condition(slot: CodeSlot) -> bool:
+    """Whether a state judges the result of its code as true or false."""
+    return slot.role == "conditions" or (slot.name == "cond_cb" and slot.returns == "value")

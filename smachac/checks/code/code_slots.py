@@ -22,33 +22,31 @@ from smachac.analysis.code_slots import (
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
+from smachac.analysis.function_slots import named_functions
 from smachac.analysis.type_inference import TypeFlow
 from smachac.checks.classes.class_values import none_writes
 from smachac.checks.code.function_results import (
     NONE_EFFECTS,
     WAIT_FAILS,
     always_true,
-    named_functions,
     overwritten_keys,
     readable_slots,
     silent_functions,
     slot_owner,
 )
 from smachac.checks.code.outcome_results import wrong_outcomes
-from smachac.checks.edits import listing
-from smachac.checks.help_text import calls, did_you_mean, in_quotes_for, other_place
+from smachac.checks.help_text import calls, in_quotes_for, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.number_help import number_meant
 from smachac.checks.types.type_origins import written
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span
-from smachac.diagnostics.spelling import guesser, in_quotes
+from smachac.diagnostics.spelling import in_quotes
 from smachac.diagnostics.wording import listed
 from smachac.ir.code_places import node_place, node_range, place_in
 from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Expression, Node, VariableRole
-from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY, Type
 
 
@@ -588,52 +586,3 @@ def _type(context: Context, path: str, node: Node, slot: CodeSlot, value: ast.ex
     types = context.types.inputs
     keys = {key.name: types.get((path, key.name), ANY) for key in node.inputs}
     return type_of_call(code, keys)
-
-
-def function_reads(context: Context) -> Mapping[str, set[str]]:
-    """The keys that functions of the user read in the states of each container, by its path: also
-    those that are not input keys of the state (SM310)."""
-    found: dict[str, set[str]] = {}
-    for path, node, slot, facts in named_functions(context):
-        if slot.arguments is not None and slot.arguments[:1] == ("userdata",):
-            names = remapping(node)
-            keys = found.setdefault(path.rpartition("/")[0], set())
-            keys.update(names[word.text] for word in facts.reads)
-    return found
-
-
-def unknown_function_reads(context: Context) -> Iterator[Finding]:
-    """The keys that a function of the user reads, and that no state which calls it has as an input
-    (SM310)."""
-    calls_of: dict[str, list[tuple[str, Node, CodeSlot, FunctionFacts]]] = {}
-    for call in named_functions(context):
-        _, node, slot, facts = call
-        if slot.arguments is None or slot.arguments[:1] != ("userdata",):
-            continue
-        if facts.reads and not swapped(facts.parameters, slot.arguments):  # SM317
-            calls_of.setdefault(slot.code.text, []).append(call)
-    for places in calls_of.values():
-        known = {key.name for _, node, _, _ in places for key in (*node.inputs, *node.outputs)}
-        path, node, slot, facts = places[0]
-        around = path.rpartition("/")[0]
-        used = {word.text for word in facts.reads}
-        unread = [key.name for key in node.inputs if key.name not in used]
-        guess = guesser(unread)
-        inside = context.types.cells.keys()
-        for word in {each.text: each for each in reversed(facts.reads)}.values():
-            if word.text not in known:
-                yield Finding(
-                    span=word.span,
-                    message=f"`{facts.word.text}` reads `{word.text}`, which is not an input key of"
-                    f" `{node.name}`",
-                    arguments=(word.text,),
-                    help=did_you_mean(guess(word.text))
-                    or did_you_mean(
-                        unread[0]
-                        if len(unread) == 1 and (around, word.text) not in inside
-                        else None
-                    )
-                    or listing([node], "input_keys", word.text),
-                    related=other_place(slot.code.span, f"`{node.name}` calls it here"),
-                    node=path,
-                )

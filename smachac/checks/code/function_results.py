@@ -6,26 +6,17 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 
-from smachac.analysis.code_slots import CodeSlot, results
+from smachac.analysis.code_slots import CodeSlot, is_condition, results
 from smachac.analysis.context import Context
 from smachac.analysis.expression_types import type_of_call
+from smachac.analysis.function_slots import named_functions
 from smachac.analysis.type_lattice import unit_of
 from smachac.analysis.units import conversion
 from smachac.checks.help_text import calls, other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span
 from smachac.ir.code_places import node_place
-from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import Leaf, Node, VariableRole
-
-
-def named_functions(context: Context) -> Iterator[tuple[str, Node, CodeSlot, FunctionFacts]]:
-    """The code slots of a machine that name a function of the user, with the facts about it."""
-    known = context.machine.functions
-    for path, node, slot in context.code_slots if known else ():
-        facts = known.get(slot.code.text)
-        if facts is not None and slot.arguments is not None and not slot.quoted:
-            yield path, node, slot, facts
 
 
 def readable_slots(context: Context) -> Iterator[tuple[str, Node, CodeSlot, ast.expr]]:
@@ -100,11 +91,6 @@ def overwritten_keys(context: Context) -> Iterator[Finding]:
                          *calls(node, slot.code.span)),
                 node=path,
             )  # fmt: skip
-
-
-def is_condition(slot: CodeSlot) -> bool:
-    """Whether a state judges the result of its code as true or false."""
-    return slot.role == "conditions" or (slot.name == "cond_cb" and slot.returns == "value")
 
 
 def always_true(context: Context) -> Iterator[Finding]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
@@ -18,6 +17,7 @@ from smachac.checks.edits import listing
 from smachac.checks.help_text import calls, did_you_mean
 from smachac.checks.ros.class_messages import faults_in_classes
 from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
+from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, remapped_field, type_key_meant
 from smachac.checks.ros.message_reads import (
     code_places,
     described,
@@ -64,22 +64,9 @@ from smachac.ir.message_types import (
     MissingDefinitions,
     userdata_type,
 )
-from smachac.ir.nodes import (
-    DEFINITION_KINDS,
-    Container,
-    Data,
-    Expression,
-    Leaf,
-    Node,
-    Struct,
-    Value,
-    Variable,
-)
-from smachac.ir.traversal import outer_inputs, outer_outputs, remapping
+from smachac.ir.nodes import DEFINITION_KINDS, Data, Expression, Leaf, Node, Struct, Value, Variable
+from smachac.ir.traversal import remapping
 from smachac.ir.types import Type
-
-TYPE_KEY = "msg_type"
-"""The input key that gives the type of a message."""
 
 NO_MESSAGE = frozenset(["stop", "stop_all", "remove", "remove_all"])
 """The values of the variable `action` with which a state reads no message."""
@@ -89,8 +76,6 @@ NUMBERS = frozenset([*INTEGERS, *FLOATS, "bool"])
 
 SCALARS = frozenset(["bool", "int", "float", "str", "literal", "one_of"])
 
-_TYPE_NAME = re.compile(r"[a-z]\w*[/.](msg[/.])?[A-Z]\w*")
-"""The name of a message type with its package: `std_msgs/Bool`."""
 
 _SHORT_VALUE = re.compile(r"""['"]?\s*:\s*('[^'\n]*'|"[^"\n]*"|\[[^\[\]\n]*\]|[^\s,\[\]{}#]+)""")
 """A text in quotes, a list or a word after the name of a field."""
@@ -258,29 +243,6 @@ def _null_types(path: str, leaf: Leaf) -> Iterator[Finding]:
                 related=calls(leaf, held.value.span),
                 node=path,
             )
-
-
-def lacks_type_key(node: Node) -> bool:
-    """Whether a state reads a message, and not its type."""
-    names = key_names(node.inputs, "message") if isinstance(node, Leaf) else ()
-    return bool(names) and TYPE_KEY not in [key.name for key in node.inputs]
-
-
-def type_key_meant(container: Node | None) -> str | None:
-    """The only key in the userdata of a container that holds the name of a message type and that
-    none of its states reads."""
-    if not isinstance(container, Container):
-        return None
-    held = [
-        each.key
-        for each in container.userdata
-        if isinstance(each.value.data, str) and _TYPE_NAME.fullmatch(each.value.data)
-    ]
-    if not held:
-        return None
-    read = {key for child in container.children for key in outer_inputs(child)}
-    unread = [key for key in held if key not in read.union(outer_outputs(container))]
-    return unread[0] if len(unread) == 1 else None
 
 
 def _wrong_calls(path: str, node: Node, code: Expression, found: Definitions) -> Iterator[Finding]:
@@ -547,7 +509,7 @@ def _faults(
 ) -> Iterator[Finding]:
     names = {each.name for message in messages for each in message.fields}
     inputs = {key.name for key in leaf.inputs}
-    remapped = _remapped_field(leaf, held, names)
+    remapped = remapped_field(leaf, held, names)
     for use in _uses(held, messages):
         name = use.word.text
         if remapped is not None and use.key and name not in names:
@@ -568,32 +530,6 @@ def _faults(
                 message = f"`{name}` is `{given}`, but the field of {described(messages[0])} is"
                 help = f"remap `{name}` to a key whose values are `{wanted[0]}`"
                 yield field_finding(path, leaf, use.word, f"{message} `{type_}`", help, messages)
-
-
-def _remapped_field(leaf: Leaf, held: Variable, names: AbstractSet[str]) -> str | None:
-    """The field of a message that the remapping of a state has, and that its list of fields has
-    under an unknown name; None if there is not exactly one of each. `names` are all fields."""
-    listed_names = held.value.data
-    if not leaf.remaps or not isinstance(listed_names, tuple):
-        return None
-    used = {each for each in listed_names if isinstance(each, str)}
-    known = {key.name for key in (*leaf.inputs, *leaf.outputs)} - (used - names)
-    found = [each.key for each in leaf.remaps if each.key in names and each.key not in known]
-    return found[0] if len(found) == len(used - names) == 1 else None
-
-
-def remapped_fields(leaf: Leaf, found: Definitions) -> set[str]:
-    """The unknown keys in the remapping of a state for which SM512 has a finding: fields that its
-    list has under another name."""
-    fields: set[str] = set()
-    for kind, definitions in leaf_definitions(leaf, found):
-        for held in leaf.variables:
-            if held.role in PARTS[kind]:
-                parts = [each.part(held.role) for each in definitions]
-                names = {each.name for part in parts for each in part.fields}
-                field = _remapped_field(leaf, held, names)
-                fields.update([field] if field is not None else [])
-    return fields
 
 
 def _can_fit(given: Type, wanted: Type) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 
-from smachac.analysis.code_slots import CodeSlot
+from smachac.analysis.code_slots import CodeSlot, is_condition
 from smachac.analysis.message_code import (
     FieldRead,
     MessageCode,
@@ -16,7 +16,6 @@ from smachac.analysis.message_code import (
     nested_messages,
     owners,
 )
-from smachac.checks.code.function_results import is_condition
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.ros.message_values import an_example, constants_for, named_constants
 from smachac.diagnostics.diagnostic import Finding, Related

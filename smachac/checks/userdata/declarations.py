@@ -8,20 +8,25 @@ from dataclasses import replace
 from itertools import groupby
 from typing import Literal
 
-from smachac.analysis.accesses import callback_names, unreceived_outputs, userdata_fields
+from smachac.analysis.accesses import (
+    callback_names,
+    leaves_with_code,
+    unreceived_outputs,
+    userdata_fields,
+)
 from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
 from smachac.analysis.expression_types import type_of_data
+from smachac.analysis.function_slots import function_reads
 from smachac.analysis.type_lattice import misfit
-from smachac.analysis.unset_reads import Missing, container_name
+from smachac.analysis.unset_reads import container_name
 from smachac.analysis.uses import place_of
-from smachac.checks.code.code_slots import function_reads
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.outcomes.outcomes import meant_default
-from smachac.checks.ros.message_fields import TYPE_KEY, lacks_type_key, type_key_meant
+from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.rule import rule
 from smachac.checks.userdata.candidate_keys import meant_by_remaps, outer_value
 from smachac.checks.userdata.empty_remaps import meant_by_empty_remaps
@@ -33,7 +38,7 @@ from smachac.checks.userdata.meant_keys import (
     sees_everything,
     used_in,
 )
-from smachac.checks.userdata.undeclared_keys import leaves_with_code
+from smachac.checks.userdata.swapped_loops import swapped_loop
 from smachac.checks.userdata.unsent_keys import unsent_keys
 from smachac.checks.userdata.unwritten_keys import (
     read_unwritten,
@@ -49,10 +54,9 @@ from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.references import short_value
 from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
-from smachac.ir.graph import START
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
-from smachac.ir.traversal import OuterNames, expressions, remapping, walk
+from smachac.ir.traversal import expressions, remapping, walk
 
 
 @rule(
@@ -210,27 +214,6 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= {place for place in unset if place is not None}  # SM301
     found |= _swapped_lists(context)
     return found
-
-
-def swapped_loop(missing: Missing) -> nodes.Iterator | None:
-    """The loop over a key that nothing sets, where it calls its item as a key that is set, and a
-    state in it reads the item under the name of that key: both have changed places."""
-    scope = missing.scope
-    if missing.cause not in ("nowhere", "remapped"):
-        return None
-    held = {*scope.held, *scope.inputs}
-    for vertex in missing.vertices:
-        node = scope.container if vertex == START else scope.children.get(str(vertex))
-        if not isinstance(node, nodes.Iterator) or not node.item_key:
-            continue
-        if (remapping(node) if vertex != START else OuterNames())[node.items_key] != missing.key:
-            continue
-        read = {key.name for child in node.children for key in child.inputs}
-        for steps in scope.steps.values() if vertex != START else ():
-            held.update(*(step.writes.perhaps for step in steps))
-        if node.item_key in held and missing.key in read and node.item_key not in read:
-            return node
-    return None
 
 
 def _swapped_lists(context: Context) -> set[tuple[str, str]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
-from smachac.analysis.accesses import callback_names, scripted_steps
+from smachac.analysis.accesses import callback_names, leaves_with_code, scripted_steps
 from smachac.analysis.code_slots import undeclared_slot_reads
 from smachac.analysis.context import Context
 from smachac.analysis.error_recovery import undeclared_reads, undeclared_writes
@@ -15,12 +15,12 @@ from smachac.checks.classes.undeclared_accesses import (
     dropped_writes,
     unknown_reads,
 )
-from smachac.checks.code.code_slots import unknown_function_reads
 from smachac.checks.edits import listing, with_input, with_key_list, with_output
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.types.value_places import place_of_part
 from smachac.checks.userdata.candidate_keys import keys_around
+from smachac.checks.userdata.function_keys import unknown_function_reads
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, respelt
@@ -110,15 +110,6 @@ def _without_list(
         node=path,
         edits=with_key_list(leaf, part, keys),
     )
-
-
-def leaves_with_code(path: str, container: Container) -> Iterator[tuple[str, Leaf]]:
-    """The leaves in a container that have variables and can use only declared keys: all but open
-    ones and the children of iterators that the script writes."""
-    raw = isinstance(container, nodes.Iterator) and not container.sugar
-    for child in container.children if not raw else ():
-        if isinstance(child, Leaf) and child.variables and not child.open:
-            yield f"{path}/{child.name}", child
 
 
 def _never_set(leaf: Leaf) -> list[str]:

@@ -17,7 +17,7 @@ from smachac.checks.edits import listing, with_input, with_output
 from smachac.checks.help_text import added_remapping, calls, did_you_mean, other_place
 from smachac.checks.outcomes.misled_failures import Misled, misled_failures
 from smachac.checks.outcomes.reachability import keys_of_hidden_states
-from smachac.checks.ros.message_fields import remapped_fields
+from smachac.checks.ros.message_keys import remapped_fields
 from smachac.checks.rule import rule
 from smachac.checks.userdata.candidate_keys import (
     MOST_FITTING,
@@ -28,10 +28,10 @@ from smachac.checks.userdata.candidate_keys import (
     outer_value,
     unread_output,
 )
-from smachac.checks.userdata.declarations import swapped_loop
 from smachac.checks.userdata.empty_remaps import empty_remap_findings
 from smachac.checks.userdata.initial_presets import missing_together, together_finding
 from smachac.checks.userdata.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
+from smachac.checks.userdata.swapped_loops import swapped_loop
 from smachac.checks.userdata.unset_read_findings import unset_read
 from smachac.checks.userdata.unwritten_keys import read_unwritten, unwritten_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
