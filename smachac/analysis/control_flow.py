@@ -18,14 +18,7 @@ from smachac.diagnostics.negation import are_opposite
 from smachac.diagnostics.spelling import MOST_COMPARED, Guesser, guesser, words_of
 from smachac.ir import nodes
 from smachac.ir.graph import START, can_end, edges, reachable
-from smachac.ir.nodes import (
-    Concurrence,
-    Leaf,
-    Node,
-    Outcome,
-    StateMachine,
-    Transition,
-)
+from smachac.ir.nodes import Concurrence, Leaf, Node, Outcome, StateMachine, Transition
 from smachac.ir.outcome_names import GOOD, PREEMPTED, STOPS, SUCCESSES, TIMEOUTS, fails, is_failure
 from smachac.ir.traversal import leads_to_child, outcome_names
 
@@ -460,3 +453,17 @@ def circle(path: str, region: Sequence[str], steps: SiblingSteps) -> list[PathSt
     outcome = graph.edges[last, first]["outcome"]
     there = way(path, graph, before, last)[-2 * MOST_STEPS + 1 :]
     return [*there, ended(outcome), entered(first, f"{path}/{first}")]
+
+
+def unhandled(child: Node) -> list[Outcome]:
+    """The outcomes of a state without a transition, except those that a misspelt transition is
+    probably for."""
+    handled = {step.outcome for step in child.transitions}
+    left = [outcome for outcome in child.outcomes if outcome.name not in handled]
+    if not left:
+        return []
+    unknown = unknown_outcomes(child)
+    if any(is_catch_all(step) for step, _ in unknown):
+        return []
+    handled.update(meant for _, meant in unknown if meant)
+    return [outcome for outcome in child.outcomes if outcome.name not in handled]

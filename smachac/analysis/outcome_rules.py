@@ -278,3 +278,17 @@ def without_other(whole: Space) -> Space:
         name: tuple(outcome for outcome in outcomes if outcome != OTHER) or outcomes
         for name, outcomes in whole.items()
     }
+
+
+def has_dead_rule(container: Concurrence) -> bool:
+    """Whether a rule of a concurrence has a state or an outcome that does not exist (SM403)."""
+    children = {child.name: child for child in container.children}
+    return any(
+        condition.child
+        and (
+            (child := children.get(condition.child)) is None
+            or not (is_open(child) or condition.outcome in outcome_names(child))
+        )
+        for rule in container.rules
+        for condition in rule.when
+    )

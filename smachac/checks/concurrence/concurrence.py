@@ -15,8 +15,10 @@ from smachac.analysis.outcome_rules import (
     without_other,
 )
 from smachac.analysis.possible_outcomes import Judged
+from smachac.checks.concurrence.combinations import written
+from smachac.checks.concurrence.inverted_rules import inverted_rules
 from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
-from smachac.checks.outcomes.outcomes import inverted_rules, transposed_rules
+from smachac.checks.outcomes.outcomes import transposed_rules
 from smachac.checks.rule import rule
 from smachac.checks.timing.iterator_stops import turned_renames
 from smachac.checks.timing.watched_branches import missing_joins
@@ -159,20 +161,6 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
                 related=related,
                 node=path,
             )
-
-
-def has_dead_rule(container: Concurrence) -> bool:
-    """Whether a rule of a concurrence has a state or an outcome that does not exist (SM403)."""
-    children = {child.name: child for child in container.children}
-    return any(
-        condition.child
-        and (
-            (child := children.get(condition.child)) is None
-            or not (is_open(child) or condition.outcome in outcome_names(child))
-        )
-        for rule in container.rules
-        for condition in rule.when
-    )
 
 
 def _example(container: Concurrence) -> str:
@@ -363,11 +351,6 @@ def empty_concurrence(context: Context) -> Iterator[Finding]:
                 related=calls(container, container.span),
                 node=path,
             )
-
-
-def written(combination: Mapping[str, str]) -> str:
-    """A combination as the script writes its conditions."""
-    return ", ".join(f"`{child}: {outcome}`" for child, outcome in combination.items())
 
 
 @rule(

@@ -5,20 +5,19 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from smachac.analysis.accesses import Accesses, callback_names
+from smachac.analysis.accesses import Accesses
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import children_names
 from smachac.analysis.raced_outputs import RacedOutput, raced_output
 from smachac.analysis.resource_claims import Held, prefixes
 from smachac.analysis.type_lattice import present
+from smachac.checks.concurrence.raced_keys import is_never_set, own_key
 from smachac.checks.help_text import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import both, either
-from smachac.ir.leaf import functions
 from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, Variable
-from smachac.ir.traversal import outputs_to, remapping
 
 MOST_PLACES = 4
 """Limit on the other branches that a finding shows."""
@@ -91,7 +90,7 @@ def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> 
     for child in container.children:
         own = known[f"{path}/{child.name}"]
         for key, origin in own.writes.items():
-            if child is origin and _is_never_set(child, key):
+            if child is origin and is_never_set(child, key):
                 continue  # SM306 or SM308
             writers.setdefault(key, []).append((child, origin))
         for key, origin in own.reads.items():
@@ -103,36 +102,6 @@ def _races(path: str, container: Concurrence, known: Mapping[str, Accesses]) -> 
         if len(names) > 1 or reading:
             meant = raced if raced is not None and raced.key == key else None
             yield _race(path, container, key, writing, reading, meant)
-
-
-def raced_keys(context: Context) -> set[tuple[str, str]]:
-    """The keys that are unset because a branch of a concurrence writes the key of another branch
-    (SM405), each with the path of the container that has it."""
-    found = set[tuple[str, str]]()
-    for path, container in context.containers:
-        raced = None
-        if isinstance(container, Concurrence):
-            raced = raced_output(path, container, context.accesses)
-        if raced is not None and not any(
-            _is_never_set(child, raced.key) for child in container.children
-        ):
-            outer = remapping(container)[raced.meant]
-            found.add((path.rpartition("/")[0], outer))
-    return found
-
-
-def _is_never_set(writer: Node, key: str) -> bool:
-    """Whether a state declares an output that its callbacks set, and none of them sets it."""
-    if not isinstance(writer, Leaf) or not functions(writer, "callbacks"):
-        return False
-    own = _own_key(writer, key)
-    results = {each.name for each in writer.outputs if each.role == "result"}
-    return own in results - callback_names(writer)
-
-
-def _own_key(writer: Node, key: str) -> str:
-    """The name that a branch has for a key that it writes."""
-    return next((each.name for each in outputs_to(writer, key)), key)
 
 
 def _race(
@@ -155,7 +124,7 @@ def _race(
     here = writing[:2][-1]
     if raced is not None:
         here = next(each for each in writing if each[0] is raced.child)
-    own, span = _own_key(here[0], key), here[0].span
+    own, span = own_key(here[0], key), here[0].span
     help = f"write `remapping: {{{own}: {key}_2}}` at `{here[0].name}`, for a key of its own, or"
     help += " run one branch after the other"
     if raced is not None:

@@ -76,3 +76,15 @@ def _endings(leaf: Leaf) -> Iterator[tuple[Word, str, str]]:
                 "SMACH raises InvalidTransitionError for an undeclared outcome: the machine stops"
             )
             yield Word(end, place), what, effect
+
+
+def meant_default(leaf: Leaf) -> str | None:
+    """The declared outcome that is meant by a `default_outcome` without a transition: the only one
+    to which no condition leads, if it has a transition."""
+    default, conditions = variable(leaf, "default_outcome"), functions(leaf, "conditions")
+    handled = {step.outcome for step in leaf.transitions}
+    if not isinstance(default, str) or not conditions or default in handled:
+        return None
+    others = {*conditions, default, leaf.catches}
+    left = [name for name in outcome_names(leaf) if name not in others]
+    return left[0] if len(left) == 1 and left[0] in handled else None

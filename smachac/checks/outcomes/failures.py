@@ -10,7 +10,7 @@ from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.failure_paths import starts_failure
 from smachac.analysis.outcome_rules import Combination, SoundConcurrence, Space, UndecidedError
 from smachac.analysis.possible_outcomes import Judged
-from smachac.checks.concurrence.concurrence import written
+from smachac.checks.concurrence.combinations import written
 from smachac.checks.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity, ended, entered
@@ -28,14 +28,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import (
-    GOOD,
-    PREEMPTED,
-    SUCCESSES,
-    TIMEOUTS,
-    fails,
-    successes,
-)
+from smachac.ir.outcome_names import GOOD, PREEMPTED, SUCCESSES, TIMEOUTS, fails, successes
 from smachac.ir.script_paths import name_in_script, sugared_child
 from smachac.ir.traversal import leads_to_child, outcome_names
 

@@ -3,33 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import (
-    Linear,
-    is_catch_all,
-    is_open,
-    places_of,
-    unknown_outcomes,
-)
+from smachac.analysis.control_flow import Linear, places_of, unhandled, unknown_outcomes
+from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
+from smachac.checks.outcomes.condition_outcomes import meant_default
+from smachac.checks.outcomes.iterator_endings import MeantEnding, endings, meant_ending
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
 from smachac.diagnostics.wording import both
 from smachac.ir import nodes
-from smachac.ir.graph import stopped_endings
-from smachac.ir.leaf import functions, variable
-from smachac.ir.nodes import (
-    Concurrence,
-    Container,
-    Leaf,
-    Node,
-    Outcome,
-    OutcomeRule,
-    Transition,
-)
+from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Outcome, Transition
 from smachac.ir.outcome_names import (
     GOOD,
     PREEMPTED,
@@ -154,36 +141,6 @@ def transposed_rules(container: Concurrence) -> dict[str, str]:
     return found
 
 
-class Inverted(NamedTuple):
-    """A rule of an outcome map that begins with a state, and what is meant: pairs of an outcome of
-    the concurrence and one of the state."""
-
-    rule: OutcomeRule
-    meant: tuple[tuple[str, str], ...]
-
-
-def inverted_rules(container: Concurrence) -> tuple[Inverted, ...]:
-    """The rules of an outcome map in which outcomes and states have changed places: `STATE:
-    {outcome of the state: outcome of the concurrence}`, or with the two outcomes in the other
-    order."""
-    declared = frozenset(outcome_names(container))
-    children = {child.name: child for child in container.children}
-    found = []
-    for entry in container.rules:
-        child = children.get(entry.outcome)
-        if child is None or entry.outcome in declared or not entry.when:
-            continue
-        if any(part.child in children for part in entry.when):
-            continue
-        pairs = [(part.child, part.outcome) for part in entry.when]
-        own = frozenset(outcome_names(child))
-        if not is_open(child) and all(one in declared and two in own for one, two in pairs):
-            found.append(Inverted(entry, tuple(pairs)))
-        elif all(two in declared for _, two in pairs):
-            found.append(Inverted(entry, tuple((two, one) for one, two in pairs)))
-    return tuple(found)
-
-
 def _inverted(path: str, container: Concurrence, inverted: tuple[Inverted, ...]) -> Finding:
     first = inverted[0].rule
     rules: dict[str, list[str]] = {}
@@ -200,19 +157,6 @@ def _inverted(path: str, container: Concurrence, inverted: tuple[Inverted, ...])
         related=calls(container, first.span),
         node=path,
     )
-
-
-def endings(container: nodes.Iterator) -> Iterator[tuple[str, str, str]]:
-    """The ways in which an iterator can end: its child (empty after the last item), the outcome
-    of that, and the outcome of the iterator."""
-    renamed = dict(container.final_map)
-    exhausted = container.exhausted_outcome
-    yield "", exhausted, renamed.get(exhausted, exhausted)
-    loops = frozenset(container.loop_outcomes)
-    for child in container.children:
-        for name in outcome_names(child):
-            if name not in loops:
-                yield child.name, name, renamed.get(name, name)
 
 
 def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Finding]:
@@ -409,31 +353,6 @@ def _several_unhandled(
     )
 
 
-class MeantEnding(NamedTuple):
-    """The outcome of an iterator after its last item, which the script does not declare and which
-    leads nowhere, and the declared outcome that is meant."""
-
-    container: nodes.Iterator
-    result: Outcome
-    meant: Outcome
-
-
-def meant_ending(container: nodes.Iterator) -> MeantEnding | None:
-    """The outcome that an iterator is meant to have after its last item: the only one that it
-    declares and cannot end with."""
-    if container.sugar or not container.transitions or any(map(is_open, container.children)):
-        return None
-    ways = {result for _, _, result in endings(container)}
-    (name, *_) = [result for _, _, result in endings(container)]
-    added = [each for each in container.outcomes if each.name == name]
-    handled = {step.outcome for step in container.transitions}
-    if not added or added[0].span != container.exhausted_span or name in handled:
-        return None
-    ways |= {*stopped_endings(container).values(), PREEMPTED, container.catches}
-    left = [each for each in container.outcomes if each.name not in ways and each.name in handled]
-    return MeantEnding(container, added[0], left[0]) if len(left) == 1 else None
-
-
 def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
     container, result, meant = ending
     name, field, value = container.name, "exhausted_outcome", meant.name
@@ -466,20 +385,6 @@ def unhandled_in(container: Linear) -> Unhandled:
     return tuple([(child, left) for child in container.children if (left := unhandled(child))])
 
 
-def unhandled(child: Node) -> list[Outcome]:
-    """The outcomes of a state without a transition, except those that a misspelt transition is
-    probably for."""
-    handled = {step.outcome for step in child.transitions}
-    left = [outcome for outcome in child.outcomes if outcome.name not in handled]
-    if not left:
-        return []
-    unknown = unknown_outcomes(child)
-    if any(is_catch_all(step) for step, _ in unknown):
-        return []
-    handled.update(meant for _, meant in unknown if meant)
-    return [outcome for outcome in child.outcomes if outcome.name not in handled]
-
-
 def _field_that_adds(node: Node, outcome: str) -> str:
     """The field `timeout`, `retry` or `for_each` of a state that adds an outcome; empty if the
     state itself has it."""
@@ -487,18 +392,6 @@ def _field_that_adds(node: Node, outcome: str) -> str:
         return ""
     inner = node.children[0]
     return _field_that_adds(inner, outcome) if outcome in outcome_names(inner) else node.sugar
-
-
-def meant_default(leaf: Leaf) -> str | None:
-    """The declared outcome that is meant by a `default_outcome` without a transition: the only one
-    to which no condition leads, if it has a transition."""
-    default, conditions = variable(leaf, "default_outcome"), functions(leaf, "conditions")
-    handled = {step.outcome for step in leaf.transitions}
-    if not isinstance(default, str) or not conditions or default in handled:
-        return None
-    others = {*conditions, default, leaf.catches}
-    left = [name for name in outcome_names(leaf) if name not in others]
-    return left[0] if len(left) == 1 and left[0] in handled else None
 
 
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, target: str) -> Finding:

@@ -7,12 +7,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, is_open
+from smachac.analysis.control_flow import Linear, is_open, unhandled
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.hidden_conditions import hidden_conditions
+from smachac.checks.outcomes.iterator_endings import endings, meant_ending
 from smachac.checks.outcomes.misled_failures import linear_outcomes, misled_failures
 from smachac.checks.outcomes.needed_variables import outcomes_without_variable
-from smachac.checks.outcomes.outcomes import endings, meant_ending, unhandled
 from smachac.checks.properties.properties import missed_states
 from smachac.checks.rule import rule
 from smachac.checks.timing.iterator_stops import undeclared_stops

@@ -8,10 +8,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import children_names, strays, unknown_outcomes
-from smachac.checks.concurrence.concurrence import has_dead_rule
+from smachac.analysis.control_flow import children_names, strays, unhandled, unknown_outcomes
+from smachac.analysis.outcome_rules import has_dead_rule
 from smachac.checks.help_text import other_place
-from smachac.checks.outcomes.outcomes import unhandled
 from smachac.checks.properties.event_names import name_fault, own_work, work
 from smachac.checks.properties.property_turns import Turn, turn_of
 from smachac.checks.rule import rule

@@ -24,8 +24,7 @@ from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import container_name
 from smachac.analysis.uses import place_of
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
-from smachac.checks.outcomes.condition_outcomes import unknown_endings
-from smachac.checks.outcomes.outcomes import meant_default
+from smachac.checks.outcomes.condition_outcomes import meant_default, unknown_endings
 from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.rule import rule
 from smachac.checks.userdata.candidate_keys import meant_by_remaps, outer_value

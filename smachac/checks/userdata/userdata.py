@@ -12,7 +12,7 @@ from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Searches, Witness, container_name, reader_at
-from smachac.checks.concurrence.races import raced_keys
+from smachac.checks.concurrence.raced_keys import raced_keys
 from smachac.checks.edits import listing, with_input, with_output
 from smachac.checks.help_text import added_remapping, calls, did_you_mean, other_place
 from smachac.checks.outcomes.misled_failures import Misled, misled_failures

@@ -1,0 +1,39 @@
+"""Rules of an outcome map in which outcomes and states have changed places."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from smachac.analysis.control_flow import is_open
+from smachac.ir.nodes import Concurrence, OutcomeRule
+from smachac.ir.traversal import outcome_names
+
+
+class Inverted(NamedTuple):
+    """A rule of an outcome map that begins with a state, and what is meant: pairs of an outcome of
+    the concurrence and one of the state."""
+
+    rule: OutcomeRule
+    meant: tuple[tuple[str, str], ...]
+
+
+def inverted_rules(container: Concurrence) -> tuple[Inverted, ...]:
+    """The rules of an outcome map in which outcomes and states have changed places: `STATE:
+    {outcome of the state: outcome of the concurrence}`, or with the two outcomes in the other
+    order."""
+    declared = frozenset(outcome_names(container))
+    children = {child.name: child for child in container.children}
+    found = []
+    for entry in container.rules:
+        child = children.get(entry.outcome)
+        if child is None or entry.outcome in declared or not entry.when:
+            continue
+        if any(part.child in children for part in entry.when):
+            continue
+        pairs = [(part.child, part.outcome) for part in entry.when]
+        own = frozenset(outcome_names(child))
+        if not is_open(child) and all(one in declared and two in own for one, two in pairs):
+            found.append(Inverted(entry, tuple(pairs)))
+        elif all(two in declared for _, two in pairs):
+            found.append(Inverted(entry, tuple((two, one) for one, two in pairs)))
+    return tuple(found)
