@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-from itertools import pairwise
-from typing import NamedTuple
+from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, is_open, unhandled
+from smachac.analysis.control_flow import Linear, is_open
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.hidden_conditions import hidden_conditions
+from smachac.checks.outcomes.hidden_states import LedPast, LedTwice, hidden_groups
 from smachac.checks.outcomes.iterator_endings import endings, meant_ending
 from smachac.checks.outcomes.misled_failures import linear_outcomes, misled_failures
 from smachac.checks.outcomes.needed_variables import outcomes_without_variable
-from smachac.checks.properties.properties import missed_states
 from smachac.checks.rule import rule
 from smachac.checks.timing.iterator_stops import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import NOWHERE, Word
-from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
+from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
-from smachac.ir.graph import edges, reachable, stopped_endings
+from smachac.ir.graph import edges, stopped_endings
 from smachac.ir.nodes import (
     Concurrence,
     Container,
@@ -33,7 +30,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED, fails
 from smachac.ir.script_paths import name_in_script
-from smachac.ir.traversal import ends_preempted, outcome_names, outer_outputs
+from smachac.ir.traversal import ends_preempted, outcome_names
 
 
 @rule(
@@ -76,7 +73,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: lost}
     """
-    for each in _hidden_groups(context):
+    for each in hidden_groups(context):
         if isinstance(each, Finding):
             yield each
             continue
@@ -103,198 +100,11 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
         )
 
 
-class _Hidden(NamedTuple):
-    """A state that cannot be entered, first in a group of those that are entered by it; and what
-    probably has to lead to it: a transition that leads past it, an outcome without a transition,
-    one of two outcomes."""
-
-    path: str
-    container: Linear
-    group: list[Node]
-    past: _LedPast | None
-    way_out: tuple[Node, Transition] | None
-    twice: _LedTwice | None
-
-
-def _hidden_groups(context: Context) -> Iterator[_Hidden | Finding]:
-    """The groups of states that cannot be entered, without those whose cause another rule
-    reports; and the finding on a sequence that never continues."""
-    missed: set[str] | None = None
-    for (path, container), whole in zip(context.linear, context.corrected, strict=True):
-        seen = context.of_container(reachable, path, whole)
-        hidden = [child for child in container.children if child.name not in seen]
-        if not hidden:
-            continue
-        if isinstance(container, Sequence) and _never_continues(container):
-            yield _wrong_connector(path, container)
-            continue
-        if missed is None:
-            missed = missed_states(context)
-        before = _before(whole, frozenset(child.name for child in hidden))
-        first = _first_hidden(container, hidden, before, seen)
-        previous = {each.name: one for one, each in pairwise(container.children)}
-        led_twice = _led_twice(container, seen)
-        order = {child.name: at for at, child in enumerate(hidden)}
-        groups = 0
-        for child in hidden:
-            if child.name not in first or f"{path}/{child.name}" in missed:
-                continue  # SM701 reports the transition that must lead to it
-            groups += 1
-            alone, one = not before.get(child.name), previous.get(child.name)
-            is_searched = alone and groups <= MOST_EXPLAINED
-            others = first[child.name] - {child.name}
-            group = [child, *(hidden[at] for at in sorted(map(order.__getitem__, others)))]
-            past = _led_past(container, one, group, seen) if is_searched else None
-            if past is None and led_twice is None and is_searched:
-                past = _led_out(container, one, group, seen)
-            way_out = _way_out(container, one, seen) if past is None else None
-            yield _Hidden(path, container, group, past, way_out, led_twice if alone else None)
-
-
-def keys_of_hidden_states(context: Context) -> dict[tuple[str, str], frozenset[str]]:
-    """The keys that states set past which the state before them leads (SM201), each with the path
-    of its container; and the states that are entered without that transition."""
-    found: dict[tuple[str, str], frozenset[str]] = {}
-    for each in _hidden_groups(context):
-        if isinstance(each, Finding) or each.past is None or not each.past.next:
-            continue
-        entered = _entered_without(each.container, each.past.step)
-        for child in each.group:
-            found |= {(each.path, key): entered for key in outer_outputs(child)}
-    return found
-
-
-def _entered_without(container: Linear, step: Transition) -> frozenset[str]:
-    """The states of a container that can be entered without a transition."""
-    ahead: dict[str, list[str]] = {}
-    for child in container.children:
-        targets = [each.target for each in child.transitions if each is not step]
-        ahead.setdefault(child.name, []).extend(targets)
-    seen: set[str] = set()
-    todo = [container.initial]
-    while todo:
-        name = todo.pop()
-        if name in ahead and name not in seen:
-            seen.add(name)
-            todo += ahead[name]
-    return frozenset(seen)
-
-
-def _first_hidden(
-    container: Linear, hidden: list[Node], before: dict[str, list[str]], seen: Collection[str]
-) -> dict[str, set[str]]:
-    """The states by which the hidden ones are entered, each with those that are entered by it:
-    those to which no other one leads, and the first one of a circle. None if as many outcomes of
-    states that can be entered have no transitions (SM104)."""
-    after: dict[str, list[str]] = {}
-    for name, sources in before.items():
-        for source in sources:
-            after.setdefault(source, []).append(name)
-    found: dict[str, set[str]] = {}
-    covered: set[str] = set()
-    alone = [child.name for child in hidden if not before.get(child.name)]
-    for name in (*alone, *(child.name for child in hidden)):
-        if name not in covered:
-            group = found[name] = set()
-            todo = [name]
-            while todo:
-                if (each := todo.pop()) not in covered:
-                    covered.add(each)
-                    group.add(each)
-                    todo += after.get(each, [])
-    left = sum(len(unhandled(child)) for child in container.children if child.name in seen)
-    return found if len(found) > left else {}
-
-
 def _unreached(container: Linear, group: list[Node]) -> str:
     return (
         f"{both(each.name for each in group)} cannot be reached from `{container.initial}`, the"
         f" initial state of `{container.name}`"
     )
-
-
-class _LedPast(NamedTuple):
-    """A state with a transition that leads past other ones; `next`: it is the state before them in
-    the script."""
-
-    child: Node
-    step: Transition
-    next: bool
-
-
-def _led_past(
-    container: Linear,
-    before: Node | None,
-    group: list[Node],
-    seen: Collection[str],
-) -> _LedPast | None:
-    """The transition that leads past a group of states, to a state to which one of them leads as
-    well: the only one of the state before them in the script that is not one of failure; else the
-    only one of failure of that state, or of all states; else the one that leads back."""
-    if isinstance(container, Sequence):
-        return None
-    after = {step.target for step in group[0].transitions if step.target in seen}
-    good = {step.target for each in group for step in each.transitions
-            if step.target in seen and not fails(each, step.outcome)
-            and step.outcome != PREEMPTED}  # fmt: skip
-    if before is not None and before.name in seen:
-        steps = [step for step in before.transitions if step.origin == "written"]
-        for found in (
-            [each for each in steps if each.target in after | good
-             and each.outcome != PREEMPTED and not fails(before, each.outcome)],
-            [each for each in steps if each.target in good and fails(before, each.outcome)],
-        ):  # fmt: skip
-            if found:
-                return _LedPast(before, found[0], True) if len(found) == 1 else None
-    others = [
-        _LedPast(child, step, False)
-        for child in container.children
-        if child.name in seen
-        for step in child.transitions
-        if step.target in good and step.origin == "written" and fails(child, step.outcome)
-    ]
-    if len(others) == 1:
-        return others[0]
-    return _led_back(container, before) if before is not None and before.name in seen else None
-
-
-def _led_out(
-    container: Linear, before: Node | None, group: list[Node], seen: Collection[str]
-) -> _LedPast | None:
-    """The only transition for a success of the state before a group of states that leads to an
-    outcome of the container, no failure, to which one of the group leads as well."""
-    if before is None or before.name not in seen or isinstance(container, Sequence):
-        return None
-    ends = {step.target for each in group for step in each.transitions
-            if step.target in outcome_names(container) and not fails(container, step.target)
-            and step.outcome != PREEMPTED and not fails(each, step.outcome)}  # fmt: skip
-    steps = [step for step in before.transitions
-             if step.origin == "written" and step.target in ends
-             and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
-    return _LedPast(before, steps[0], True) if len(steps) == 1 else None
-
-
-def _led_back(container: Linear, before: Node) -> _LedPast | None:
-    """The only transition of a state for its successes, if it leads back to an earlier state: it is
-    probably that of a state that was copied."""
-    names = [each.name for each in container.children]
-    earlier = names[: names.index(before.name)]
-    steps = [step for step in before.transitions
-             if step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
-    is_back = len(steps) == 1 and steps[0].origin == "written" and steps[0].target in earlier
-    return _LedPast(before, steps[0], True) if is_back else None
-
-
-def _way_out(
-    container: Linear, before: Node | None, seen: Collection[str]
-) -> tuple[Node, Transition] | None:
-    """A state that can be entered, with an outcome that is not one of failure and has no
-    transition, so that the container ends with it."""
-    if before is None or before.name not in seen or isinstance(container, Sequence):
-        return None
-    steps = [step for step in before.transitions if step.origin == "implicit"
-             and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
-    return (before, steps[0]) if len(steps) == 1 else None
 
 
 def _out_help(child: Node, before: Node, step: Transition) -> str:
@@ -306,7 +116,7 @@ def _out_places(container: Linear, before: Node, step: Transition) -> tuple[Rela
     return other_place(before.span, text)
 
 
-def _passed(path: str, container: Linear, group: list[Node], past: _LedPast) -> Finding:
+def _passed(path: str, container: Linear, group: list[Node], past: LedPast) -> Finding:
     """SM201 for states past which the state before them leads, or another one."""
     child, names = group[0], both(each.name for each in group)
     before, step = past.child, past.step
@@ -329,33 +139,7 @@ def _passed(path: str, container: Linear, group: list[Node], past: _LedPast) -> 
     )
 
 
-class _LedTwice(NamedTuple):
-    """A state with two outcomes of success that lead to one state."""
-
-    child: Node
-    steps: tuple[Transition, Transition]
-
-
-def _led_twice(container: Linear, seen: Collection[str]) -> _LedTwice | None:
-    """The only state of a container that can be entered and has two outcomes, neither of failure,
-    that lead to one state."""
-    names = {child.name for child in container.children}
-    found: list[_LedTwice] = []
-    for child in container.children:
-        by_target: dict[str, list[Transition]] = {}
-        plain = {
-            name for name in outcome_names(child) if name != PREEMPTED and not fails(child, name)
-        }
-        for step in child.transitions if child.name in seen else ():
-            is_plain = step.outcome in plain
-            if step.origin == "written" and step.target in names and is_plain:
-                by_target.setdefault(step.target, []).append(step)
-        found += [_LedTwice(child, (steps[0], steps[1])) for steps in by_target.values()
-                  if len(steps) == 2]  # fmt: skip
-    return found[0] if len(found) == 1 else None
-
-
-def _led_help(group: list[Node], twice: _LedTwice) -> str:
+def _led_help(group: list[Node], twice: LedTwice) -> str:
     first, second = twice.steps
     return (
         f"lead `{first.outcome}` or `{second.outcome}` of `{twice.child.name}` to"
@@ -363,7 +147,7 @@ def _led_help(group: list[Node], twice: _LedTwice) -> str:
     )
 
 
-def _led_places(twice: _LedTwice | None) -> tuple[Related, ...]:
+def _led_places(twice: LedTwice | None) -> tuple[Related, ...]:
     if twice is None:
         return ()
     first, second = twice.steps
@@ -372,47 +156,6 @@ def _led_places(twice: _LedTwice | None) -> tuple[Related, ...]:
         *other_place(first.target_span, f"{words} `{first.target}`"),
         *other_place(second.target_span, "and here"),
     )
-
-
-def _never_continues(container: Sequence) -> bool:
-    """Whether no state of a sequence has the connector outcome that the script gives."""
-    if container.connector_span.source is NOWHERE.source:
-        return False
-    return all(
-        container.connector_outcome not in outcome_names(child) and not is_open(child)
-        for child in container.children
-    )
-
-
-def _wrong_connector(path: str, container: Sequence) -> Finding:
-    outcomes = [name for child in container.children for name in outcome_names(child)]
-    word = Word(container.connector_outcome, container.connector_span)
-    guess = guesser(outcomes)
-    good = [name for name in dict.fromkeys(outcomes)
-            if all(name in outcome_names(child) for child in container.children)
-            and not any(fails(child, name) for child in container.children)]  # fmt: skip
-    known = f"use an outcome of its states: {listed(good or outcomes)}"
-    if len(good) == 1:
-        known = f"write `{good[0]}`, with which each of its states can end"
-    return Finding(
-        span=word.span,
-        message=f"no state of `{container.name}` ends with `{word.text}`, so the sequence never"
-        " continues after its first state",
-        arguments=(word.text,),
-        help=did_you_mean(guess(word.text)) or known,
-        related=calls(container, word.span),
-        node=path,
-        edits=respelt(word, guess.sure(word.text)),
-    )
-
-
-def _before(container: Linear, hidden: frozenset[str]) -> dict[str, list[str]]:
-    """The states that lead to each hidden one, without itself; they are hidden as well."""
-    before: dict[str, list[str]] = {}
-    for edge in edges(container):
-        if edge.target in hidden and edge.source != edge.target:
-            before.setdefault(str(edge.target), []).append(str(edge.source))
-    return before
 
 
 def _copied_target(container: Linear, wanted: str) -> str | None:

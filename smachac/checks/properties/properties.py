@@ -5,14 +5,14 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import children_names, strays, unhandled, unknown_outcomes
 from smachac.analysis.outcome_rules import has_dead_rule
 from smachac.checks.help_text import other_place
 from smachac.checks.properties.event_names import name_fault, own_work, work
-from smachac.checks.properties.property_turns import Turn, turn_of
+from smachac.checks.properties.failed_properties import failures
+from smachac.checks.properties.property_turns import Turn
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, assert_never
@@ -33,7 +33,6 @@ from smachac.ir.properties import (
     in_words,
 )
 from smachac.ir.script_paths import name_in_script, sugared_child, walk_script
-from smachac.ir.traversal import outcome_names
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Counterexample, Judgement, Visit
@@ -102,7 +101,7 @@ def property_fails(context: Context) -> Iterator[Finding]:
     from smachac.analysis.properties import witness
 
     script = shlex.quote(context.machine.root.span.source.name)
-    for number, given, example, shown, turn in _failures(context):
+    for number, given, example, shown, turn in failures(context):
         swapped = _swap_help(context, given)
         longer = _longer_list(context, given, example) if swapped is None else None
         first = swapped or f"{longer[1] if longer else ''}{_cure(given.form, example, turn)}\n"
@@ -122,57 +121,6 @@ def property_fails(context: Context) -> Iterator[Finding]:
             path=witness(example._replace(visits=_shown(context, example))),
             node=example.node or context.machine.root.name,
         )
-
-
-class _Failure(NamedTuple):
-    """A property that fails, with its number in the script from 1, its counterexample with the
-    replay of it, and the transition that leaves the required way."""
-
-    number: int
-    property: Property
-    example: Counterexample
-    shown: Replay
-    turn: Turn | None
-
-
-def _failures(context: Context) -> Iterator[_Failure]:
-    from smachac.interpreter.counterexample import replay
-
-    nodes = dict(context.states)
-    open_ends = _open_ends(context) if context.judgements else frozenset()
-    for number, each in enumerate(context.judgements, 1):
-        example = each.counterexample
-        if example is not None and not _is_open(example, open_ends):
-            shown = replay(context.machine, example.visits, example.again)
-            turn = turn_of(each.property.form, shown, len(example.visits), nodes)
-            yield _Failure(number, each.property, example, shown, turn)
-
-
-def _open_ends(context: Context) -> frozenset[tuple[str, str]]:
-    """The outcomes of states that lead nowhere or may lack their transition (SM101, SM102, SM104),
-    each with the path of the state."""
-    found: set[tuple[str, str]] = set()
-    for path, container in context.linear:
-        names, exits = children_names(container), frozenset(outcome_names(container))
-        for child in container.children:
-            ends = [step.outcome for step in strays([child], names, exits)]
-            ends += [each.name for each in unhandled(child)]
-            if unknown_outcomes(child):  # SM102: a transition of these is probably meant
-                handled = {step.outcome for step in child.transitions if step.origin == "written"}
-                ends += [name for name in outcome_names(child) if name not in handled]
-            found.update((f"{path}/{child.name}", end) for end in ends)
-    return frozenset(found)
-
-
-def _is_open(example: Counterexample, open_ends: frozenset[tuple[str, str]]) -> bool:
-    """Whether a counterexample passes an outcome that leads nowhere: its path is not one of the
-    script that was meant."""
-    if not open_ends:
-        return False
-    if any((visit.path, visit.outcome) in open_ends for visit in example.visits):
-        return True
-    last = example.visits[-1].path if example.visits else ""
-    return any(last.startswith(f"{path}/") for path, _ in open_ends)
 
 
 def _named(given: Property) -> str:
@@ -396,13 +344,6 @@ def _replayed(shown: Replay, number: int, script: str) -> str:
         return f"to replay this path: `smachac explain {script} {option}` prints it as a scenario"
     run = f"smachac run {script} --mock path.yml{turns}"
     return f"to replay this path: write `{text}` into `path.yml`, then `{run}`"
-
-
-def missed_states(context: Context) -> set[str]:
-    """The states, by path, to which a transition must lead because of a property (SM701)."""
-    turns = [each.turn for each in _failures(context)] if context.judgements else []
-    missed = {id(node) for turn in turns if turn is not None for node in turn.missed}
-    return {path for path, node in context.states if id(node) in missed} if missed else set()
 
 
 @rule(

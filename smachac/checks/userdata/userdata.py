@@ -15,8 +15,8 @@ from smachac.analysis.unset_reads import Missing, Searches, Witness, container_n
 from smachac.checks.concurrence.raced_keys import raced_keys
 from smachac.checks.edits import listing, with_input, with_output
 from smachac.checks.help_text import added_remapping, calls, did_you_mean, other_place
+from smachac.checks.outcomes.hidden_states import keys_of_hidden_states
 from smachac.checks.outcomes.misled_failures import Misled, misled_failures
-from smachac.checks.outcomes.reachability import keys_of_hidden_states
 from smachac.checks.ros.message_keys import remapped_fields
 from smachac.checks.rule import rule
 from smachac.checks.userdata.candidate_keys import (
