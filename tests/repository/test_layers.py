@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path, PurePosixPath
 
 import networkx as nx
@@ -120,15 +120,50 @@ def import_circles(tree: Tree) -> list[str]:
 
     Imports inside functions and for types alone count too.
     """
+    return circles(import_pairs(tree))
+
+
+def circles(pairs: Iterable[tuple[str, str]]) -> list[str]:
+    components = nx.strongly_connected_components(nx.DiGraph(pairs))
+    return sorted(" ".join(sorted(names)) for names in components if len(names) > 1)
+
+
+def import_pairs(tree: Tree) -> Iterator[tuple[str, str]]:
+    """Each import of one module of the tree by another one: the importer, the imported."""
     modules = {module_name(path) for path in tree}
-    graph = nx.DiGraph()
     for path, text in tree.items():
         for node in ast.walk(ast.parse(text)):
             for module in imported(node, path, modules):
                 if module in modules and module != module_name(path):
-                    graph.add_edge(module_name(path), module)
-    components = nx.strongly_connected_components(graph)
-    return sorted(" ".join(sorted(each)) for each in components if len(each) > 1)
+                    yield module_name(path), module
+
+
+def rule_imports(tree: Tree) -> list[str]:
+    """Each import of a module with rules by another one: shared code belongs in a module of its
+    subject that has no rules."""
+    rules = {module_name(path) for path, text in tree.items() if has_rule(ast.parse(text))}
+    pairs = {pair for pair in import_pairs(tree) if rules.issuperset(pair)}
+    return sorted(f"{importer} imports {module}" for importer, module in pairs)
+
+
+def has_rule(module: ast.Module) -> bool:
+    """Whether a module has a function with the decorator `@rule(...)`."""
+    return any(
+        isinstance(function, ast.FunctionDef)
+        and any(ast.unparse(decorator).startswith("rule(") for decorator in function.decorator_list)
+        for function in module.body
+    )
+
+
+def folder_circles(tree: Tree) -> list[str]:
+    """The folders of `checks/` that import each other. A module outside the folders counts as one,
+    and so does the list of all rules, `smachac.checks`."""
+    pairs = {
+        (".".join(importer.split(".")[:3]), ".".join(module.split(".")[:3]))
+        for importer, module in import_pairs(tree)
+        if part_of(importer) == part_of(module) == "checks"
+    }
+    return circles(pair for pair in pairs if pair[0] != pair[1])
 
 
 def heavy_faults(tree: Tree) -> Iterator[str]:
@@ -170,6 +205,16 @@ def test_our_imports_keep_the_order_of_the_layers(ours: Tree) -> None:
 @pytest.mark.slow
 def test_our_modules_do_not_import_each_other_in_a_circle(ours: Tree) -> None:
     assert import_circles(ours) == []
+
+
+@pytest.mark.slow
+def test_our_modules_with_rules_do_not_import_each_other(ours: Tree) -> None:
+    assert rule_imports(ours) == []
+
+
+@pytest.mark.slow
+def test_our_folders_of_rules_do_not_import_each_other_in_a_circle(ours: Tree) -> None:
+    assert folder_circles(ours) == []
 
 
 def test_our_modules_load_no_heavy_package_when_imported(ours: Tree) -> None:
@@ -263,6 +308,51 @@ def test_a_package_that_its_own_module_imports_is_a_circle() -> None:
     assert import_circles(tree) == []
     tree["smachac/ir/nodes.py"] = "from smachac import ir"
     assert import_circles(tree) == ["smachac.ir smachac.ir.nodes"]
+
+
+RULE = """
+from smachac.checks.rule import rule
+
+@rule("SM999", "example", Severity.ERROR)
+def example(context): ...
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from smachac.checks.timing.stops import witness",
+        "from .stops import witness",
+        "import smachac.checks.timing.stops",
+        "def f():\n    from smachac.checks.timing import stops",
+    ],
+)
+def test_imports_of_one_module_with_rules_by_another_are_found(text: str) -> None:
+    timeouts = "smachac/checks/timing/timeouts.py"
+    tree = {**example(timeouts, text), "smachac/checks/timing/stops.py": RULE}
+    assert rule_imports(tree) == []
+    tree[timeouts] += RULE
+    expected = "smachac.checks.timing.timeouts imports smachac.checks.timing.stops"
+    assert rule_imports(tree) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "importer"),
+    [
+        ("ros/fields.py", "from smachac.checks.types import places", "smachac.checks.ros"),
+        ("ros/fields.py", "def f():\n    from ..types.places import at", "smachac.checks.ros"),
+        ("edits.py", "import smachac.checks.types.places", "smachac.checks.edits"),
+        ("__init__.py", "from smachac.checks.types import places", "smachac.checks"),
+    ],
+)
+def test_circles_of_folders_are_found(path: str, text: str, importer: str) -> None:
+    """Modules of two folders import each other's folder, and no module is in a circle itself."""
+    tree = {f"smachac/checks/{path}": text, "smachac/checks/types/places.py": ""}
+    assert folder_circles(tree) == []
+    back = module_name(f"smachac/checks/{path}")
+    tree["smachac/checks/types/words.py"] = f"import {back}"
+    assert import_circles(tree) == []
+    assert folder_circles(tree) == [f"{importer} smachac.checks.types"]
 
 
 @pytest.mark.parametrize(

@@ -16,9 +16,8 @@ from smachac.analysis.outcome_rules import (
 )
 from smachac.analysis.possible_outcomes import Judged
 from smachac.checks.concurrence.combinations import written
-from smachac.checks.concurrence.inverted_rules import inverted_rules
+from smachac.checks.concurrence.inverted_rules import inverted_rules, transposed_rules
 from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
-from smachac.checks.outcomes.outcomes import transposed_rules
 from smachac.checks.rule import rule
 from smachac.checks.timing.iterator_stops import turned_renames
 from smachac.checks.timing.watched_branches import missing_joins

@@ -37,3 +37,22 @@ def inverted_rules(container: Concurrence) -> tuple[Inverted, ...]:
         elif all(two in declared for _, two in pairs):
             found.append(Inverted(entry, tuple((two, one) for one, two in pairs)))
     return tuple(found)
+
+
+def transposed_rules(container: Concurrence) -> dict[str, str]:
+    """The rules of an outcome map in which the outcome of the concurrence and that of the states
+    have changed places, by the outcome that they begin with, and how they are written right."""
+    declared = frozenset(outcome_names(container))
+    children = {child.name: outcome_names(child) for child in container.children}
+    found = {}
+    for entry in container.rules:
+        results = {part.outcome for part in entry.when}
+        if entry.outcome in declared or len(results) != 1 or not results <= declared:
+            continue
+        if all(entry.outcome in children.get(part.child, ()) for part in entry.when):
+            states = ", ".join(f"{part.child}: {entry.outcome}" for part in entry.when)
+            found[entry.outcome] = (
+                f"write `{results.pop()}: {{{states}}}`: a rule begins with an"
+                f" outcome of `{container.name}`"
+            )
+    return found

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import Linear, places_of, unhandled, unknown_outcomes
-from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules
+from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules, transposed_rules
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.condition_outcomes import meant_default
 from smachac.checks.outcomes.iterator_endings import MeantEnding, endings, meant_ending
@@ -120,25 +120,6 @@ def _added(container: Container, name: str) -> str:
         return help
     transition = f", and `{name}: {target}` to its transitions"
     return f"{help}{transition if is_failure(target) else ' and to its transitions'}"
-
-
-def transposed_rules(container: Concurrence) -> dict[str, str]:
-    """The rules of an outcome map in which the outcome of the concurrence and that of the states
-    have changed places, by the outcome that they begin with, and how they are written right."""
-    declared = frozenset(outcome_names(container))
-    children = {child.name: outcome_names(child) for child in container.children}
-    found = {}
-    for entry in container.rules:
-        results = {part.outcome for part in entry.when}
-        if entry.outcome in declared or len(results) != 1 or not results <= declared:
-            continue
-        if all(entry.outcome in children.get(part.child, ()) for part in entry.when):
-            states = ", ".join(f"{part.child}: {entry.outcome}" for part in entry.when)
-            found[entry.outcome] = (
-                f"write `{results.pop()}: {{{states}}}`: a rule begins with an"
-                f" outcome of `{container.name}`"
-            )
-    return found
 
 
 def _inverted(path: str, container: Concurrence, inverted: tuple[Inverted, ...]) -> Finding:
