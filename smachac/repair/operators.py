@@ -10,7 +10,7 @@ import difflib
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic
@@ -251,9 +251,9 @@ def _unused_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
         return
     for word in _words_of(item):
         words = words_of(word) if text.counts[word] == 1 else set()
-        for name in text.counts if words and len(text.counts) <= MOST_COMPARED else ():
-            if name == word or words.isdisjoint(words_of(name)):
-                continue
+        names = text.counts if words and len(text.counts) <= MOST_COMPARED else ()
+        alike = (name for name in names if name != word and words & words_of(name))
+        for name in islice(alike, MOST_WORDS):
             for span in _places(name, text.whole):
                 path = _path_to(text.tree, span.start, span.end)
                 keys = [str(part.key.value) for part in path if isinstance(part, Entry)]

@@ -158,10 +158,16 @@ def _led_places(twice: LedTwice | None) -> tuple[Related, ...]:
     )
 
 
+MOST_SEARCHED = 200
+"""In a container of more states no copied target is searched: each finding looks at all states."""
+
+
 def _copied_target(container: Linear, wanted: str) -> str | None:
     """The help that leads to a name to which nothing leads, if one state of the container leads two
     of its outcomes to one state: one of the two targets may be a copy. It is that of the success if
     only failures of other states lead there, that of the failure if the name is one."""
+    if len(container.children) > MOST_SEARCHED:
+        return None
     names = {child.name for child in container.children}
     found: list[tuple[Node, str, list[str]]] = []
     leading: dict[str, list[bool]] = {}
