@@ -467,3 +467,12 @@ def unhandled(child: Node) -> list[Outcome]:
         return []
     handled.update(meant for _, meant in unknown if meant)
     return [outcome for outcome in child.outcomes if outcome.name not in handled]
+
+
+Unhandled: TypeAlias = "Sequence[tuple[Node, Sequence[Outcome]]]"
+"""The states of a container that have outcomes without a transition, with these."""
+
+
+def unhandled_in(container: Linear) -> Unhandled:
+    """The states of a container that have outcomes without a transition."""
+    return tuple([(child, left) for child in container.children if (left := unhandled(child))])

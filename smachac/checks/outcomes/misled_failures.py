@@ -7,10 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, children_names
+from smachac.analysis.control_flow import Linear, children_names, unhandled_in
 from smachac.analysis.fixpoint import flow_order, may_be_unset
 from smachac.analysis.unset_reads import Missing
-from smachac.checks.outcomes.outcomes import unhandled_in
 from smachac.ir.graph import Vertex
 from smachac.ir.nodes import Leaf, Outcome, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails

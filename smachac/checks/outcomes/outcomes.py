@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypeAlias
+from collections.abc import Iterable, Iterator, Mapping
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, places_of, unhandled, unknown_outcomes
+from smachac.analysis.control_flow import (
+    Linear,
+    Unhandled,
+    places_of,
+    unhandled_in,
+    unknown_outcomes,
+)
 from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules, transposed_rules
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.condition_outcomes import meant_default
@@ -355,15 +360,6 @@ def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
         ),
         node=f"{path}/{name}",
     )
-
-
-Unhandled: TypeAlias = "Sequence[tuple[Node, Sequence[Outcome]]]"
-"""The states of a container that have outcomes without a transition, with these."""
-
-
-def unhandled_in(container: Linear) -> Unhandled:
-    """The states of a container that have outcomes without a transition."""
-    return tuple([(child, left) for child in container.children if (left := unhandled(child))])
 
 
 def _field_that_adds(node: Node, outcome: str) -> str:
