@@ -11,7 +11,6 @@ from smachac.diagnostics.source import Source
 from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import EXHAUSTED, TIMEOUT
 from smachac.frontend.schema import CONTAINERS
-from smachac.frontend.text.yaml_tree import Map, Scalar
 from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import StateType
 from smachac.lsp.place import Body, top_bodies
@@ -139,15 +138,3 @@ class Facts:
         """The names of the variables of a state's type."""
         type_ = self.type_named(body.template)
         return list(type_.variables) if type_ is not None else []
-
-
-def mapping_names(body: Body, field: str, key: str) -> list[str]:
-    """The keys of a mapping inside a field that is a mapping."""
-    entry = body.fields.get(field)
-    inner = entry.value.get(key) if entry is not None and isinstance(entry.value, Map) else None
-    value = inner.value if inner is not None else None
-    return [str(each.key.value) for each in value.entries] if isinstance(value, Map) else []
-
-
-def is_empty(word: Scalar) -> bool:
-    return word.value is None

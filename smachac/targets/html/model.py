@@ -228,11 +228,6 @@ def _file(name: str) -> str:
     return PurePath(name.replace("\\", "/")).name
 
 
-def _place_data(span: Span) -> dict[str, Any]:
-    file, line = place_in_script(span)
-    return {"file": file, "line": line}
-
-
 def place_in_script(span: Span) -> tuple[str | None, int | None]:
     """The file of a span, without its folder, and its line, from 1."""
     if span.source is NOWHERE.source:
