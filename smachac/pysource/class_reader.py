@@ -233,6 +233,14 @@ def read_module(word: Word, library: UserCode) -> ClassFacts | None:
         return None
 
 
+def facts_of(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts | None:
+    """The facts about a class of a module; None if it cannot be read."""
+    try:
+        return _facts(module, node, library)
+    except (RecursionError, MemoryError, ValueError):
+        return None
+
+
 def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
     """A fault at the name of the class in the interface."""
     at = word.span.text.rfind(fault.name.text)

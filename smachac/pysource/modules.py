@@ -313,6 +313,11 @@ def _syntax_help(message: str) -> str:
     return ""
 
 
+def module_of(text: PythonText, name: str, *, package: bool) -> Module:
+    """The module in a text that is parsed already."""
+    return _module(text, name, package=package)
+
+
 def file_of(module: Module) -> str:
     """The file of a module, below a folder with code."""
     path = module.name.replace(".", "/")

@@ -1,0 +1,546 @@
+"""The built-in functions of Python that the partial evaluator models, and the methods of texts and
+collections."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from smachac.diagnostics.source import Span
+from smachac.pysource.machines.values import (
+    NONE,
+    UNKNOWN,
+    Arguments,
+    Class,
+    Const,
+    DictValue,
+    Function,
+    Instance,
+    Interpreter,
+    LibraryClass,
+    ListValue,
+    Method,
+    Native,
+    OneOf,
+    TupleValue,
+    Unknown,
+    Value,
+    alternatives,
+    one_of,
+    sequence,
+    truth,
+)
+
+_LONGEST, _MOST = 100_000, 10_000
+
+_PURE = ("rospy", "rclpy", "logging", "time", "tf", "tf2_ros", "math", "os", "sys", "json", "re")
+"""Packages whose functions do not change lists and dictionaries that they get."""
+
+
+def is_pure(reason: str) -> bool:
+    """Whether an unknown value belongs to a package whose functions change no argument."""
+    return reason.partition(".")[0] in _PURE
+
+
+def _items_of(value: Value | None) -> tuple[Value, ...] | None:
+    return sequence(value)
+
+
+def _range(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    bounds = [value.value for value in arguments.positional if isinstance(value, Const)]
+    if len(bounds) != len(arguments.positional) or not all(isinstance(b, int) for b in bounds):
+        return UNKNOWN
+    try:
+        found = range(*bounds)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return UNKNOWN
+    return UNKNOWN if len(found) > _MOST else TupleValue(tuple(Const(n) for n in found))
+
+
+def _made(kind: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        items = sequence(arguments.positional[0]) if arguments.positional else ()
+        if items is None or arguments.open:
+            return UNKNOWN if kind == "tuple" else ListValue({"items": UNKNOWN}, span, kind)
+        if kind == "tuple":
+            return TupleValue(items, span)
+        if kind == "set":
+            items = tuple(dict.fromkeys(items))
+        return ListValue({"items": items}, span, kind)
+
+    return run
+
+
+def _dict(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    made = DictValue({"items": {}}, span)
+    for value in arguments.positional[:1]:
+        if isinstance(value, DictValue):
+            evaluator.update(made, value)
+            continue
+        pairs: dict[Any, tuple[Value, Value]] | None = {}
+        for item in sequence(value) or ():
+            both = sequence(item)
+            if both is None or len(both) != 2 or not isinstance(both[0], Const) or pairs is None:
+                pairs = None
+            else:
+                pairs[both[0].value] = both[0], both[1]
+        known = pairs is not None and sequence(value) is not None
+        evaluator.heap.set(made.slots, "items", pairs if known else UNKNOWN)
+    named = {name: (Const(name, span), value) for name, value in arguments.named}
+    if named:
+        evaluator.update(made, DictValue({"items": named}))
+    if arguments.open:
+        evaluator.heap.set(made.slots, "items", UNKNOWN)
+    return made
+
+
+def _enumerate(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    items = _items_of(arguments.get(0, "iterable"))
+    start = arguments.get(1, "start", Const(0))
+    if items is None or not isinstance(start, Const) or not isinstance(start.value, int):
+        return UNKNOWN
+    first = start.value
+    return TupleValue(tuple(TupleValue((Const(first + i), item)) for i, item in enumerate(items)))
+
+
+def _zip(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    rows = [sequence(value) for value in arguments.positional]
+    if arguments.open or any(row is None for row in rows):
+        return UNKNOWN
+    known = [row for row in rows if row is not None]
+    return TupleValue(tuple(TupleValue(items) for items in zip(*known, strict=False)))
+
+
+def _len(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    items = _items_of(arguments.get(0, "obj"))
+    return UNKNOWN if items is None else Const(len(items))
+
+
+def _text(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    if not arguments.positional:
+        return Const("", span)
+    return one_of(
+        Const(str(value.value), value.span or span) if isinstance(value, Const) else UNKNOWN
+        for value in alternatives(arguments.positional[0])
+    )
+
+
+def _number(make: Callable[[Any], Any]) -> Callable[[Interpreter, Arguments, Span | None], Value]:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        value = arguments.get(0, "x")
+        if not isinstance(value, Const) or len(str(value.value)) > 300:
+            return UNKNOWN
+        try:
+            return Const(make(value.value), span)
+        except (TypeError, ValueError, OverflowError):
+            return UNKNOWN
+
+    return run
+
+
+def _bool(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    known = truth(arguments.positional[0]) if arguments.positional else False
+    return UNKNOWN if known is None else Const(known)
+
+
+def _sorted(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    items = _items_of(arguments.get(0, "iterable"))
+    if items is None or arguments.named or not all(isinstance(item, Const) for item in items):
+        return UNKNOWN
+    try:
+        ordered = sorted(items, key=lambda item: item.value)  # type: ignore[union-attr]
+    except TypeError:
+        return UNKNOWN
+    return evaluator.new_list(ordered)
+
+
+def _reversed(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    items = _items_of(arguments.get(0, "sequence"))
+    return UNKNOWN if items is None else TupleValue(items[::-1])
+
+
+def _getattr(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    import ast
+
+    owner, name = arguments.get(0, "object"), arguments.get(1, "name")
+    if owner is None or not isinstance(name, Const) or not isinstance(name.value, str):
+        return UNKNOWN
+    if isinstance(owner, Instance | Class | LibraryClass):
+        found = evaluator.attribute(owner, name.value, ast.Name("x", ast.Load()), _no_frame())
+        if isinstance(found, Unknown) and len(arguments.positional) > 2:
+            return UNKNOWN
+        return found
+    return UNKNOWN
+
+
+def _no_frame() -> Any:
+    from smachac.pysource.machines.values import Frame, ModuleValue
+
+    return Frame({}, ModuleValue("", {}))
+
+
+def _setattr(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    owner, name = arguments.get(0, "object"), arguments.get(1, "name")
+    value = arguments.get(2, "value", UNKNOWN)
+    if owner is not None and isinstance(name, Const) and isinstance(name.value, str):
+        evaluator.set_attribute(owner, name.value, value or UNKNOWN)
+    return NONE
+
+
+def _isinstance(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    value, kinds = arguments.get(0, "obj"), arguments.get(1, "cls")
+    wanted = kinds.items if isinstance(kinds, TupleValue) else (kinds,)
+    names = [kind.short for kind in wanted if isinstance(kind, LibraryClass)]
+    if len(names) != len(wanted):
+        if isinstance(value, Instance) and all(isinstance(k, Class | LibraryClass) for k in wanted):
+            order = evaluator.classes(value.cls)
+            if any(isinstance(base, Unknown | OneOf) for base in order):
+                return UNKNOWN
+            return Const(any(base is k or base == k for base in order for k in wanted))
+        return UNKNOWN
+    match value:
+        case Const(value=known):
+            return Const(any(type(known).__name__ == name for name in names))
+        case ListValue():
+            return Const(value.kind in names)
+        case TupleValue():
+            return Const("tuple" in names)
+        case DictValue():
+            return Const("dict" in names)
+    return UNKNOWN
+
+
+def _map(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    if len(arguments.positional) != 2:
+        return UNKNOWN
+    items = sequence(arguments.positional[1])
+    if items is None:
+        return UNKNOWN
+    frame = _no_frame()
+    return evaluator.new_list(
+        [evaluator.call(arguments.positional[0], Arguments((item,)), None, frame) for item in items]
+    )
+
+
+def _nothing(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    return NONE
+
+
+def _unknown(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    return UNKNOWN
+
+
+def native(name: str, run: Callable[[Interpreter, Arguments, Span | None], Value]) -> Native:
+    return Native(name, run)
+
+
+BUILTINS: Mapping[str, Value] = {
+    **{name: native(name, run) for name, run in {
+        "range": _range, "xrange": _range, "enumerate": _enumerate, "zip": _zip, "len": _len,
+        "sorted": _sorted, "reversed": _reversed, "getattr": _getattr, "setattr": _setattr,
+        "isinstance": _isinstance, "map": _map, "print": _nothing, "iter": lambda e, a, s: (
+            a.positional[0] if a.positional else UNKNOWN),
+        "abs": _unknown, "min": _unknown, "max": _unknown, "sum": _unknown, "input": _unknown,
+        "repr": _unknown, "format": _unknown, "hasattr": _unknown, "any": _unknown, "all": _unknown,
+        "id": _unknown, "hash": _unknown, "type": _unknown, "open": _unknown, "next": _unknown,
+        "callable": _unknown, "issubclass": _unknown, "round": _unknown, "vars": _unknown,
+        "exit": _nothing, "quit": _nothing,
+    }.items()},
+    **{name: LibraryClass(f"builtins.{name}") for name in (
+        "list", "tuple", "set", "frozenset", "dict", "str", "int", "float", "bool", "object",
+        "Exception", "ValueError", "RuntimeError", "KeyError", "TypeError", "unicode",
+    )},
+}  # fmt: skip
+"""The built-in names by name. Those of which nothing is known change none of their arguments."""
+
+MAKERS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Value]] = {
+    "builtins.list": _made("list"),
+    "builtins.tuple": _made("tuple"),
+    "builtins.set": _made("set"),
+    "builtins.frozenset": _made("set"),
+    "builtins.dict": _dict,
+    "builtins.str": _text,
+    "builtins.unicode": _text,
+    "builtins.int": _number(int),
+    "builtins.float": _number(float),
+    "builtins.bool": _bool,
+    "collections.OrderedDict": _dict,
+    "collections.defaultdict": lambda e, a, s: DictValue({"items": UNKNOWN}),
+    "collections.deque": _made("list"),
+}
+"""What a call of a class of Python makes."""
+
+
+_TEXT_METHODS = frozenset(
+    [
+        "upper",
+        "lower",
+        "title",
+        "capitalize",
+        "strip",
+        "lstrip",
+        "rstrip",
+        "replace",
+        "split",
+        "rsplit",
+        "partition",
+        "rpartition",
+        "startswith",
+        "endswith",
+        "join",
+        "format",
+        "removeprefix",
+        "removesuffix",
+        "swapcase",
+        "zfill",
+        "isdigit",
+        "isupper",
+        "islower",
+        "splitlines",
+        "count",
+        "find",
+        "index",
+        "casefold",
+        "isalpha",
+    ]
+)
+
+
+def attribute_of_value(evaluator: Interpreter, owner: Value, name: str) -> Value:
+    """A method of a text or a collection."""
+    match owner:
+        case Const(value=str()) if name in _TEXT_METHODS:
+            return Method(Native(f"str.{name}", _text_method(name)), owner)
+        case ListValue() if name in _LIST_METHODS:
+            return Method(Native(f"list.{name}", _LIST_METHODS[name]), owner)
+        case DictValue():
+            if owner.slots.get("$userdata") and name not in _DICT_METHODS:
+                return evaluator.item(owner, Const(name))
+            if name in _DICT_METHODS:
+                return Method(Native(f"dict.{name}", _DICT_METHODS[name]), owner)
+        case Function() if name == "__name__":
+            return Const(owner.name)
+    return UNKNOWN
+
+
+def _plain(value: Value) -> Any:
+    """The data of a known value. Raises ValueError."""
+    match value:
+        case Const(value=known):
+            return known
+        case TupleValue() | ListValue():
+            items = sequence(value)
+            if items is not None:
+                return [_plain(item) for item in items]
+    raise ValueError
+
+
+def _as_value(data: Any, span: Span | None) -> Value:
+    if isinstance(data, tuple):
+        return TupleValue(tuple(_as_value(item, span) for item in data))
+    if isinstance(data, list):
+        return ListValue({"items": tuple(_as_value(item, span) for item in data)}, span)
+    return Const(data, span)
+
+
+def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.positional[0]
+        try:
+            given = [_plain(value) for value in arguments.positional[1:]]
+            named = {key: _plain(value) for key, value in arguments.named}
+            if arguments.open or not isinstance(me, Const) or _is_long(me.value, given, named):
+                return UNKNOWN
+            found = getattr(str(me.value), name)(*given, **named)
+        except (ValueError, TypeError, LookupError, AttributeError):
+            return UNKNOWN
+        if isinstance(found, str) and len(found) > _LONGEST:
+            return UNKNOWN
+        return _as_value(found, span or me.span)
+
+    return run
+
+
+def _is_long(text: object, given: list[Any], named: Mapping[str, Any]) -> bool:
+    """Whether the result of a method can be a long text: `format` can have a width."""
+    import re
+
+    texts = [text, *given, *named.values()]
+    sizes = sum(len(str(part)) for part in texts)
+    wide = re.search(r"\{[^}]*:[^}]*\d{3}", str(text))
+    numbers = any(isinstance(part, int) and abs(part) > 1_000 for part in given)
+    return sizes > 10_000 or bool(wide) or numbers
+
+
+def _changed(run: Callable[[list[Value], Arguments], Any]) -> Any:
+    """A method that changes a list: `run` changes a copy of its items, and returns the result."""
+
+    def method(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.positional[0]
+        assert isinstance(me, ListValue)
+        items = me.items
+        if not isinstance(items, tuple) or arguments.open:
+            evaluator.heap.set(me.slots, "items", UNKNOWN)
+            return UNKNOWN
+        copy = [*items]
+        try:
+            found = run(copy, arguments.without_first())
+        except (ValueError, IndexError, TypeError):
+            evaluator.heap.set(me.slots, "items", UNKNOWN)
+            return UNKNOWN
+        evaluator.heap.set(me.slots, "items", tuple(copy) if len(copy) <= _MOST else UNKNOWN)
+        return found if found is not None else NONE
+
+    return method
+
+
+def _index(value: Value | None) -> int:
+    if not isinstance(value, Const) or not isinstance(value.value, int):
+        raise ValueError
+    return value.value
+
+
+def _append(items: list[Value], arguments: Arguments) -> None:
+    items.append(arguments.positional[0])
+
+
+def _add(items: list[Value], arguments: Arguments) -> None:
+    if arguments.positional[0] not in items:
+        items.append(arguments.positional[0])
+
+
+def _extend(items: list[Value], arguments: Arguments) -> None:
+    more = sequence(arguments.positional[0])
+    if more is None:
+        raise ValueError
+    items.extend(more)
+
+
+def _pop(items: list[Value], arguments: Arguments) -> Value:
+    return items.pop(_index(arguments.get(0, "index", Const(-1))))
+
+
+def _known_index(items: list[Value], value: Value) -> int:
+    if not isinstance(value, Const) or not all(isinstance(item, Const) for item in items):
+        raise ValueError
+    return items.index(value)
+
+
+def _copy(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.positional[0]
+    if isinstance(me, ListValue):
+        return ListValue({"items": me.items}, me.span, me.kind)
+    return DictValue({"items": me.items}, me.span) if isinstance(me, DictValue) else UNKNOWN
+
+
+_LIST_METHODS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Value]] = {
+    "append": _changed(_append),
+    "add": _changed(_add),
+    "extend": _changed(_extend),
+    "update": _changed(_extend),
+    "insert": _changed(lambda i, a: i.insert(_index(a.positional[0]), a.positional[1])),
+    "remove": _changed(lambda i, a: i.__delitem__(_known_index(i, a.positional[0]))),
+    "pop": _changed(_pop),
+    "clear": _changed(lambda i, a: i.clear()),
+    "reverse": _changed(lambda i, a: i.reverse()),
+    "sort": lambda e, a, s: _sort(e, a),
+    "copy": _copy,
+    "index": lambda e, a, s: UNKNOWN,
+    "count": lambda e, a, s: UNKNOWN,
+    "union": lambda e, a, s: UNKNOWN,
+    "difference": lambda e, a, s: UNKNOWN,
+    "intersection": lambda e, a, s: UNKNOWN,
+}
+
+
+def _sort(evaluator: Interpreter, arguments: Arguments) -> Value:
+    me = arguments.positional[0]
+    found = _sorted(evaluator, arguments, None)
+    if isinstance(me, ListValue):
+        items = sequence(found)
+        evaluator.heap.set(me.slots, "items", UNKNOWN if items is None else items)
+    return NONE
+
+
+def _pairs(arguments: Arguments) -> Mapping[Any, tuple[Value, Value]] | None:
+    me = arguments.positional[0]
+    items = me.items if isinstance(me, DictValue) else None
+    return items if isinstance(items, Mapping) else None
+
+
+def _get(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    pairs, key = _pairs(arguments), arguments.get(1, "key")
+    if pairs is None or not isinstance(key, Const):
+        return UNKNOWN
+    if key.value in pairs:
+        return pairs[key.value][1]
+    return arguments.get(2, "default", NONE) or NONE
+
+
+def _set_default(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    pairs, key = _pairs(arguments), arguments.get(1, "key")
+    me, value = arguments.positional[0], arguments.get(2, "default", NONE) or NONE
+    if pairs is not None and isinstance(key, Const) and isinstance(me, DictValue):
+        if key.value in pairs:
+            return pairs[key.value][1]
+        evaluator.heap.set(me.slots, "items", {**pairs, key.value: (key, value)})
+        return value
+    if isinstance(me, DictValue):
+        evaluator.heap.set(me.slots, "items", UNKNOWN)
+    return UNKNOWN
+
+
+def _update(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.positional[0]
+    if isinstance(me, DictValue):
+        evaluator.update(me, _dict(evaluator, arguments.without_first(), span))
+    return NONE
+
+
+def _pop_key(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    pairs, key = _pairs(arguments), arguments.get(1, "key")
+    me = arguments.positional[0]
+    if pairs is None or not isinstance(key, Const) or not isinstance(me, DictValue):
+        if isinstance(me, DictValue):
+            evaluator.heap.set(me.slots, "items", UNKNOWN)
+        return UNKNOWN
+    rest = {k: v for k, v in pairs.items() if k != key.value}
+    evaluator.heap.set(me.slots, "items", rest)
+    return (
+        pairs[key.value][1]
+        if key.value in pairs
+        else arguments.get(2, "default", UNKNOWN) or UNKNOWN
+    )
+
+
+def _parts(which: int | None) -> Callable[[Interpreter, Arguments, Span | None], Value]:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        pairs = _pairs(arguments)
+        if pairs is None:
+            return UNKNOWN
+        if which is None:
+            return TupleValue(tuple(TupleValue(pair) for pair in pairs.values()))
+        return TupleValue(tuple(pair[which] for pair in pairs.values()))
+
+    return run
+
+
+_DICT_METHODS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Value]] = {
+    "get": _get,
+    "setdefault": _set_default,
+    "update": _update,
+    "pop": _pop_key,
+    "keys": _parts(0),
+    "values": _parts(1),
+    "items": _parts(None),
+    "iteritems": _parts(None),
+    "copy": _copy,
+    "clear": lambda e, a, s: _clear(e, a),
+}
+
+
+def _clear(evaluator: Interpreter, arguments: Arguments) -> Value:
+    me = arguments.positional[0]
+    if isinstance(me, DictValue):
+        evaluator.heap.set(me.slots, "items", {})
+    return NONE

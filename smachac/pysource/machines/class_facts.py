@@ -1,0 +1,47 @@
+"""The facts about state classes of a repository: what `execute` returns, reads and writes."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+
+from smachac.diagnostics.source import Source
+from smachac.ir.class_facts import ClassFacts
+from smachac.pysource.class_reader import facts_of
+from smachac.pysource.machines.project import Repository
+from smachac.pysource.machines.values import Class, ModuleValue
+from smachac.pysource.modules import Module, module_of
+from smachac.pysource.user_code import UserCode
+
+
+class ClassReader:
+    """Reads classes of a repository, each once."""
+
+    def __init__(self, repository: Repository) -> None:
+        self.repository = repository
+        self.library = UserCode(template=lambda file: None, code=self._code)
+        self.modules: dict[str, Module] = {}
+        self.facts: dict[int, tuple[Class, ClassFacts | None]] = {}
+
+    def __call__(self, cls: Class) -> ClassFacts | None:
+        known = self.facts.get(id(cls.node))
+        if known is None:
+            module = self._module(cls.frame.module)
+            facts = facts_of(module, cls.node, self.library) if module is not None else None
+            known = self.facts[id(cls.node)] = cls, facts
+        return known[1]
+
+    def _module(self, value: ModuleValue) -> Module | None:
+        if value.text is None:
+            return None
+        if value.file not in self.modules:
+            path = PurePath(value.file)
+            package = path.name == "__init__.py"
+            name = ".".join(path.parent.parts if package else (*path.parent.parts, path.stem))
+            self.modules[value.file] = module_of(value.text, name, package=package)
+        return self.modules[value.file]
+
+    def _code(self, file: str) -> Source | None:
+        """A module by a path such as `my_robot/states.py`."""
+        stem = PurePath(file).with_suffix("")
+        found = self.repository.file_of(".".join(stem.parts), ModuleValue("", {}, file=file))
+        return self.repository.read(found) if found is not None else None

@@ -1,0 +1,1340 @@
+"""Partial evaluation of Python: statements and expressions over known and unknown values.
+
+Nothing of the project is run. At an unknown condition both branches are evaluated, each on the same
+state, and the states are joined. `try` is such a condition: its handlers may run after its body.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, Protocol
+
+from smachac.diagnostics.source import Span
+from smachac.pysource.machines.builtins import BUILTINS, attribute_of_value, is_pure
+from smachac.pysource.machines.heap import Changes, Children, Heap
+from smachac.pysource.machines.values import (
+    NONE,
+    UNKNOWN,
+    Arguments,
+    Class,
+    Const,
+    DictValue,
+    Frame,
+    Function,
+    Instance,
+    LibraryClass,
+    ListValue,
+    Method,
+    ModuleValue,
+    Native,
+    OneOf,
+    Partial,
+    Slots,
+    Super,
+    TupleValue,
+    Unknown,
+    UseFault,
+    Value,
+    alternatives,
+    one_of,
+    sequence,
+    truth,
+)
+from smachac.records import dataclass, field
+
+MOST_STEPS = 400_000
+"""The most statements and expressions that are evaluated for one file."""
+DEEPEST_CALL, MOST_RECURSIVE = 60, 4
+"""The most calls inside one another, and of one function."""
+LONGEST_TEXT, MOST_ITEMS = 100_000, 10_000
+"""The longest text, in characters, and the most items of a collection."""
+
+Completion = tuple[Literal["return", "break", "continue", "raise"], Value]
+"""The end of a block other than after its last statement."""
+
+
+class BudgetError(Exception):
+    """The evaluation takes too long: what is known then is incomplete."""
+
+
+class Project(Protocol):
+    """The modules of the project and of the libraries that the evaluator models."""
+
+    def load(self, evaluator: Evaluator, name: str, user: ModuleValue) -> Value: ...
+    def method_of(self, cls: str, name: str) -> Native | None: ...
+    def new_object(
+        self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments
+    ) -> Value: ...
+
+
+@dataclass(slots=True)
+class _Region:
+    """A function, a loop, or a turn of a loop: the state at its start, and the states in which
+    unknown conditions may have left it, each with the value."""
+
+    kind: str
+    mark: int
+    left: list[tuple[Value, Changes]] = field(default_factory=list)
+
+
+class Evaluator:
+    """Evaluates modules, functions and classes; `made` are the objects of SMACH's classes in the
+    order in which they were made, `called` the functions that were called."""
+
+    def __init__(self, project: Project) -> None:
+        self.project = project
+        self.heap = Heap()
+        self.steps = 0
+        self.calls: list[Function] = []
+        self.regions: list[_Region] = []
+        self.made: list[Instance] = []
+        self.called: set[ast.AST] = set()
+        self.opened: list[Value] = []
+        self.unsure = 0
+        self.orphans = 0
+        self.faults: list[UseFault] = []
+
+    # --- statements
+
+    def block(self, body: Sequence[ast.stmt], frame: Frame) -> Completion | None:
+        for statement in body:
+            end = self.statement(statement, frame)
+            if end is not None:
+                return end
+        return None
+
+    def statement(self, node: ast.stmt, frame: Frame) -> Completion | None:
+        self._step()
+        match node:
+            case ast.Expr(value=value):
+                self.value(value, frame)
+            case ast.Assign(targets=targets, value=value):
+                found = self.value(value, frame)
+                for target in targets:
+                    self.assign(target, found, frame)
+            case ast.AnnAssign(target=target, value=value):
+                if value is not None:
+                    self.assign(target, self.value(value, frame), frame)
+            case ast.AugAssign(target=target, op=op, value=value):
+                self._augment(target, op, self.value(value, frame), frame, node)
+            case ast.If(test=test, body=body, orelse=orelse):
+                return self._branch(test, body, orelse, frame)
+            case ast.For(target=target, iter=items, body=body, orelse=orelse):
+                return self._for(target, self.value(items, frame), body, orelse, frame)
+            case ast.While(test=test, body=body, orelse=orelse):
+                return self._while(test, body, orelse, frame)
+            case ast.With(items=items, body=body):
+                return self._with(items, body, frame)
+            case ast.Try() | ast.TryStar():
+                return self._try(node, frame)
+            case ast.Return(value=value):
+                return "return", NONE if value is None else self.value(value, frame)
+            case ast.Break():
+                return "break", NONE
+            case ast.Continue():
+                return "continue", NONE
+            case ast.Raise(exc=exc):
+                if exc is not None:
+                    self.value(exc, frame)
+                return "raise", NONE
+            case ast.FunctionDef() | ast.AsyncFunctionDef():
+                self.bind(node.name, self._function(node, frame), frame)
+            case ast.ClassDef():
+                self.bind(node.name, self._class(node, frame), frame)
+            case ast.Import(names=names):
+                self._import(names, frame)
+            case ast.ImportFrom():
+                self._import_from(node, frame)
+            case ast.Global(names=names):
+                frame.global_names |= frozenset(names)
+            case ast.Delete(targets=targets):
+                for target in targets:
+                    self._delete(target, frame)
+            case ast.Match(subject=subject, cases=cases):
+                return self._match(self.value(subject, frame), cases, frame)
+            case _:
+                pass
+        return None
+
+    def _step(self) -> None:
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise BudgetError
+
+    def _branch(
+        self, test: ast.expr, body: Sequence[ast.stmt], orelse: Sequence[ast.stmt], frame: Frame
+    ) -> Completion | None:
+        known = truth(self.value(test, frame))
+        if known is not None:
+            return self.block(body if known else orelse, frame)
+        return self.choice([lambda: self.block(body, frame), lambda: self.block(orelse, frame)])
+
+    def choice(self, branches: Sequence[Callable[[], Completion | None]]) -> Completion | None:
+        """Evaluates branches of which one is taken, and joins the states after them."""
+        mark = self.heap.mark()
+        states: list[Changes] = []
+        last: Completion | None = None
+        self.unsure += 1
+        for branch in branches:
+            end = branch()
+            if end is not None:
+                self._leave(end)
+                last = end
+                self.heap.undo(mark)
+            else:
+                states.append(self.heap.undo(mark))
+        self.unsure -= 1
+        if states:
+            self.heap.join(states)
+            return None
+        return ("raise", NONE) if last is None or last[0] == "raise" else _left(last)
+
+    def _leave(self, end: Completion) -> None:
+        """Notes the state in which an unknown condition may leave a function or a loop."""
+        kinds = {"return": "call", "break": "loop", "continue": "turn"}
+        for region in reversed(self.regions):
+            if region.kind == kinds.get(end[0]):
+                region.left.append((end[1], self.heap.changes(region.mark)))
+                return
+            if region.kind == "call":
+                return
+
+    def _region(self, kind: str, run: Callable[[], Completion | None]) -> Completion | None:
+        """Runs a part of code, and joins its end with the states in which it was left."""
+        region = _Region(kind, self.heap.mark())
+        self.regions.append(region)
+        try:
+            end = run()
+        finally:
+            self.regions.pop()
+        kinds = {"call": "return", "loop": "break", "turn": "continue"}
+        own = end is not None and end[0] == kinds[kind]
+        if not region.left:
+            return end
+        values = [value for value, _ in region.left]
+        states = [state for _, state in region.left]
+        if end is not None and not own and end[1] is not LEFT:
+            self._leave(end)
+        now = self.heap.undo(region.mark)
+        reaches = end is None or (own and end[1] is not LEFT)
+        if reaches:
+            states.append(now)
+            values.append(end[1] if end is not None else NONE)
+        self.heap.join(states)
+        return ("return", one_of(values)) if kind == "call" else None
+
+    def _for(
+        self,
+        target: ast.expr,
+        items: Value,
+        body: Sequence[ast.stmt],
+        orelse: Sequence[ast.stmt],
+        frame: Frame,
+    ) -> Completion | None:
+        known = sequence(items)
+        if known is None or len(known) > MOST_ITEMS:
+            return self._unknown_loop(
+                lambda: self.assign(target, UNKNOWN, frame), body, orelse, frame
+            )
+
+        def loop() -> Completion | None:
+            for item in known:
+                self.assign(target, item, frame)
+                end = self._region("turn", lambda: self.block(body, frame))
+                if end is not None and end[0] != "continue":
+                    return end
+            return self.block(orelse, frame)
+
+        end = self._region("loop", loop)
+        return None if end is not None and end[0] == "break" else end
+
+    def _while(
+        self, test: ast.expr, body: Sequence[ast.stmt], orelse: Sequence[ast.stmt], frame: Frame
+    ) -> Completion | None:
+        turns = 0
+
+        def loop() -> Completion | None:
+            nonlocal turns
+            while True:
+                known = truth(self.value(test, frame))
+                if known is None or turns > 1_000:
+                    return self._unknown_loop(lambda: None, body, orelse, frame)
+                if not known:
+                    return self.block(orelse, frame)
+                turns += 1
+                end = self._region("turn", lambda: self.block(body, frame))
+                if end is not None and end[0] != "continue":
+                    return end
+
+        end = self._region("loop", loop)
+        return None if end is not None and end[0] == "break" else end
+
+    def _unknown_loop(
+        self,
+        begin: Callable[[], None],
+        body: Sequence[ast.stmt],
+        orelse: Sequence[ast.stmt],
+        frame: Frame,
+    ) -> Completion | None:
+        """A loop with an unknown number of turns: what a turn changes is not known in the next."""
+
+        def turn() -> Completion | None:
+            begin()
+            return self._region("turn", lambda: self.block(body, frame))
+
+        mark = self.heap.mark()
+        made, faults = len(self.made), len(self.faults)
+        left = [len(region.left) for region in self.regions]
+        self._region("loop", turn)
+        changed = self.heap.undo(mark)
+        del self.made[made:], self.faults[faults:]
+        for region, count in zip(self.regions, left, strict=True):
+            del region.left[count:]
+        for slots, key, value in changed.values():
+            if key in slots and not _grows(slots[key]) and not _grows(value):
+                self.heap.set(slots, key, UNKNOWN)
+
+        def some() -> Completion | None:
+            end = self._region("loop", turn)
+            return end if end is not None and end[0] in ("return", "raise") else None
+
+        return self.choice([some, lambda: None]) or self.block(orelse, frame)
+
+    def _with(
+        self, items: Sequence[ast.withitem], body: Sequence[ast.stmt], frame: Frame
+    ) -> Completion | None:
+        opened = 0
+        for item in items:
+            found = self.value(item.context_expr, frame)
+            container = self._opens(found)
+            if container is not None:
+                self.opened.append(container)
+                opened += 1
+            if item.optional_vars is not None:
+                bound = found if container is not None else UNKNOWN
+                self.assign(item.optional_vars, bound, frame)
+        end = self.block(body, frame)
+        if opened:
+            del self.opened[-opened:]
+        return end
+
+    def _opens(self, value: Value) -> Value | None:
+        """The container that `with` opens; None for anything else, UNKNOWN if it can be one."""
+        if isinstance(value, Instance) and "$children" in value.slots:
+            return value
+        return UNKNOWN if isinstance(value, OneOf) else None
+
+    def _try(self, node: ast.Try | ast.TryStar, frame: Frame) -> Completion | None:
+        raised = False
+
+        def whole() -> Completion | None:
+            nonlocal raised
+            end = self.block(node.body, frame)
+            raised = end is not None and end[0] == "raise"
+            return end or self.block(node.orelse, frame)
+
+        if not node.handlers:
+            return whole() or self.block(node.finalbody, frame)
+        mark = self.heap.mark()
+        end = whole()
+        if end is not None and not raised:
+            self.block(node.finalbody, frame)
+            return end
+        states: list[Changes] = []
+        ends: list[Completion] = []
+        if not raised:
+            states.append(self.heap.changes(mark))
+        after = self.heap.changes(mark)
+        self.unsure += 1
+        for handler in node.handlers:
+            self.heap.undo(mark)
+            self.heap.apply(after)
+            if handler.name is not None:
+                self.bind(handler.name, UNKNOWN, frame)
+            left = self.block(handler.body, frame)
+            if left is None:
+                states.append(self.heap.changes(mark))
+            elif left[0] != "raise":
+                self._leave(left)
+                ends.append(left)
+        self.unsure -= 1
+        self.heap.undo(mark)
+        if not states:
+            self.heap.apply(after)
+            return self.block(node.finalbody, frame) or (
+                _left(ends[-1]) if ends else ("raise", NONE)
+            )
+        self.heap.join(states)
+        return self.block(node.finalbody, frame)
+
+    def _match(
+        self, subject: Value, cases: Sequence[ast.match_case], frame: Frame
+    ) -> Completion | None:
+        branches: list[Callable[[], Completion | None]] = []
+        for case in cases:
+            found = self._fits(subject, case.pattern, frame)
+            if case.guard is not None and found is not False:
+                found = None
+            if found is False:
+                continue
+            body = case.body
+            branches.append(lambda body=body: self.block(body, frame))  # type: ignore[misc]
+            if found:
+                break
+        else:
+            branches.append(lambda: None)
+        return branches[0]() if len(branches) == 1 else self.choice(branches)
+
+    def _fits(self, subject: Value, pattern: ast.pattern, frame: Frame) -> bool | None:
+        match pattern:
+            case ast.MatchAs(pattern=None, name=name):
+                if name is not None:
+                    self.bind(name, subject, frame)
+                return True
+            case ast.MatchValue(value=value):
+                return truth(self._compare(subject, ast.Eq(), self.value(value, frame)))
+            case ast.MatchOr(patterns=patterns):
+                found = [self._fits(subject, part, frame) for part in patterns]
+                return True if True in found else None if None in found else False
+        for part in ast.walk(pattern):
+            name = getattr(part, "name", None) or getattr(part, "rest", None)
+            if isinstance(name, str):
+                self.bind(name, UNKNOWN, frame)
+        return None
+
+    # --- names
+
+    def bind(self, name: str, value: Value, frame: Frame) -> None:
+        if name in frame.global_names:
+            self.heap.set(frame.module.slots, name, value)
+            return
+        if (
+            isinstance(value, Instance)
+            and "$children" in value.slots
+            and "$name" not in value.slots
+        ):
+            self.heap.set(value.slots, "$name", Const(name))
+        self.heap.set(frame.slots, name, value)
+
+    def look_up(self, name: str, frame: Frame, node: ast.expr | None = None) -> Value:
+        at: Frame | None = frame
+        while at is not None:
+            if name in at.slots and (at is frame or not at.is_class):
+                found: Value = at.slots[name]
+                return found
+            at = at.around
+        if name in frame.module.slots:
+            return frame.module.slots[name]  # type: ignore[no-any-return]
+        if name in BUILTINS:
+            return BUILTINS[name]
+        return UNKNOWN
+
+    def assign(self, target: ast.expr, value: Value, frame: Frame) -> None:
+        match target:
+            case ast.Name(id=name):
+                self.bind(name, value, frame)
+            case ast.Tuple(elts=parts) | ast.List(elts=parts):
+                self._unpack(parts, value, frame)
+            case ast.Starred(value=inner):
+                self.assign(inner, value, frame)
+            case ast.Attribute(value=owner, attr=name):
+                self.set_attribute(self.value(owner, frame), name, value)
+            case ast.Subscript(value=owner, slice=index):
+                self._set_item(self.value(owner, frame), self.value(index, frame), value)
+
+    def _unpack(self, parts: Sequence[ast.expr], value: Value, frame: Frame) -> None:
+        items = sequence(value)
+        star = next((i for i, p in enumerate(parts) if isinstance(p, ast.Starred)), None)
+        if items is None or (star is None and len(items) != len(parts)):
+            for part in parts:
+                self.assign(part, UNKNOWN, frame)
+            return
+        if star is None:
+            for part, item in zip(parts, items, strict=True):
+                self.assign(part, item, frame)
+            return
+        after = len(parts) - star - 1
+        rest = items[star : len(items) - after]
+        whole = [*items[:star], self.new_list(rest), *items[len(items) - after :]]
+        for part, item in zip(parts, whole, strict=False):
+            self.assign(part, item, frame)
+
+    def set_attribute(self, owner: Value, name: str, value: Value) -> None:
+        for part in alternatives(owner):
+            sure = not isinstance(owner, OneOf)
+            match part:
+                case Instance():
+                    if "$children" in part.slots and name == "userdata":
+                        own = isinstance(value, DictValue) and value.slots.get("$userdata")
+                        if not own:
+                            self.heap.set(part.slots, "$exposed", Const(True))
+                            continue
+                    own_name = isinstance(value, Instance) and "$children" in value.slots
+                    if own_name and isinstance(value, Instance) and "$name" not in value.slots:
+                        self.heap.set(value.slots, "$name", Const(name))
+                    self.heap.set(part.slots, name, value if sure else UNKNOWN)
+                case Class() | ModuleValue():
+                    self.heap.set(part.slots, name, value if sure else UNKNOWN)
+                case DictValue() if part.slots.get("$userdata"):
+                    self._set_item(part, Const(name), value)
+
+    def _set_item(self, owner: Value, index: Value, value: Value) -> None:
+        match owner, index:
+            case DictValue(), Const(value=key):
+                items = owner.items
+                if isinstance(items, Mapping) and len(items) < MOST_ITEMS:
+                    self.heap.set(owner.slots, "items", {**items, key: (index, value)})
+                    return
+            case ListValue(), Const(value=int() as at):
+                found = owner.items
+                if isinstance(found, tuple) and -len(found) <= at < len(found):
+                    at %= len(found)
+                    self.heap.set(owner.slots, "items", (*found[:at], value, *found[at + 1 :]))
+                    return
+        for part in alternatives(owner):
+            if isinstance(part, DictValue | ListValue):
+                self.heap.set(part.slots, "items", UNKNOWN)
+
+    def _delete(self, target: ast.expr, frame: Frame) -> None:
+        match target:
+            case ast.Name(id=name):
+                self.heap.delete(frame.slots, name)
+            case ast.Subscript(value=owner, slice=index):
+                found, key = self.value(owner, frame), self.value(index, frame)
+                match found, key:
+                    case DictValue(), Const(value=known) if isinstance(found.items, Mapping):
+                        rest = {k: v for k, v in found.items.items() if k != known}
+                        self.heap.set(found.slots, "items", rest)
+                    case ((DictValue() | ListValue()), _):
+                        self.heap.set(found.slots, "items", UNKNOWN)
+
+    def _augment(
+        self, target: ast.expr, op: ast.operator, value: Value, frame: Frame, node: ast.stmt
+    ) -> None:
+        before = self.value(target, frame)
+        if isinstance(before, ListValue) and isinstance(op, ast.Add | ast.BitOr):
+            self.extend(before, value)
+            return
+        if isinstance(before, DictValue) and isinstance(op, ast.BitOr):
+            self.update(before, value)
+            return
+        self.assign(target, self._operation(before, op, value, self.span(node, frame)), frame)
+
+    def extend(self, owner: ListValue, value: Value) -> None:
+        own, more = owner.items, sequence(value)
+        whole: object = UNKNOWN
+        if isinstance(own, tuple) and more is not None and len(own) + len(more) <= MOST_ITEMS:
+            whole = (*own, *more)
+        self.heap.set(owner.slots, "items", whole)
+
+    def update(self, owner: DictValue, value: Value) -> None:
+        own = owner.items
+        more = value.items if isinstance(value, DictValue) else None
+        whole: object = UNKNOWN
+        if isinstance(own, Mapping) and isinstance(more, Mapping):
+            whole = {**own, **more} if len(own) + len(more) <= MOST_ITEMS else UNKNOWN
+        self.heap.set(owner.slots, "items", whole)
+
+    # --- imports
+
+    def _import(self, names: Sequence[ast.alias], frame: Frame) -> None:
+        for alias in names:
+            found = self.project.load(self, alias.name, frame.module)
+            head, _, rest = alias.name.partition(".")
+            if alias.asname is None and rest:
+                top = self.project.load(self, head, frame.module)
+                self.bind(head, top if isinstance(top, ModuleValue) else UNKNOWN, frame)
+            else:
+                self.bind(alias.asname or alias.name, found, frame)
+
+    def _import_from(self, node: ast.ImportFrom, frame: Frame) -> None:
+        package = frame.module.package
+        for _ in range(node.level - 1):
+            package = package.rpartition(".")[0]
+        name = node.module or ""
+        if node.level:
+            name = f"{package}.{name}".strip(".")
+        found = self.project.load(self, name, frame.module)
+        for alias in node.names:
+            if alias.name == "*":
+                if isinstance(found, ModuleValue):
+                    for key, value in [*found.slots.items()]:
+                        if not key.startswith("_"):
+                            self.bind(key, value, frame)
+                if not isinstance(found, ModuleValue) or found.dynamic:
+                    frame.module.dynamic = True
+                continue
+            value = UNKNOWN
+            if isinstance(found, ModuleValue) and alias.name in found.slots:
+                value = found.slots[alias.name]
+            elif isinstance(found, ModuleValue) or isinstance(found, Unknown):
+                inner = self.project.load(self, f"{name}.{alias.name}".strip("."), frame.module)
+                value = inner if not isinstance(inner, Unknown) or not inner.reason else found
+                if isinstance(value, ModuleValue) and value is found:
+                    value = UNKNOWN
+                if isinstance(found, Unknown):
+                    value = found if isinstance(inner, Unknown) else inner
+            self.bind(alias.asname or alias.name, value, frame)
+
+    # --- functions and classes
+
+    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef, frame: Frame) -> Value:
+        found: Value = self._plain_function(node, frame)
+        for decorator in reversed(node.decorator_list):
+            found = self._decorated(decorator, found, frame)
+        return found
+
+    def _plain_function(
+        self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda, frame: Frame
+    ) -> Function:
+        taken = node.args
+        defaults = tuple(self.value(value, frame) for value in taken.defaults)
+        named = {
+            argument.arg: self.value(value, frame)
+            for argument, value in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
+            if value is not None
+        }
+        return Function(node, frame, defaults, named)
+
+    def _decorated(self, decorator: ast.expr, value: Value, frame: Frame) -> Value:
+        match decorator:
+            case ast.Name(id="staticmethod" | "classmethod" | "property" as kind):
+                if isinstance(value, Function):
+                    value.kind = kind
+                    return value
+            case ast.Attribute(attr="setter" | "getter" | "deleter"):
+                return UNKNOWN
+        found = self.value(decorator, frame)
+        if isinstance(found, Native):
+            return found.run(self, Arguments((value,)), self.span(decorator, frame))
+        return self.call(found, Arguments((value,)), decorator, frame)
+
+    def _class(self, node: ast.ClassDef, frame: Frame) -> Value:
+        bases = tuple(self.value(base, frame) for base in node.bases)
+        slots: Slots = {}
+        made = Class(node, frame, bases, slots)
+        inner = Frame(slots, frame.module, frame, frame.function, frame.me, is_class=True)
+        self.block(node.body, inner)
+        for value in slots.values():
+            if isinstance(value, Function) and value.owner is None:
+                value.owner = made
+        found: Value = made
+        for decorator in reversed(node.decorator_list):
+            name = decorator.func if isinstance(decorator, ast.Call) else decorator
+            if ast.unparse(name) in ("dataclass", "dataclasses.dataclass"):
+                made.is_dataclass = True
+            else:
+                found = self._decorated(decorator, found, frame)
+        if self.is_enumeration(made):
+            self._make_members(made)
+        return found
+
+    def is_enumeration(self, cls: Class) -> bool:
+        return any(
+            isinstance(base, LibraryClass) and base.name.startswith("enum.")
+            for base in self.classes(cls)
+        )
+
+    def _make_members(self, cls: Class) -> None:
+        texts = any(base == LibraryClass("builtins.str") or base == LibraryClass("enum.StrEnum")
+                    for base in self.classes(cls))  # fmt: skip
+        for name, value in [*cls.slots.items()]:
+            if name.startswith("_") or isinstance(value, Function | Native):
+                continue
+            if texts and isinstance(value, Const):
+                continue  # the member is the text
+            member = Instance(cls, {"name": Const(name), "value": value})
+            self.heap.set(cls.slots, name, member)
+
+    def classes(self, cls: Value) -> list[Value]:
+        """The classes in which an attribute is searched, the derived one first. A base class that
+        is not known is UNKNOWN."""
+        found: list[Value] = []
+
+        def visit(at: Value, depth: int = 0) -> None:
+            if any(at is known or (not isinstance(at, Class) and at == known) for known in found):
+                found[:] = [k for k in found if k is not at]
+            found.append(at)
+            if isinstance(at, Class) and depth < DEEPEST_CALL:
+                for base in at.bases:
+                    visit(base, depth + 1)
+
+        visit(cls)
+        return found
+
+    # --- expressions
+
+    def span(self, node: ast.AST, frame: Frame) -> Span | None:
+        text = frame.module.text
+        return text.span(node) if text is not None and hasattr(node, "lineno") else None  # type: ignore[arg-type]
+
+    def value(self, node: ast.expr, frame: Frame) -> Value:
+        self._step()
+        match node:
+            case ast.Constant(value=known):
+                if known is Ellipsis:
+                    return UNKNOWN
+                return Const(known, self.span(node, frame))  # type: ignore[arg-type]
+            case ast.Name(id=name):
+                return self.look_up(name, frame, node)
+            case ast.Attribute(value=owner, attr=name):
+                return self.attribute(self.value(owner, frame), name, node, frame)
+            case ast.Call():
+                return self._call(node, frame)
+            case ast.List(elts=parts):
+                return self._collection(parts, frame, node, "list")
+            case ast.Set(elts=parts):
+                return self._collection(parts, frame, node, "set")
+            case ast.Tuple(elts=parts):
+                items = self._items(parts, frame)
+                return UNKNOWN if items is None else TupleValue(items, self.span(node, frame))
+            case ast.Dict():
+                return self._dict(node, frame)
+            case ast.JoinedStr(values=parts):
+                return self._formatted(parts, node, frame)
+            case ast.BinOp():
+                return self._sum(node, frame)
+            case ast.UnaryOp(op=op, operand=operand):
+                return self._unary(op, self.value(operand, frame), node, frame)
+            case ast.BoolOp(op=op, values=values):
+                return self._logical(isinstance(op, ast.And), values, frame)
+            case ast.Compare():
+                return self._comparison(node, frame)
+            case ast.IfExp(test=test, body=body, orelse=orelse):
+                known = truth(self.value(test, frame))
+                if known is not None:
+                    return self.value(body if known else orelse, frame)
+                return self._either([body, orelse], frame)
+            case ast.Subscript(value=owner, slice=index):
+                return self._item(self.value(owner, frame), index, node, frame)
+            case ast.Lambda():
+                return self._plain_function(node, frame)
+            case ast.ListComp() | ast.SetComp() | ast.GeneratorExp():
+                items = self._comprehended(node.generators, node.elt, frame)
+                kind = "set" if isinstance(node, ast.SetComp) else "list"
+                return UNKNOWN if items is None else self.new_list(items, kind)
+            case ast.DictComp():
+                pair = ast.Tuple([node.key, node.value], ast.Load())
+                ast.copy_location(pair, node)
+                items = self._comprehended(node.generators, pair, frame)
+                return self._dict_of_pairs(items)
+            case ast.NamedExpr(target=target, value=inner):
+                found = self.value(inner, frame)
+                self.assign(target, found, frame)
+                return found
+            case ast.Starred(value=inner):
+                return self.value(inner, frame)
+            case ast.Await() | ast.Yield() | ast.YieldFrom():
+                if node.value is not None:
+                    self.value(node.value, frame)
+        return UNKNOWN
+
+    def _either(self, nodes: Sequence[ast.expr], frame: Frame) -> Value:
+        found: list[Value] = []
+
+        def branch(node: ast.expr) -> Callable[[], None]:
+            return lambda: found.append(self.value(node, frame))
+
+        self.choice([branch(node) for node in nodes])
+        return one_of(found)
+
+    def new_list(self, items: Sequence[Value], kind: str = "list") -> ListValue:
+        return ListValue({"items": tuple(items)}, None, kind)
+
+    def new_dict(self, pairs: Mapping[Any, tuple[Value, Value]] | None = None) -> DictValue:
+        return DictValue({"items": {**(pairs or {})}})
+
+    def _items(self, parts: Sequence[ast.expr], frame: Frame) -> tuple[Value, ...] | None:
+        found: list[Value] = []
+        for part in parts:
+            if isinstance(part, ast.Starred):
+                inner = sequence(self.value(part.value, frame))
+                if inner is None:
+                    return None
+                found.extend(inner)
+            else:
+                found.append(self.value(part, frame))
+        return tuple(found) if len(found) <= MOST_ITEMS else None
+
+    def _collection(
+        self, parts: Sequence[ast.expr], frame: Frame, node: ast.expr, kind: str
+    ) -> Value:
+        items = self._items(parts, frame)
+        contents = UNKNOWN if items is None else items
+        return ListValue({"items": contents}, self.span(node, frame), kind)
+
+    def _dict(self, node: ast.Dict, frame: Frame) -> Value:
+        pairs: dict[Any, tuple[Value, Value]] | None = {}
+        repeated: list[Const] = []
+        for key, value in zip(node.keys, node.values, strict=True):
+            found = self.value(value, frame)
+            if key is None:
+                more = found.items if isinstance(found, DictValue) else None
+                pairs = (
+                    {**pairs, **more} if pairs is not None and isinstance(more, Mapping) else None
+                )
+                continue
+            name = self.value(key, frame)
+            if isinstance(name, Const) and pairs is not None:
+                if name.value in pairs and isinstance(pairs[name.value][0], Const):
+                    repeated.append(name)
+                pairs[name.value] = name, found
+            else:
+                pairs = None
+        whole = UNKNOWN if pairs is None else pairs
+        return DictValue({"items": whole}, self.span(node, frame), tuple(repeated))
+
+    def _dict_of_pairs(self, items: Sequence[Value] | None) -> Value:
+        pairs: dict[Any, tuple[Value, Value]] = {}
+        for item in items or ():
+            both = sequence(item)
+            if both is None or len(both) != 2 or not isinstance(both[0], Const):
+                return DictValue({"items": UNKNOWN})
+            pairs[both[0].value] = both[0], both[1]
+        return DictValue({"items": pairs if items is not None else UNKNOWN})
+
+    def _comprehended(
+        self, generators: Sequence[ast.comprehension], element: ast.expr, frame: Frame
+    ) -> tuple[Value, ...] | None:
+        found: list[Value] = []
+        inner = Frame({}, frame.module, frame, frame.function, frame.me)
+
+        def visit(at: int) -> bool:
+            if at == len(generators):
+                found.append(self.value(element, inner))
+                return len(found) <= MOST_ITEMS
+            items = sequence(self.value(generators[at].iter, inner))
+            if items is None:
+                return False
+            for item in items:
+                self.assign(generators[at].target, item, inner)
+                tests = [truth(self.value(test, inner)) for test in generators[at].ifs]
+                if None in tests:
+                    return False
+                if all(tests) and not visit(at + 1):
+                    return False
+            return True
+
+        return tuple(found) if visit(0) else None
+
+    def _formatted(self, parts: Sequence[ast.expr], node: ast.expr, frame: Frame) -> Value:
+        texts: list[str] = []
+        for part in parts:
+            if isinstance(part, ast.FormattedValue):
+                found = self.value(part.value, frame)
+                plain = part.format_spec is None and part.conversion == -1
+                if not isinstance(found, Const) or not plain:
+                    return UNKNOWN
+                texts.append(str(found.value))
+            elif isinstance(part, ast.Constant):
+                texts.append(str(part.value))
+        text = "".join(texts)
+        return Const(text, self.span(node, frame)) if len(text) <= LONGEST_TEXT else UNKNOWN
+
+    def _sum(self, node: ast.BinOp, frame: Frame) -> Value:
+        """A sum of many terms is read in a loop: Python's own parser reads thousands."""
+        chain: list[ast.BinOp] = []
+        at: ast.expr = node
+        while isinstance(at, ast.BinOp):
+            chain.append(at)
+            at = at.left
+        found = self.value(at, frame)
+        for term in reversed(chain):
+            self._step()
+            found = self._operation(
+                found, term.op, self.value(term.right, frame), self.span(term, frame)
+            )
+        return found
+
+    def _operation(self, left: Value, op: ast.operator, right: Value, span: Span | None) -> Value:
+        if isinstance(left, OneOf) or isinstance(right, OneOf):
+            return one_of(
+                self._operation(a, op, b, span)
+                for a in alternatives(left)
+                for b in alternatives(right)
+            )
+        if isinstance(left, Const) and isinstance(op, ast.Mod) and isinstance(left.value, str):
+            return _percent(left.value, right, span)
+        if isinstance(left, Const) and isinstance(right, Const):
+            return _calculated(left, op, right, span)
+        own, other = sequence(left), sequence(right)
+        lists = isinstance(left, ListValue | TupleValue) and isinstance(
+            right, ListValue | TupleValue
+        )
+        if lists and isinstance(op, ast.Add) and own is not None and other is not None:
+            if len(own) + len(other) > MOST_ITEMS:
+                return UNKNOWN
+            whole = (*own, *other)
+            return TupleValue(whole, span) if isinstance(left, TupleValue) else self.new_list(whole)
+        if (
+            isinstance(left, DictValue)
+            and isinstance(right, DictValue)
+            and isinstance(op, ast.BitOr)
+        ):
+            joined = self.new_dict()
+            self.update(joined, left)
+            self.update(joined, right)
+            return joined
+        repeated = isinstance(left, ListValue) and isinstance(right, Const)
+        if repeated and isinstance(op, ast.Mult) and own is not None and isinstance(right, Const):
+            times = right.value
+            if isinstance(times, int) and len(own) * max(times, 0) <= MOST_ITEMS:
+                return self.new_list(own * times)
+        return UNKNOWN
+
+    def _unary(self, op: ast.unaryop, value: Value, node: ast.expr, frame: Frame) -> Value:
+        if isinstance(op, ast.Not):
+            known = truth(value)
+            return UNKNOWN if known is None else Const(not known)
+        if isinstance(op, ast.USub) and isinstance(value, Const):
+            if isinstance(value.value, int | float):
+                return Const(-value.value, self.span(node, frame))
+        return UNKNOWN
+
+    def _logical(self, is_and: bool, values: Sequence[ast.expr], frame: Frame) -> Value:
+        found: list[Value] = []
+        for at, node in enumerate(values):
+            value = self.value(node, frame)
+            known = truth(value)
+            if at == len(values) - 1 or known is (not is_and):
+                return one_of([*found, value])
+            if known is None:
+                found.append(value)
+        return UNKNOWN
+
+    def _comparison(self, node: ast.Compare, frame: Frame) -> Value:
+        left = self.value(node.left, frame)
+        known: bool | None = True
+        for op, right_node in zip(node.ops, node.comparators, strict=True):
+            right = self.value(right_node, frame)
+            found = truth(self._compare(left, op, right))
+            known = None if found is None or known is None else known and found
+            left = right
+        return UNKNOWN if known is None else Const(known)
+
+    def _compare(self, left: Value, op: ast.cmpop, right: Value) -> Value:
+        match op:
+            case ast.Is() | ast.Eq() if isinstance(left, Instance) and isinstance(right, Instance):
+                return Const(left is right) if self.is_member(left) else UNKNOWN
+            case ast.Is() | ast.IsNot() | ast.Eq() | ast.NotEq():
+                same = _same(left, right)
+                negated = isinstance(op, ast.IsNot | ast.NotEq)
+                return UNKNOWN if same is None else Const(same is not negated)
+            case ast.In() | ast.NotIn():
+                if isinstance(left, Const) and isinstance(right, Const):
+                    if isinstance(left.value, str) and isinstance(right.value, str):
+                        inside = left.value in right.value
+                        return Const(inside is not isinstance(op, ast.NotIn))
+                    return UNKNOWN
+                items = sequence(right)
+                if items is None:
+                    return UNKNOWN
+                found = [_same(left, item) for item in items]
+                inside_ = True if True in found else None if None in found else False
+                return (
+                    UNKNOWN if inside_ is None else Const(inside_ is not isinstance(op, ast.NotIn))
+                )
+        compare = _ORDERS.get(type(op))
+        if compare is not None and isinstance(left, Const) and isinstance(right, Const):
+            try:
+                return Const(bool(compare(left.value, right.value)))
+            except TypeError:
+                return UNKNOWN
+        return UNKNOWN
+
+    def is_member(self, value: Instance) -> bool:
+        return isinstance(value.cls, Class) and self.is_enumeration(value.cls)
+
+    def _item(self, owner: Value, index: ast.expr, node: ast.expr, frame: Frame) -> Value:
+        if isinstance(index, ast.Slice):
+            return self._slice(owner, index, frame)
+        return self.item(owner, self.value(index, frame))
+
+    def item(self, owner: Value, key: Value) -> Value:
+        """The item of a collection."""
+        if isinstance(owner, OneOf) or isinstance(key, OneOf):
+            return one_of(self.item(a, b) for a in alternatives(owner) for b in alternatives(key))
+        if isinstance(owner, DictValue):
+            items = owner.items
+            if isinstance(items, Mapping) and isinstance(key, Const) and key.value in items:
+                return items[key.value][1]
+            return UNKNOWN
+        if isinstance(owner, Class) and isinstance(key, Const) and isinstance(key.value, str):
+            return owner.slots.get(key.value, UNKNOWN) if self.is_enumeration(owner) else UNKNOWN
+        found = sequence(owner)
+        if found is not None and isinstance(key, Const) and isinstance(key.value, int):
+            if -len(found) <= key.value < len(found):
+                return found[key.value]
+        return UNKNOWN
+
+    def _slice(self, owner: Value, index: ast.Slice, frame: Frame) -> Value:
+        bounds: list[int | None] = []
+        for part in (index.lower, index.upper, index.step):
+            found = self.value(part, frame) if part is not None else NONE
+            if not isinstance(found, Const) or not isinstance(found.value, int | None):
+                return UNKNOWN
+            bounds.append(found.value)
+        if bounds[2] == 0:
+            return UNKNOWN
+        match owner:
+            case Const(value=str() as text, span=span):
+                return Const(text[slice(*bounds)], span)
+            case TupleValue(items=items):
+                return TupleValue(items[slice(*bounds)])
+            case ListValue():
+                items_ = owner.items
+                return (
+                    self.new_list(items_[slice(*bounds)]) if isinstance(items_, tuple) else UNKNOWN
+                )
+        return UNKNOWN
+
+    # --- attributes
+
+    def attribute(self, owner: Value, name: str, node: ast.expr, frame: Frame) -> Value:
+        """An attribute of a value; UNKNOWN if it is not known."""
+        match owner:
+            case OneOf(values=values):
+                return one_of(self.attribute(part, name, node, frame) for part in values)
+            case Unknown():
+                return owner
+            case ModuleValue():
+                if name in owner.slots:
+                    return owner.slots[name]  # type: ignore[no-any-return]
+                found = self.project.load(self, f"{owner.name}.{name}", owner)
+                return found if isinstance(found, ModuleValue) else UNKNOWN
+            case Instance():
+                return self._of_instance(owner, name, node, frame)
+            case Class() | LibraryClass():
+                if name == "__name__":
+                    return Const(owner.name if isinstance(owner, Class) else owner.short)
+                return self.of_class(owner, name, None)
+            case Super(owner=cls, me=me):
+                start = me.cls if isinstance(me, Instance) else cls
+                order = self.classes(start)
+                at = next((i for i, c in enumerate(order) if c is cls), -1)
+                return self._search(order[at + 1 :], name, me)
+        return attribute_of_value(self, owner, name)
+
+    def _of_instance(self, owner: Instance, name: str, node: ast.expr, frame: Frame) -> Value:
+        if name in owner.slots:
+            return owner.slots[name]  # type: ignore[no-any-return]
+        if name == "__class__":
+            return owner.cls
+        found = self.of_class(owner.cls, name, owner)
+        if isinstance(found, Method) and isinstance(found.function, Function):
+            if found.function.kind == "property":
+                return self.call(found.function, Arguments((owner,)), node, frame)
+        return found
+
+    def of_class(self, cls: Value, name: str, me: Value | None) -> Value:
+        return self._search(self.classes(cls), name, me)
+
+    def _search(self, order: Sequence[Value], name: str, me: Value | None) -> Value:
+        for cls in order:
+            match cls:
+                case Class():
+                    if name in cls.slots:
+                        found: Value = cls.slots[name]
+                        return self._bound(found, me, cls)
+                case LibraryClass():
+                    native = self.project.method_of(cls.name, name)
+                    if native is not None:
+                        return native if me is None or native.is_static else Method(native, me)
+                case _:
+                    return UNKNOWN
+        return UNKNOWN
+
+    def _bound(self, value: Value, me: Value | None, cls: Class) -> Value:
+        if not isinstance(value, Function) or value.kind == "staticmethod":
+            return value
+        if value.kind == "classmethod":
+            return Method(value, me.cls if isinstance(me, Instance) else cls)
+        return value if me is None else Method(value, me)
+
+    # --- calls
+
+    def arguments(self, node: ast.Call, frame: Frame) -> Arguments:
+        positional: list[Value] = []
+        named: list[tuple[str, Value]] = []
+        is_open = False
+        for part in node.args:
+            if isinstance(part, ast.Starred):
+                items = sequence(self.value(part.value, frame))
+                is_open = is_open or items is None
+                positional.extend(items or ())
+            else:
+                positional.append(self.value(part, frame))
+        for keyword in node.keywords:
+            found = self.value(keyword.value, frame)
+            if keyword.arg is not None:
+                named.append((keyword.arg, found))
+            elif isinstance(found, DictValue) and isinstance(found.items, Mapping):
+                named.extend((str(key), pair[1]) for key, pair in found.items.items())
+            else:
+                is_open = True
+        return Arguments(tuple(positional), tuple(named), is_open)
+
+    def _call(self, node: ast.Call, frame: Frame) -> Value:
+        if isinstance(node.func, ast.Name) and node.func.id == "super":
+            return self._super(node, frame)
+        function = self.value(node.func, frame)
+        return self.call(function, self.arguments(node, frame), node, frame)
+
+    def _super(self, node: ast.Call, frame: Frame) -> Value:
+        at: Frame | None = frame
+        while at is not None and (at.function is None or at.function.owner is None):
+            at = at.around
+        if node.args:
+            found = self.value(node.args[0], frame)
+            me = self.value(node.args[1], frame) if len(node.args) > 1 else UNKNOWN
+            return Super(found, me) if isinstance(found, Class) else UNKNOWN
+        if at is None or at.function is None or at.function.owner is None or at.me is None:
+            return UNKNOWN
+        return Super(at.function.owner, at.me)
+
+    def call(
+        self, function: Value, arguments: Arguments, node: ast.expr | None, frame: Frame
+    ) -> Value:
+        """The result of a call."""
+        self._step()
+        span = self.span(node, frame) if node is not None else None
+        match function:
+            case OneOf(values=values):
+                found: list[Value] = []
+
+                def branch(part: Value) -> Callable[[], None]:
+                    return lambda: found.append(self.call(part, arguments, node, frame))
+
+                self.choice([branch(part) for part in values])
+                return one_of(found)
+            case Native():
+                return function.run(self, arguments, span)
+            case Method(function=inner, me=me):
+                return self.call(inner, arguments.with_first(me), node, frame)
+            case Partial(function=inner, arguments=before):
+                whole = Arguments(
+                    (*before.positional, *arguments.positional),
+                    (*(p for p in before.named if p[0] not in dict(arguments.named)),
+                     *arguments.named),
+                    before.open or arguments.open,
+                )  # fmt: skip
+                return self.call(inner, whole, node, frame)
+            case Function():
+                return self.run(function, arguments)
+            case Class() | LibraryClass():
+                return self.make(function, arguments, span, frame)
+            case Instance():
+                inner = self.of_class(function.cls, "__call__", function)
+                if isinstance(inner, Method):
+                    return self.call(inner, arguments, node, frame)
+        self._escape(arguments, function)
+        return function if isinstance(function, Unknown) and function.reason else UNKNOWN
+
+    def _escape(self, arguments: Arguments, function: Value) -> None:
+        """Values that unknown code gets can be changed by it."""
+        if isinstance(function, Unknown) and is_pure(function.reason):
+            return
+        for value in (*arguments.positional, *(value for _, value in arguments.named)):
+            if isinstance(value, ListValue | DictValue) and not value.slots.get("$userdata"):
+                self.heap.set(value.slots, "items", UNKNOWN)
+            if isinstance(value, Instance) and "$userdata" in value.slots:
+                self.heap.set(value.slots, "$exposed", Const(True))
+
+    def run(self, function: Function, arguments: Arguments) -> Value:
+        """The result of a call of a function of the project."""
+        node = function.node
+        self.called.add(node)
+        recursive = sum(called is function for called in self.calls)
+        if len(self.calls) >= DEEPEST_CALL or recursive >= (2 if self.unsure else MOST_RECURSIVE):
+            return UNKNOWN
+        if isinstance(node, ast.AsyncFunctionDef) or _yields(node):
+            return UNKNOWN
+        slots = self._parameters(function, arguments)
+        me = arguments.positional[0] if arguments.positional else None
+        frame = Frame(slots, function.frame.module, function.frame, function, me)
+        if isinstance(node, ast.Lambda):
+            return self.value(node.body, frame)
+        self.calls.append(function)
+        opened = [*self.opened]
+        try:
+            end = self._region("call", lambda: self.block(node.body, frame))
+        finally:
+            self.calls.pop()
+            self.opened[:] = opened
+        if end is None:
+            return NONE
+        return end[1] if end[0] == "return" and end[1] is not LEFT else UNKNOWN
+
+    def _parameters(self, function: Function, arguments: Arguments) -> Slots:
+        taken = function.node.args
+        positional = [*taken.posonlyargs, *taken.args]
+        slots: Slots = {}
+        given = arguments.positional
+        for argument, value in zip(positional, given, strict=False):
+            slots[argument.arg] = value
+        named = dict(arguments.named)
+        rest: dict[Any, tuple[Value, Value]] = {}
+        known = {argument.arg for argument in (*taken.args, *taken.kwonlyargs)}
+        for name, value in named.items():
+            if name in known:
+                slots[name] = value
+            else:
+                rest[name] = Const(name), value
+        for argument, value in zip(reversed(positional), reversed(function.defaults), strict=False):
+            if argument.arg not in slots:
+                slots[argument.arg] = UNKNOWN if arguments.open else value
+        for argument in taken.kwonlyargs:
+            if argument.arg not in slots:
+                default = function.keyword_defaults.get(argument.arg, UNKNOWN)
+                slots[argument.arg] = UNKNOWN if arguments.open else default
+        for argument in positional:
+            slots.setdefault(argument.arg, UNKNOWN)
+        if taken.vararg is not None:
+            more = TupleValue(tuple(given[len(positional) :]))
+            slots[taken.vararg.arg] = UNKNOWN if arguments.open else more
+        if taken.kwarg is not None:
+            whole = DictValue({"items": UNKNOWN}) if arguments.open else self.new_dict(rest)
+            slots[taken.kwarg.arg] = whole
+        return slots
+
+    def make(
+        self, cls: Class | LibraryClass, arguments: Arguments, span: Span | None, frame: Frame
+    ) -> Value:
+        """A new object of a class."""
+        if isinstance(cls, LibraryClass) and not cls.name.startswith("smach"):
+            return self.project.new_object(self, cls, arguments)
+        if isinstance(cls, Class) and self.is_enumeration(cls):
+            return self._member(cls, arguments)
+        order = self.classes(cls)
+        opaque = any(isinstance(base, Unknown | OneOf) for base in order)
+        made = Instance(cls, {}, span, opaque)
+        if any(isinstance(base, LibraryClass) and base.name.startswith("smach") for base in order):
+            self.made.append(made)
+        if isinstance(cls, Class) and cls.is_dataclass and "__init__" not in cls.slots:
+            self._fill(made, cls, arguments, frame)
+            return made
+        maker = self._search(order, "__init__", made)
+        if isinstance(maker, Method):
+            self.call(maker, arguments, None, frame)
+        return made
+
+    def _member(self, cls: Class, arguments: Arguments) -> Value:
+        given = arguments.get(0, "value", UNKNOWN)
+        for value in cls.slots.values():
+            if isinstance(value, Instance) and given is not None:
+                if _same(value.slots.get("value", UNKNOWN), given):
+                    return value
+        return UNKNOWN
+
+    def _fill(self, made: Instance, cls: Class, arguments: Arguments, frame: Frame) -> None:
+        """Sets the fields of a dataclass."""
+        at = 0
+        for base in reversed(self.classes(cls)):
+            if not isinstance(base, Class):
+                continue
+            for line in base.node.body:
+                if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):
+                    name = line.target.id
+                    default = base.slots.get(name, UNKNOWN) if line.value is not None else UNKNOWN
+                    value = arguments.get(at, name, default)
+                    self.heap.set(made.slots, name, value if value is not None else UNKNOWN)
+                    at += 1
+        after = self._search(self.classes(cls), "__post_init__", made)
+        if isinstance(after, Method):
+            self.call(after, Arguments(), None, frame)
+
+
+_WIDTH = re.compile(r"%[^a-zA-Z%]*(?:\d{3}|\*)")
+
+LEFT: Value = Unknown(reason="left")
+"""In place of the value of a completion that was noted already."""
+
+
+def _left(end: Completion) -> Completion:
+    return end[0], LEFT
+
+
+def _grows(value: object) -> bool:
+    """Whether joining keeps what each of two contents has."""
+    return isinstance(value, Children)
+
+
+def _yields(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) -> bool:
+    """Whether a function is a generator."""
+    todo: list[ast.AST] = [*(node.body if isinstance(node.body, list) else [node.body])]
+    while todo:
+        here = todo.pop()
+        if isinstance(here, ast.Yield | ast.YieldFrom):
+            return True
+        if not isinstance(here, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
+            todo.extend(ast.iter_child_nodes(here))
+    return False
+
+
+def _same(left: Value, right: Value) -> bool | None:
+    """Whether two values are equal; None: not known."""
+    if isinstance(left, Const) and isinstance(right, Const):
+        return left.value == right.value
+    if isinstance(left, Unknown | OneOf) or isinstance(right, Unknown | OneOf):
+        return None
+    if left is right:
+        return True
+    none = isinstance(left, Const) and left.value is None
+    if none or (isinstance(right, Const) and right.value is None):
+        return False
+    return None
+
+
+_ORDERS: Mapping[type[ast.cmpop], Callable[[Any, Any], object]] = {
+    ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge
+}  # fmt: skip
+
+_OPERATIONS: Mapping[type[ast.operator], Callable[[Any, Any], object]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mod: operator.mod,
+    ast.FloorDiv: operator.floordiv, ast.Div: operator.truediv, ast.BitAnd: operator.and_,
+    ast.BitOr: operator.or_,
+}  # fmt: skip
+
+
+def _calculated(left: Const, op: ast.operator, right: Const, span: Span | None) -> Value:
+    one, other = left.value, right.value
+    if isinstance(op, ast.Mult):
+        numbers = isinstance(one, int | float) and isinstance(other, int | float)
+        size = abs(one) * abs(other) if numbers else 0  # type: ignore[arg-type]
+        if isinstance(one, str) and isinstance(other, int):
+            size = len(one) * abs(other)
+        if (
+            not (numbers or (isinstance(one, str) and isinstance(other, int)))
+            or size > LONGEST_TEXT
+        ):
+            return UNKNOWN
+        return Const(one * other, span)  # type: ignore[operator]
+    run = _OPERATIONS.get(type(op))
+    if run is None:
+        return UNKNOWN
+    try:
+        found = run(one, other)
+    except (TypeError, ValueError, ArithmeticError):
+        return UNKNOWN
+    if isinstance(found, str) and len(found) > LONGEST_TEXT:
+        return UNKNOWN
+    return Const(found, span) if isinstance(found, bool | int | float | str) else UNKNOWN
+
+
+def _percent(text: str, right: Value, span: Span | None) -> Value:
+    """A text that `%` fills in."""
+    items = right.items if isinstance(right, TupleValue) else (right,)
+    if not all(isinstance(item, Const) for item in items):
+        return UNKNOWN
+    values = tuple(item.value for item in items if isinstance(item, Const))
+    if any(len(str(value)) > LONGEST_TEXT for value in values) or len(text) > LONGEST_TEXT:
+        return UNKNOWN
+    if _WIDTH.search(text):
+        return UNKNOWN  # the text could be long
+    try:
+        return Const(text % values, span)
+    except (TypeError, ValueError):
+        return UNKNOWN

@@ -1,0 +1,581 @@
+"""The state graph of containers that were evaluated: a machine whose spans lie in Python files.
+
+What is not known must cause no false finding. A container with a part that is not known gets one
+more state, ELSEWHERE: it is open, can be reached, and leads to every state and outcome. An outcome
+with several possible targets leads to a state of its own that leads to each of them.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Literal, NamedTuple
+
+from smachac.diagnostics.source import NOWHERE, Span
+from smachac.ir import nodes, types
+from smachac.ir.class_facts import ClassFacts
+from smachac.ir.nodes import (
+    Concurrence,
+    Condition,
+    Container,
+    Data,
+    Expression,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    Outcome,
+    OutcomeRule,
+    Preset,
+    Remap,
+    StateMachine,
+    StateType,
+    Transition,
+)
+from smachac.ir.traversal import outer_inputs
+from smachac.pysource.machines.evaluator import Evaluator
+from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.roots import Roots
+from smachac.pysource.machines.values import (
+    UNKNOWN,
+    Class,
+    Const,
+    DictValue,
+    Function,
+    Instance,
+    Method,
+    OneOf,
+    Unknown,
+    Value,
+    alternatives,
+    sequence,
+    truth,
+)
+
+ELSEWHERE = "?"
+"""The name of the state in place of all that is not known of a container."""
+
+_DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef
+
+MOST_LEVELS = 60
+"""The deepest nesting of containers."""
+
+ReadClass = Callable[[Class], ClassFacts | None]
+
+
+class Coverage(NamedTuple):
+    """How much of a machine is known: the number of states, and those that are not known exactly,
+    each with its place and the reason."""
+
+    states: int
+    unknown: tuple[tuple[Span, str], ...]
+
+
+class Graph(NamedTuple):
+    """A machine read from Python."""
+
+    machine: Machine
+    coverage: Coverage
+
+
+def graphs(roots: Roots, evaluator: Evaluator, read_class: ReadClass) -> Iterator[Graph]:
+    """The machine of each root."""
+    for container in roots.containers:
+        yield _Builder(roots, evaluator, read_class).graph(container)
+
+
+def _text(value: Value | None) -> str | None:
+    if isinstance(value, Const) and isinstance(value.value, str):
+        return value.value
+    return None
+
+
+class _Builder:
+    def __init__(self, roots: Roots, evaluator: Evaluator, read_class: ReadClass) -> None:
+        self.roots = roots
+        self.evaluator = evaluator
+        self.read_class = read_class
+        self.types: dict[str, StateType] = {}
+        self.type_names: dict[tuple[object, ...], str] = {}
+        self.unknown: list[tuple[Span, str]] = []
+        self.states = 0
+
+    def graph(self, container: Instance) -> Graph:
+        span = container.span or NOWHERE
+        name = self._name(container)
+        node = self.container(container, name, span, 0)
+        if not isinstance(node, StateMachine):
+            node = _wrapped(node, span)
+        exposed = "$exposed" in container.slots or not self.roots.closed
+        if exposed:
+            node = _with_inputs(node)
+        machine = Machine(
+            root=node,
+            source=span.source.name.rpartition("/")[2],
+            digest="",
+            state_types=self.types,
+        )
+        return Graph(machine, Coverage(self.states, tuple(self.unknown)))
+
+    def _name(self, container: Instance) -> str:
+        if isinstance(container.cls, Class):
+            return container.cls.name
+        return _text(container.slots.get("$name")) or "sm"
+
+    # --- containers
+
+    def container(self, made: Instance, name: str, span: Span, depth: int) -> Container:
+        kind = _text(made.slots.get("$kind")) or "StateMachine"
+        children = made.slots.get("$children")
+        added = children.added if isinstance(children, Children) else ()
+        complete = isinstance(children, Children) and children.complete and self.roots.complete
+        if not complete or depth > MOST_LEVELS or self._overrides(made):
+            self.unknown.append((span, "not all of its states are known"))
+            complete = False
+        if depth > MOST_LEVELS:
+            added = ()
+        outcomes = self.names(made.slots.get("$outcomes"), span)
+        builder = _Children(self, made, kind, outcomes, complete=complete)
+        built = builder.build(added, depth)
+        known = outcomes if outcomes is not None else builder.targets_outside()
+        common: dict[str, Any] = {
+            "name": name,
+            "type": kind,
+            "outcomes": tuple(Outcome(name=text, span=place) for text, place in known),
+            "inputs": self.keys(made.slots.get("$inputs"), span, required=True),
+            "outputs": self.keys(made.slots.get("$outputs"), span, required=True),
+            "userdata": tuple(_presets(made.slots.get("userdata"), span)),
+            "span": span,
+        }
+        initial = builder.initial(added)
+        match kind:
+            case "Concurrence":
+                return self._concurrence(made, common, built, builder, span)
+            case "Sequence":
+                connector = made.slots.get("$connector_outcome")
+                return nodes.Sequence(
+                    **common, children=built, initial=initial,
+                    connector_outcome=_text(connector) or "", connector_span=_place(connector, span),
+                    initial_span=span,
+                )  # fmt: skip
+            case "Iterator":
+                return self._iterator(made, common, built, added, span)
+        return StateMachine(**common, children=built, initial=initial, initial_span=span)
+
+    def _overrides(self, made: Instance) -> bool:
+        """Whether a class changes how states are added or run."""
+        if made.opaque:
+            return True
+        return any(
+            isinstance(cls, Class) and not {"add", "execute"}.isdisjoint(cls.slots)
+            for cls in self.evaluator.classes(made.cls)
+        )
+
+    def _concurrence(
+        self, made: Instance, common: dict[str, Any], built: tuple[Node, ...],
+        builder: _Children, span: Span,
+    ) -> Concurrence:  # fmt: skip
+        rules: list[OutcomeRule] = []
+        mapping = made.slots.get("$outcome_map")
+        unknown = isinstance(mapping, Unknown | OneOf)
+        items = mapping.items if isinstance(mapping, DictValue) else {}
+        if not isinstance(items, Mapping):
+            items, unknown = {}, True
+        for key, value in items.values():
+            conditions = _conditions(value)
+            name = _text(key)
+            if name is None or conditions is None:
+                unknown = True
+            else:
+                place = _place(key, span)
+                rules.append(OutcomeRule(outcome=name, when=tuple(conditions), span=place))
+        callback = made.slots.get("$outcome_cb")
+        if callback is not None and not _is_none(callback):
+            unknown = True
+        default = made.slots.get("$default_outcome")
+        join = self._join(made.slots.get("$child_termination_cb"))
+        if unknown or builder.incomplete:
+            outcomes: tuple[Outcome, ...] = common["outcomes"]
+            extra = Leaf(name=ELSEWHERE, type=ELSEWHERE, open=True, span=span, outcomes=outcomes)
+            built = (*(child for child in built if child.name != ELSEWHERE), extra)
+            rules += [
+                OutcomeRule(outcome=outcome.name, span=span,
+                            when=(Condition(child=ELSEWHERE, outcome=outcome.name, span=span),))
+                for outcome in outcomes
+            ]  # fmt: skip
+        return Concurrence(
+            **common, children=built, rules=tuple(rules), join=join,
+            default_outcome=_text(default) or "", default_span=_place(default, span),
+        )  # fmt: skip
+
+    def _join(self, callback: Value | None) -> Literal["all", "any"]:
+        """Whether the first branch that ends stops the others."""
+        function = callback.function if isinstance(callback, Method) else callback
+        if callback is None or _is_none(callback):
+            return "all"
+        if isinstance(function, Function) and not isinstance(function.node, _DEFINITIONS):
+            found = self.evaluator.value(function.node.body, function.frame)
+            return "any" if truth(found) else "all"
+        return "any"
+
+    def _iterator(
+        self, made: Instance, common: dict[str, Any], built: tuple[Node, ...],
+        added: Sequence[Added], span: Span,
+    ) -> nodes.Iterator:  # fmt: skip
+        items, label = made.slots.get("$it"), made.slots.get("$it_label")
+        known = sequence(items)
+        data: Data = Expression(text=_place(items, span).text, span=_place(items, span))
+        if known is not None and all(isinstance(item, Const) for item in known):
+            data = tuple(_data(item, span) for item in known)
+        loop = self.names(added[0].loop, span) if added else ()
+        final = added[0].final if added else None
+        pairs = final.items if isinstance(final, DictValue) else {}
+        exhausted = made.slots.get("$exhausted_outcome")
+        return nodes.Iterator(
+            **common, children=built[:1],
+            items=nodes.Value(data=data, span=_place(items, span)), items_span=_place(items, span),
+            item_key=_text(label) or "it_data", item_span=_place(label, span),
+            exhausted_outcome=_text(exhausted) or "exhausted",
+            exhausted_span=_place(exhausted, span),
+            loop_outcomes=tuple(name for name, _ in loop or ()),
+            loop_spans=tuple(place for _, place in loop or ()),
+            final_map=tuple((str(key), _text(pair[1]) or "") for key, pair in pairs.items())
+            if isinstance(pairs, Mapping) else (),
+        )  # fmt: skip
+
+    # --- states
+
+    def state(self, value: Value, added: Added, name: str, depth: int) -> Node:
+        span: Span = added.span
+        if isinstance(value, Instance) and "$children" in value.slots:
+            return self.container(value, name, span, depth + 1)
+        self.states += 1
+        if not isinstance(value, Instance) or "$outcomes" not in value.slots:
+            reason = "its class is not known"
+            if isinstance(value, Unknown) and value.reason:
+                reason = f"package {value.reason.partition('.')[0]} not found"
+            return self.open_leaf(name, span, added, reason)
+        outcomes = self.names(value.slots.get("$outcomes"), span)
+        inputs = sequence(value.slots.get("$inputs"))
+        outputs = sequence(value.slots.get("$outputs"))
+        if outcomes is None or inputs is None or outputs is None or value.opaque:
+            what = "outcomes" if outcomes is None else "keys"
+            reason = "a base class is not known" if value.opaque else f"its {what} are not known"
+            return self.open_leaf(name, span, added, reason)
+        facts = self.read_class(value.cls) if isinstance(value.cls, Class) else None
+        required = sequence(value.slots.get("$required")) or ()
+        names = {text for item in required if (text := _text(item)) is not None}
+        if facts is not None:
+            names |= {word.text for word in facts.reads}
+        in_keys = tuple(
+            key if key.name in names else _optional(key)
+            for key in self.keys(value.slots.get("$inputs"), span, required=True)
+        )
+        out_keys = self.keys(value.slots.get("$outputs"), span, required=True)
+        type_ = self._type(value, outcomes, in_keys, out_keys, facts)
+        return Leaf(
+            name=name, type=type_, outcomes=tuple(Outcome(name=t, span=p) for t, p in outcomes),
+            inputs=in_keys, outputs=out_keys, span=span, class_facts=facts,
+        )  # fmt: skip
+
+    def open_leaf(self, name: str, span: Span, added: Added, reason: str) -> Leaf:
+        """A state of an unknown type: its outcomes are those of its transitions."""
+        self.unknown.append((span, reason))
+        items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
+        names = [str(key) for key in items] if isinstance(items, Mapping) else []
+        outcomes = tuple(Outcome(name=text, span=span) for text in names)
+        return Leaf(name=name, type="?", open=True, outcomes=outcomes, span=span)
+
+    def _type(
+        self, value: Instance, outcomes: Sequence[tuple[str, Span]], inputs: Sequence[Key],
+        outputs: Sequence[Key], facts: ClassFacts | None,
+    ) -> str:  # fmt: skip
+        cls = value.cls
+        short = cls.name if isinstance(cls, Class) else cls.short
+        which = (
+            id(cls) if isinstance(cls, Class) else cls.name,
+            tuple(name for name, _ in outcomes),
+            tuple(key.name for key in inputs),
+            tuple(key.name for key in outputs),
+        )
+        known = self.type_names.get(which)
+        if known is not None:
+            return known
+        name, number = short, 2
+        while name in self.types:
+            name, number = f"{short}_{number}", number + 1
+        self.type_names[which] = name
+        self.types[name] = StateType(
+            name=name, outcomes=tuple(Outcome(name=t, span=p) for t, p in outcomes),
+            input_keys=tuple(inputs), output_keys=tuple(outputs), class_facts=facts,
+        )  # fmt: skip
+        return name
+
+    def names(self, value: Value | None, span: Span) -> list[tuple[str, Span]] | None:
+        """The names in a list, each with its place; None: not known."""
+        items = sequence(value) if value is not None else ()
+        if items is None or not all(isinstance(item, Const) for item in items):
+            return None
+        found: dict[str, Span] = {}
+        for item in items:
+            if isinstance(item, Const) and isinstance(item.value, str):
+                found.setdefault(item.value, item.span or span)
+        return [*found.items()]
+
+    def keys(self, value: Value | None, span: Span, *, required: bool) -> tuple[Key, ...]:
+        names = self.names(value, span) or []
+        return tuple(Key(name=name, span=place) for name, place in names)
+
+
+class _Children:
+    """The states of one container with their transitions."""
+
+    def __init__(
+        self, builder: _Builder, made: Instance, kind: str,
+        outcomes: list[tuple[str, Span]] | None, *, complete: bool,
+    ) -> None:  # fmt: skip
+        self.builder = builder
+        self.made = made
+        self.kind = kind
+        self.outcomes = outcomes
+        self.incomplete = not complete
+        self.labels: set[str] = set()
+        self.outside: dict[str, Span] = {}
+        self.choices: list[Leaf] = []
+
+    def build(self, added: Sequence[Added], depth: int) -> tuple[Node, ...]:
+        known = [one for one in added if _text(one.label) is not None]
+        self.labels = {text for one in known if (text := _text(one.label)) is not None}
+        for one in added:
+            if _text(one.label) is None:
+                self.builder.unknown.append((one.span, "its name is not known"))
+            elif one.possible:
+                self.builder.unknown.append((one.span, "a condition that is not known adds it"))
+        if len(known) < len(added) or any(one.possible for one in added):
+            self.incomplete = True
+        if self.outcomes is None:
+            self.incomplete = True
+        found: list[Node] = []
+        for at, one in enumerate(known):
+            name = _text(one.label) or ""
+            parts = alternatives(one.state)
+            state = parts[0] if len(parts) == 1 else UNKNOWN
+            node = self.builder.state(state, one, name, depth)
+            following = _text(known[at + 1].label) if at + 1 < len(known) else None
+            transitions: tuple[Transition, ...] = ()
+            if self.kind in ("StateMachine", "Sequence"):
+                transitions = tuple(self._transitions(node, one, following))
+            found.append(_connected(node, transitions, tuple(self._remaps(one))))
+        found += self.choices
+        if self.incomplete and self.kind != "Iterator":
+            names = {*(node.name for node in found), *(name for name, _ in self.outcomes or ())}
+            if self.outcomes is not None:
+                found = [_without_targets(node, names) for node in found]
+            found.append(self._elsewhere(found))
+        return tuple(found)
+
+    def targets_outside(self) -> list[tuple[str, Span]]:
+        """The targets that are no states: outcomes of a container whose outcomes are not known."""
+        return [*self.outside.items()]
+
+    def initial(self, added: Sequence[Added]) -> str:
+        wanted = sequence(self.made.slots.get("$initial"))
+        name = _text(wanted[0]) if wanted else None
+        if name is not None and name in self.labels:
+            return name
+        first = _text(added[0].label) if added and not added[0].possible else None
+        if first is not None and not (self.incomplete and added[0].possible):
+            return first
+        return ELSEWHERE if self.incomplete else ""
+
+    def _transitions(self, node: Node, added: Added, following: str | None) -> Iterator[Transition]:
+        span: Span = added.span
+        names = [outcome.name for outcome in node.outcomes]
+        ends = {name for name, _ in self.outcomes or ()}
+        given = added.transitions
+        items = given.items if isinstance(given, DictValue) else {}
+        unknown = given is not None and not isinstance(given, DictValue) and not _is_none(given)
+        if not isinstance(items, Mapping) or unknown:
+            self.incomplete = True
+            self.builder.unknown.append((span, "its transitions are not known"))
+            yield from (Transition(outcome=name, target=ELSEWHERE, span=span,
+                                   target_span=span) for name in names)  # fmt: skip
+            return
+        done: set[str] = set()
+        for key, value in items.values():
+            outcome = _text(key)
+            if outcome is None:
+                self.incomplete = True
+                continue
+            if _is_none(value) or _text(value) == "":
+                continue
+            done.add(outcome)
+            target = self._target(value, added, outcome)
+            yield Transition(outcome=outcome, target=target, span=_place(key, span),
+                             target_span=_place(value, span))  # fmt: skip
+        for name, place in self._connectors(added, following):
+            if name not in done and following is not None:
+                done.add(name)
+                yield Transition(outcome=name, target=following, origin="connector", span=place)
+        for name in names:
+            if name in done:
+                continue
+            if name in ends:
+                yield Transition(outcome=name, target=name, origin="implicit", span=span)
+            elif self.outcomes is None:
+                yield Transition(outcome=name, target=ELSEWHERE, span=span, target_span=span)
+
+    def _connectors(self, added: Added, following: str | None) -> list[tuple[str, Span]]:
+        """The outcomes that lead to the state that is added next."""
+        if added.kind == "add_auto":
+            return self.builder.names(added.connector, added.span) or []
+        if self.kind == "Sequence":
+            name = _text(self.made.slots.get("$connector_outcome"))
+            return [(name, added.span)] if name is not None else []
+        return []
+
+    def _target(self, value: Value, added: Added, outcome: str) -> str:
+        """The target of a transition: its name, that of a state for several, or ELSEWHERE."""
+        parts = alternatives(value)
+        names = [_text(part) for part in parts]
+        if None in names:
+            self.incomplete = True
+            self.builder.unknown.append((added.span, f"the target of `{outcome}` is not known"))
+            return ELSEWHERE
+        targets = [name for name in names if name]
+        for name, part in zip(names, parts, strict=True):
+            if name and name not in self.labels and self.outcomes is None:
+                self.outside.setdefault(name, _place(part, added.span))
+        if len(targets) == 1 and len(names) == 1:
+            return targets[0]
+        label = f"{_text(added.label)} {outcome}{ELSEWHERE}"
+        span: Span = added.span
+        self.choices.append(
+            Leaf(
+                name=label, type=ELSEWHERE, span=span,
+                outcomes=tuple(Outcome(name=name, span=span) for name in targets),
+                transitions=tuple(
+                    Transition(outcome=name, target=name, span=span,
+                               target_span=span) for name in targets
+                ),
+            )
+        )  # fmt: skip
+        return label
+
+    def _remaps(self, added: Added) -> Iterator[Remap]:
+        given = added.remapping
+        items = given.items if isinstance(given, DictValue) else {}
+        if (given is not None and not isinstance(given, DictValue) and not _is_none(given)) or (
+            not isinstance(items, Mapping)
+        ):
+            self.incomplete = True
+            return
+        for key, value in items.values():
+            name, other = _text(key), _text(value)
+            if name is None or other is None:
+                self.incomplete = True
+            else:
+                yield Remap(key=name, to=other, span=_place(key, added.span),
+                            to_span=_place(value, added.span))  # fmt: skip
+
+    def _elsewhere(self, found: Sequence[Node]) -> Leaf:
+        span = self.made.span or NOWHERE
+        targets = [*dict.fromkeys(node.name for node in found)]
+        targets += [name for name, _ in self.outcomes or self.targets_outside()
+                    if name not in targets]  # fmt: skip
+        return Leaf(
+            name=ELSEWHERE, type=ELSEWHERE, open=True, span=span,
+            outcomes=tuple(Outcome(name=name, span=span) for name in targets),
+            transitions=tuple(
+                Transition(outcome=name, target=name, span=span, target_span=span)
+                for name in targets
+            ),
+        )  # fmt: skip
+
+
+def _without_targets(node: Node, known: Collection[str]) -> Node:
+    """A state whose transitions to unknown names lead to ELSEWHERE: to a state that is not known,
+    perhaps."""
+    if all(each.target in known for each in node.transitions):
+        return node
+    transitions = (
+        each if each.target in known else replace(each, target=ELSEWHERE)
+        for each in node.transitions
+    )
+    return replace(node, transitions=tuple(transitions))
+
+
+def _connected(node: Node, transitions: tuple[Transition, ...], remaps: tuple[Remap, ...]) -> Node:
+    return replace(node, transitions=transitions, remaps=remaps)
+
+
+def _is_none(value: Value | None) -> bool:
+    return isinstance(value, Const) and value.value is None
+
+
+def _place(value: Value | None, span: Span) -> Span:
+    """The place of a value; if it has none in the project, another one."""
+    found = getattr(value, "span", None)
+    return found if isinstance(found, Span) else span
+
+
+def _optional(key: Key) -> Key:
+    return replace(key, type=types.Type("optional", (types.ANY,)))
+
+
+def _conditions(value: Value) -> list[Condition] | None:
+    """The conditions of a rule of an outcome map; None: not known."""
+    items = value.items if isinstance(value, DictValue) else None
+    if not isinstance(items, Mapping):
+        return None
+    found: list[Condition] = []
+    for key, part in items.values():
+        child, outcome = _text(key), _text(part)
+        if child is None or outcome is None:
+            return None
+        place = _place(part, _place(key, NOWHERE))
+        found.append(Condition(child=child, outcome=outcome, span=place))
+    return found
+
+
+def _presets(value: Value | None, span: Span) -> Iterator[Preset]:
+    items = value.items if isinstance(value, DictValue) else None
+    for key, part in (items or {}).values() if isinstance(items, Mapping) else ():
+        name = _text(key)
+        if name is not None:
+            place = _place(part, span)
+            yield Preset(key=name, value=nodes.Value(data=_data(part, place), span=place),
+                         span=place)  # fmt: skip
+
+
+def _data(value: Value, span: Span) -> Data:
+    match value:
+        case Const(value=bool() | int() | float() | str() as known):
+            return known
+    return Expression(text=span.text or "?", span=span)
+
+
+def _wrapped(node: Container, span: Span) -> StateMachine:
+    """A state machine around a container of another kind, with its outcomes."""
+    transitions = tuple(
+        Transition(outcome=outcome.name, target=outcome.name, origin="implicit", span=span)
+        for outcome in node.outcomes
+    )
+    return StateMachine(
+        name="sm", type="StateMachine", outcomes=node.outcomes, inputs=node.inputs,
+        children=(replace(node, transitions=transitions),), initial=node.name, span=span,
+        initial_span=span,
+    )  # fmt: skip
+
+
+def _with_inputs(node: StateMachine) -> StateMachine:
+    """A state machine that gets the userdata which its states read from outside."""
+    known = {key.name for key in node.inputs} | {preset.key for preset in node.userdata}
+    names: dict[str, Span] = {}
+    for child in node.children:
+        for key in outer_inputs(child):
+            if key not in known:
+                names.setdefault(key, child.span)
+    more = tuple(Key(name=name, span=place) for name, place in names.items())
+    return replace(node, inputs=(*node.inputs, *more))

@@ -1,0 +1,155 @@
+"""The store of the partial evaluator: all changes are in a log, so that they can be undone and the
+states after the branches of an unknown condition joined."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, TypeAlias
+
+from smachac.pysource.machines.values import (
+    UNKNOWN,
+    Const,
+    OneOf,
+    Slots,
+    Value,
+    one_of,
+)
+from smachac.records import dataclass
+
+ABSENT = object()
+"""In place of a slot that does not exist."""
+
+Changes: TypeAlias = "dict[tuple[int, Any], tuple[Slots, Any, Any]]"
+"""The slots that were written, each with its owner, its key and its value."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Added:
+    """A state that was added to a container: the arguments of the call, as they were then.
+    `possible`: an unknown condition decides whether it is added."""
+
+    label: Value
+    state: Value
+    transitions: Value | None
+    remapping: Value | None
+    span: Any
+    kind: str = "add"
+    connector: Value | None = None
+    loop: Value | None = None
+    final: Value | None = None
+    possible: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Children:
+    """The states of a container, in order; `complete`: there are no others."""
+
+    added: tuple[Added, ...] = ()
+    complete: bool = True
+
+
+class Heap:
+    """The log of all writes: the owner of each slot, its key and its value before."""
+
+    def __init__(self) -> None:
+        self.log: list[tuple[Slots, Any, Any]] = []
+
+    def set(self, slots: Slots, key: Any, value: Any) -> None:
+        self.log.append((slots, key, slots.get(key, ABSENT)))
+        slots[key] = value
+
+    def delete(self, slots: Slots, key: Any) -> None:
+        if key in slots:
+            self.log.append((slots, key, slots[key]))
+            del slots[key]
+
+    def mark(self) -> int:
+        return len(self.log)
+
+    def changes(self, mark: int) -> Changes:
+        """The slots that were written since a mark, with their present values."""
+        return {
+            (id(slots), key): (slots, key, slots.get(key, ABSENT))
+            for slots, key, _ in self.log[mark:]
+        }
+
+    def undo(self, mark: int) -> Changes:
+        """Restores the state at a mark; the changes since then."""
+        found = self.changes(mark)
+        for slots, key, before in reversed(self.log[mark:]):
+            if before is ABSENT:
+                slots.pop(key, None)
+            else:
+                slots[key] = before
+        del self.log[mark:]
+        return found
+
+    def apply(self, changes: Changes) -> None:
+        for slots, key, value in changes.values():
+            if value is ABSENT:
+                self.delete(slots, key)
+            else:
+                self.set(slots, key, value)
+
+    def join(self, states: Iterable[Changes]) -> None:
+        """Writes the state that is one of several, each given by its changes of the present one."""
+        states = [*states]
+        if len(states) == 1:
+            self.apply(states[0])
+            return
+        written: dict[tuple[int, Any], tuple[Slots, Any]] = {}
+        for state in states:
+            written |= {which: (slots, key) for which, (slots, key, _) in state.items()}
+        for which, (slots, key) in written.items():
+            now = slots.get(key, ABSENT)
+            values = [state[which][2] if which in state else now for state in states]
+            self.set(slots, key, joined(values))
+
+
+def joined(values: Iterable[Any]) -> Any:
+    """The contents of a slot that are one of several: of containers, all states that one of them
+    has; of others, one of the values, or unknown."""
+    values = [*values]
+    first = values[0]
+    if all(value is first or value == first for value in values[1:]):
+        return first
+    if any(isinstance(value, Children) for value in values):
+        return _joined_children([v if isinstance(v, Children) else Children() for v in values])
+    if ABSENT in values:  # a name is used only where it has a value
+        return joined([value for value in values if value is not ABSENT])
+    if all(isinstance(value, tuple) for value in values):
+        return OneOf(tuple(values)) if len(values) <= 8 else UNKNOWN  # the items of a list
+    if all(isinstance(value, Mapping) for value in values):
+        return _joined_pairs(values)
+    if any(isinstance(value, tuple | Mapping) for value in values):
+        return UNKNOWN
+    if any(isinstance(value, OneOf) and isinstance(value.values[0], tuple) for value in values):
+        return UNKNOWN
+    return one_of(value if not isinstance(value, bool) else Const(value) for value in values)
+
+
+def _joined_pairs(values: list[Mapping[Any, tuple[Value, Value]]]) -> Any:
+    """The entries of a dictionary that are one of several: an entry that one of them lacks may be
+    absent, so that the whole is not known."""
+    keys = values[0].keys()
+    if any(value.keys() != keys for value in values[1:]):
+        return UNKNOWN
+    return {
+        key: (pair[0], one_of(value[key][1] for value in values)) for key, pair in values[0].items()
+    }
+
+
+def _joined_children(values: list[Children]) -> Children:
+    found: dict[int, Added] = {}
+    counts: Counter[int] = Counter()
+    for value in values:
+        for added in value.added:
+            found[id(added)] = added
+            counts[id(added)] += 1
+    whole = (
+        added if counts[which] == len(values) else replace(added, possible=True)
+        for which, added in found.items()
+    )
+    return Children(tuple(whole), all(value.complete for value in values))

@@ -1,0 +1,116 @@
+"""The modules of a repository, found by name, each loaded once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import PurePath
+
+from smachac.diagnostics.source import Source
+from smachac.pysource.machines.evaluator import Evaluator
+from smachac.pysource.machines.smach_library import library_module, method_of, new_object
+from smachac.pysource.machines.values import (
+    Arguments,
+    Const,
+    Frame,
+    LibraryClass,
+    ModuleValue,
+    Native,
+    Unknown,
+    Value,
+)
+from smachac.pysource.source import python_text
+
+
+class Repository:
+    """The Python files of a repository by name. `read(file)` returns the text of one.
+
+    A module `a.b` is the file whose path ends with `a/b.py` or `a/b/__init__.py`; of several, the
+    one that shares the most folders with the file that imports it.
+    """
+
+    def __init__(self, files: Iterable[str], read: Callable[[str], Source | None]) -> None:
+        self.read = read
+        self.by_stem: dict[str, list[str]] = {}
+        for file in files:
+            path = PurePath(file)
+            stem = path.parent.name if path.name == "__init__.py" else path.stem
+            self.by_stem.setdefault(stem, []).append(file)
+        self.loaded: dict[str, ModuleValue | Unknown] = {}
+        self.libraries: dict[str, ModuleValue] = {}
+        self.missing: dict[str, str] = {}
+
+    def method_of(self, cls: str, name: str) -> Native | None:
+        return method_of(cls, name)
+
+    def new_object(self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments) -> Value:
+        return new_object(evaluator, cls, arguments)
+
+    def load(self, evaluator: Evaluator, name: str, user: ModuleValue) -> Value:
+        """A module by its dotted name; unknown, with its name, if the repository has none."""
+        if not name:
+            return Unknown(reason="")
+        known = library_module(self.libraries, name)
+        if known is not None:
+            return known
+        file = self.file_of(name, user)
+        if file is None:
+            return Unknown(reason=name)
+        return self.module(evaluator, file)
+
+    def file_of(self, name: str, user: ModuleValue) -> str | None:
+        """The file of a module."""
+        parts = name.split(".")
+        endings = (os.sep.join(parts) + ".py", os.sep.join([*parts, "__init__.py"]))
+        found = [
+            file
+            for file in self.by_stem.get(parts[-1], ())
+            if any(file == end or file.endswith(os.sep + end) for end in endings)
+        ]
+        if not found:
+            return None
+        folders = PurePath(user.file).parent.parts
+        return min(
+            found, key=lambda file: (-_shared(folders, PurePath(file).parts), len(file), file)
+        )
+
+    def module(self, evaluator: Evaluator, file: str, *, main: bool = False) -> Value:
+        """The module of a file, loaded with the first use."""
+        key = f"{file}:main" if main else file
+        if key in self.loaded:
+            return self.loaded[key]
+        source = self.read(file)
+        text = python_text(source, template=False) if source is not None else None
+        if text is None:
+            found = Unknown(reason=file)
+            self.loaded[key] = found
+            return found
+        path = PurePath(file)
+        folder = ".".join(path.parent.parts)
+        name = "__main__" if main else f"{folder}.{path.stem}".strip(".")
+        module = ModuleValue(name, {}, text, folder, file=file)
+        module.slots["__name__"] = Const(name)
+        module.slots["__file__"] = Const(file)
+        self.loaded[key] = module
+        around = [*evaluator.opened]
+        evaluator.opened.clear()
+        frame = Frame(module.slots, module)
+        evaluator.block(text.tree.body, frame)
+        evaluator.opened[:] = around
+        return module
+
+
+def _shared(one: tuple[str, ...], other: tuple[str, ...]) -> int:
+    count = 0
+    for left, right in zip(one, other, strict=False):
+        if left != right:
+            break
+        count += 1
+    return count
+
+
+def missing_packages(values: Mapping[str, Value]) -> list[str]:
+    """The packages that a module imports and the repository does not have."""
+    names = {value.reason.partition(".")[0] for value in values.values()
+             if isinstance(value, Unknown) and value.reason}  # fmt: skip
+    return sorted(names)

@@ -1,0 +1,187 @@
+"""The machines of a file: what its main part builds, and what functions and classes build that
+nothing calls, with unknown arguments."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator
+from typing import TypeVar
+
+from smachac.pysource.machines.evaluator import BudgetError, Evaluator
+from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.project import Repository
+from smachac.pysource.machines.smach_library import CONTAINERS, is_container
+from smachac.pysource.machines.values import (
+    UNKNOWN,
+    Arguments,
+    Class,
+    Frame,
+    Function,
+    Instance,
+    LibraryClass,
+    ModuleValue,
+    Value,
+    alternatives,
+)
+from smachac.records import dataclass
+
+T = TypeVar("T")
+
+_WORDS = frozenset(name.rpartition(".")[2] for name in CONTAINERS)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Roots:
+    """Containers that are in no other one, with those that were made for them. `closed`: no code
+    outside the repository can change their userdata. `complete`: the evaluation came to its end."""
+
+    containers: tuple[Instance, ...]
+    closed: bool
+    complete: bool
+
+
+def machines_of(
+    repository: Repository, evaluator: Evaluator, file: str, read: Callable[[Roots], T]
+) -> list[T]:
+    """What `read` makes of the machines of a file. It is called while the objects are as the code
+    has left them; changes by one function are undone before the next one is called."""
+    evaluator.steps, found = 0, []
+    before = len(evaluator.made)
+    complete = True
+    module: Value = UNKNOWN
+    try:
+        module = repository.module(evaluator, file, main=True)
+    except BudgetError:
+        complete = False
+        evaluator.opened.clear()
+    found.append(read(_roots(evaluator, before, file, closed=True, complete=complete)))
+    if not isinstance(module, ModuleValue):
+        return found
+    for _ in range(2):  # functions that others call come last: they may be called by then
+        for candidate in _candidates(evaluator, module):
+            mark, before = evaluator.heap.mark(), len(evaluator.made)
+            orphans = evaluator.orphans
+            complete = True
+            evaluator.steps = 0
+            try:
+                candidate()
+            except BudgetError:
+                complete = False
+                evaluator.opened.clear()
+                evaluator.regions.clear()
+                evaluator.calls.clear()
+            if evaluator.orphans == orphans:
+                roots = _roots(evaluator, before, file, closed=False, complete=complete)
+                found.append(read(roots))
+            evaluator.heap.undo(mark)
+            del evaluator.made[before:]
+    return found
+
+
+def _roots(evaluator: Evaluator, before: int, file: str, *, closed: bool, complete: bool) -> Roots:
+    """The containers that were made since then, in this file, and are in no other one."""
+    containers = [made for made in evaluator.made[before:] if is_container(made)]
+    inside = {
+        id(part)
+        for container in containers
+        for added in _children(container)
+        for part in alternatives(added.state)
+    }
+    own = [
+        container
+        for container in containers
+        if id(container) not in inside
+        and container.span is not None
+        and container.span.source.name == file
+        and (_children(container) or "$executed" in container.slots)
+    ]
+    return Roots(containers=tuple(own), closed=closed, complete=complete)
+
+
+def _children(container: Instance) -> tuple[Added, ...]:
+    children = container.slots.get("$children")
+    return children.added if isinstance(children, Children) else ()
+
+
+def _candidates(evaluator: Evaluator, module: ModuleValue) -> Iterator[Callable[[], object]]:
+    """The functions and classes of a module that nothing calls and that can build containers."""
+    frame = Frame(module.slots, module)
+    called = _called_names(module)
+    for first in (True, False):
+        for value in [*module.slots.values()]:
+            name = getattr(value, "name", "")
+            if (name in called) is first:
+                continue
+            match value:
+                case Function() if value.frame.module is module:
+                    if value.node not in evaluator.called and _builds(value.node, module):
+                        evaluator.called.add(value.node)
+                        yield lambda value=value: evaluator.run(value, _unknown(value))  # type: ignore[misc]
+                case Class() if value.frame.module is module:
+                    yield from _of_class(evaluator, value, module, frame)
+
+
+def _of_class(
+    evaluator: Evaluator, cls: Class, module: ModuleValue, frame: Frame
+) -> Iterator[Callable[[], object]]:
+    order = evaluator.classes(cls)
+    is_own = any(isinstance(base, LibraryClass) and base.name in CONTAINERS for base in order)
+    maker = cls.slots.get("__init__")
+    is_made = isinstance(maker, Function) and maker.node in evaluator.called
+    if is_made or not (is_own or _builds(cls.node, module)):
+        return
+    methods = [
+        value
+        for value in cls.slots.values()
+        if isinstance(value, Function) and value.owner is cls and not value.name.startswith("__")
+    ]
+
+    def build() -> None:
+        arguments = Arguments()
+        if isinstance(maker, Function):
+            arguments = _unknown(maker).without_first()
+        made = evaluator.make(cls, arguments, _place(module, cls), frame)
+        for method in methods:
+            if method.node not in evaluator.called and _builds(method.node, module):
+                evaluator.run(method, _unknown(method).without_first().with_first(made))
+
+    yield build
+
+
+def _place(module: ModuleValue, cls: Class) -> object:
+    return module.text.span(cls.node) if module.text is not None else None
+
+
+def _unknown(function: Function) -> Arguments:
+    """Unknown arguments for the parameters that have no default value."""
+    taken = function.node.args
+    positional = [*taken.posonlyargs, *taken.args]
+    return Arguments((UNKNOWN,) * (len(positional) - len(function.defaults)))
+
+
+def _builds(node: ast.AST, module: ModuleValue) -> bool:
+    """Whether code names a container class of SMACH, or one of the module that is derived from
+    one."""
+    for part in ast.walk(node):
+        name = part.attr if isinstance(part, ast.Attribute) else getattr(part, "id", None)
+        if name in _WORDS:
+            return True
+        value = module.slots.get(name) if isinstance(part, ast.Name) else None
+        if isinstance(value, Class) and any(
+            isinstance(base, LibraryClass) and base.name in CONTAINERS for base in value.bases
+        ):
+            return True
+    return False
+
+
+def _called_names(module: ModuleValue) -> frozenset[str]:
+    """The names that the functions of a module call."""
+    if module.text is None:
+        return frozenset()
+    found = set()
+    for node in ast.walk(module.text.tree):
+        if isinstance(node, ast.Call):
+            match node.func:
+                case ast.Name(id=name) | ast.Attribute(attr=name):
+                    found.add(name)
+    return frozenset(found)

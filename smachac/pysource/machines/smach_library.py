@@ -1,0 +1,563 @@
+"""The classes and functions of SMACH, smach_ros and Python's library that the evaluator models.
+
+The signatures are those of executive_smach 2.5.2 (ROS 1) and 3.0.3 (ROS 2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from smachac.diagnostics.source import Span
+from smachac.pysource.machines.builtins import MAKERS
+from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.values import (
+    NONE,
+    UNKNOWN,
+    Arguments,
+    Const,
+    DictValue,
+    Function,
+    Instance,
+    Interface,
+    Interpreter,
+    LibraryClass,
+    ListValue,
+    Method,
+    ModuleValue,
+    Native,
+    OneOf,
+    Partial,
+    TupleValue,
+    Unknown,
+    UseFault,
+    Value,
+    alternatives,
+    sequence,
+)
+
+Run = Callable[[Interpreter, Arguments, "Span | None"], Value]
+
+CONTAINERS = ("smach.StateMachine", "smach.Sequence", "smach.Concurrence", "smach.Iterator")
+"""The container classes of SMACH."""
+
+STATIC = frozenset(["add", "add_auto", "set_contained_state"])
+"""The methods that add to the container that `with` has opened."""
+
+NO_OUTCOMES: Sequence[str] = ()
+
+_READY = {
+    "smach_ros.SimpleActionState": ("succeeded", "aborted", "preempted"),
+    "smach_ros.ServiceState": ("succeeded", "aborted", "preempted"),
+    "smach_ros.MonitorState": ("valid", "invalid", "preempted"),
+    "smach_ros.ConditionState": ("true", "false", "preempted"),
+    "smach.ConditionState": ("true", "false", "preempted"),
+}
+"""The outcomes of the states that are ready to use."""
+
+_PARAMETERS: Mapping[str, tuple[str, ...]] = {
+    "smach_ros.SimpleActionState": (
+        "action_name", "action_spec", "goal", "goal_key", "goal_slots", "goal_cb", "goal_cb_args",
+        "goal_cb_kwargs", "result_key", "result_slots", "result_cb", "result_cb_args",
+        "result_cb_kwargs", "slots", "input_keys", "output_keys", "outcomes",
+    ),
+    "smach_ros.ServiceState": (
+        "service_name", "service_spec", "request", "request_key", "request_slots", "request_cb",
+        "request_cb_args", "request_cb_kwargs", "response_key", "response_slots", "response_cb",
+        "response_cb_args", "response_cb_kwargs", "input_keys", "output_keys", "outcomes",
+    ),
+    "smach_ros.MonitorState": (
+        "topic", "msg_type", "cond_cb", "max_checks", "input_keys", "output_keys",
+    ),
+    "smach_ros.ConditionState": (
+        "cond_cb", "input_keys", "poll_rate", "timeout", "max_checks",
+    ),
+    "smach.ConditionState": ("cond_cb", "input_keys", "poll_rate", "timeout", "max_checks"),
+}  # fmt: skip
+"""The parameters of the states that are ready to use, in their order."""
+
+_READ = ("goal_key", "goal_slots", "request_key", "request_slots")
+_WRITTEN = ("result_key", "result_slots", "response_key", "response_slots")
+
+
+def _names(evaluator: Interpreter, value: Value | None, span: Span | None) -> Value:
+    """A list of names. Of a text, each letter is a name: a fault."""
+    if value is None:
+        return TupleValue(())
+    if isinstance(value, Const) and isinstance(value.value, str):
+        if value.value and span is not None:
+            place = value.span or span
+            evaluator.faults.append(UseFault("text as list", place, (value.value,)))
+    return value
+
+
+def _joined(*values: Value) -> Value:
+    parts = [sequence(value) for value in values]
+    if any(part is None for part in parts):
+        return UNKNOWN
+    return TupleValue(tuple(item for part in parts for item in part or ()))
+
+
+def _state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.get(0, "self")
+    if isinstance(me, Instance):
+        names = [_names(evaluator, arguments.get(at, name), span or me.span)
+                 for at, name in enumerate(("outcomes", "input_keys", "output_keys", "io_keys"), 1)]  # fmt: skip
+        outcomes, inputs, outputs, both = names
+        _interface(evaluator, me, outcomes, _joined(inputs, both), _joined(outputs, both))
+    return NONE
+
+
+def _interface(
+    evaluator: Interpreter, me: Instance, outcomes: Value, inputs: Value, outputs: Value
+) -> None:
+    for slot, value in (("$outcomes", outcomes), ("$inputs", inputs), ("$outputs", outputs)):
+        if isinstance(value, ListValue):  # a copy: SMACH makes a set of it
+            items = value.items
+            value = TupleValue(items) if isinstance(items, tuple) else value
+        evaluator.heap.set(me.slots, slot, value)
+
+
+def _container(kind: str, inputs_at: int, others: Sequence[tuple[int, str]]) -> Run:
+    """The constructor of a container with the places of its arguments."""
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if not isinstance(me, Instance):
+            return NONE
+        here = span or me.span
+        outcomes = _names(evaluator, arguments.get(1, "outcomes"), here)
+        inputs = _names(evaluator, arguments.get(inputs_at, "input_keys"), here)
+        outputs = _names(evaluator, arguments.get(inputs_at + 1, "output_keys"), here)
+        _interface(evaluator, me, outcomes, inputs, outputs)
+        evaluator.heap.set(me.slots, "$kind", Const(kind))
+        evaluator.heap.set(me.slots, "$children", Children())
+        evaluator.heap.set(me.slots, "userdata", DictValue({"items": {}, "$userdata": True}))
+        evaluator.heap.set(me.slots, "$userdata", Const(True))
+        for at, name in others:
+            value = arguments.get(at, name)
+            if value is not None:
+                evaluator.heap.set(me.slots, f"${name}", value)
+        return NONE
+
+    return run
+
+
+def _cb_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me, function = arguments.get(0, "self"), arguments.get(1, "cb", UNKNOWN)
+    if isinstance(me, Instance) and function is not None:
+        own = _of_callback(function)
+        given = [arguments.get(at, name) for at, name in
+                 ((4, "outcomes"), (5, "input_keys"), (6, "output_keys"))]  # fmt: skip
+        both = arguments.get(7, "io_keys") or TupleValue(())
+        outcomes = _joined(_names(evaluator, given[0], span), own[0])
+        inputs = _joined(_names(evaluator, given[1], span), own[1], both)
+        outputs = _joined(_names(evaluator, given[2], span), own[2], both)
+        _interface(evaluator, me, outcomes, inputs, outputs)
+        evaluator.heap.set(me.slots, "$callback", function)
+    return NONE
+
+
+def _of_callback(function: Value) -> tuple[Value, Value, Value]:
+    """The outcomes and keys that `cb_interface` gives to a callback."""
+    found = next(functions_of(function), None)
+    interface = found.interface if found is not None else None
+    if interface is not None:
+        return interface.outcomes, interface.input_keys, interface.output_keys
+    nothing = TupleValue(())
+    known = found is not None or (isinstance(function, Const) and function.value is None)
+    return (nothing, nothing, nothing) if known else (UNKNOWN, UNKNOWN, UNKNOWN)
+
+
+def _ready(name: str) -> Run:
+    """The constructor of a state that is ready to use."""
+    parameters = _PARAMETERS[name]
+
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        if not isinstance(me, Instance):
+            return NONE
+        given = arguments.without_first()
+        if given.positional and not isinstance(given.positional[0], Const | OneOf):
+            first = given.positional[0]
+            named = {key for key, _ in given.named}
+            if name != "smach_ros.ConditionState" and "node" not in named:
+                if isinstance(first, Unknown | Instance) and not isinstance(first, Const):
+                    node_first = len(given.positional) > 1 and isinstance(
+                        given.positional[1], Const
+                    )
+                    given = given.without_first() if node_first else given
+        values = {
+            parameter: value
+            for at, parameter in enumerate(parameters)
+            if (value := given.get(at, parameter)) is not None
+        }
+        callbacks = [values[key] for key in values if key.endswith("_cb") and key != "cond_cb"]
+        interfaces = [_of_callback(value) for value in callbacks]
+        outcomes = [TupleValue(tuple(Const(text) for text in _READY[name]))]
+        outcomes += [_names(evaluator, values.get("outcomes"), span), *(i[0] for i in interfaces)]
+        reads = [_one(values[key]) for key in _READ if key in values]
+        writes = [_one(values[key]) for key in _WRITTEN if key in values]
+        inputs = [_names(evaluator, values.get("input_keys"), span), *(i[1] for i in interfaces)]
+        outputs = [_names(evaluator, values.get("output_keys"), span), *(i[2] for i in interfaces)]
+        slots = _names(evaluator, values.get("slots"), span)
+        _interface(evaluator, me, _joined(*outcomes), _joined(*inputs, *reads, slots),
+                   _joined(*outputs, *writes, slots))  # fmt: skip
+        evaluator.heap.set(me.slots, "$required", _joined(*reads))
+        return NONE
+
+    return run
+
+
+def _one(value: Value) -> Value:
+    """A key, or a list of keys, as a list."""
+    if isinstance(value, Const):
+        return TupleValue(() if value.value is None else (value,))
+    return value
+
+
+def _add(kind: str) -> Run:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        label, state = arguments.get(0, "label", UNKNOWN), arguments.get(1, "state", UNKNOWN)
+        connector = loop = final = None
+        if kind == "add_auto":
+            connector = arguments.get(2, "connector_outcomes", UNKNOWN)
+            transitions, remapping = arguments.get(3, "transitions"), arguments.get(4, "remapping")
+        elif kind == "concurrence":
+            transitions, remapping = None, arguments.get(2, "remapping")
+        elif kind == "iterator":
+            transitions, remapping = None, None
+            loop = arguments.get(2, "loop_outcomes")
+            final = arguments.get(4, "final_outcome_map")
+        else:
+            transitions, remapping = arguments.get(2, "transitions"), arguments.get(3, "remapping")
+        if not evaluator.opened:
+            evaluator.orphans += 1
+            return state or UNKNOWN
+        container = evaluator.opened[-1]
+        if not isinstance(container, Instance):
+            return state or UNKNOWN
+        children = container.slots.get("$children")
+        if not isinstance(children, Children) or span is None:
+            return state or UNKNOWN
+        added = Added(
+            label=label or UNKNOWN, state=state or UNKNOWN, transitions=_copied(transitions),
+            remapping=_copied(remapping), span=span, kind=kind, connector=connector, loop=loop,
+            final=_copied(final), possible=False,
+        )  # fmt: skip
+        whole = (*children.added, added)
+        if len(whole) > 5_000:
+            whole = children.added
+            children = Children(whole, False)
+        evaluator.heap.set(container.slots, "$children", Children(whole, children.complete))
+        if isinstance(transitions, DictValue) and kind == "add" and isinstance(state, Instance):
+            _write_missing(evaluator, transitions, state, span)
+        return state or UNKNOWN
+
+    return run
+
+
+def _copied(value: Value | None) -> Value | None:
+    """A dictionary as it is now: code can change it later."""
+    if not isinstance(value, DictValue):
+        return value
+    return DictValue({**value.slots}, value.span, value.repeated)
+
+
+def _write_missing(
+    evaluator: Interpreter, transitions: DictValue, state: Instance, span: Span
+) -> None:
+    """SMACH writes the outcomes of a state that have no transition into the dictionary it got: a
+    second state with the same dictionary then has outcomes that it does not have."""
+    items = transitions.items
+    outcomes = sequence(state.slots.get("$outcomes"))
+    if not isinstance(items, Mapping) or outcomes is None:
+        return
+    names = [name for name in outcomes if isinstance(name, Const)]
+    known = {name.value for name in names}
+    first = transitions.slots.get("$filled", {})
+    wrong = [key for key in first if key not in known]
+    if wrong:
+        there = first[wrong[0]]
+        evaluator.faults.append(UseFault("shared transitions", span, (str(wrong[0]),), there))
+        return
+    missing = {name.value: (name, NONE) for name in names if name.value not in items}
+    if missing:
+        evaluator.heap.set(transitions.slots, "items", {**items, **missing})
+        filled = {**first, **dict.fromkeys(missing, span)}
+        evaluator.heap.set(transitions.slots, "$filled", filled)
+
+
+def _set_initial(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.get(0, "self")
+    if isinstance(me, Instance):
+        evaluator.heap.set(me.slots, "$initial", arguments.get(1, "initial_states", UNKNOWN))
+        if len(arguments.positional) > 2:
+            evaluator.heap.set(me.slots, "$exposed", Const(True))
+    return NONE
+
+
+def _execute(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.get(0, "self")
+    if isinstance(me, Instance):
+        evaluator.heap.set(me.slots, "$executed", Const(True))
+        if len(arguments.positional) + len(arguments.named) > 1:
+            evaluator.heap.set(me.slots, "$exposed", Const(True))
+    return UNKNOWN
+
+
+def _register(*slots: str) -> Run:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        for slot in slots:
+            if isinstance(me, Instance):
+                before = me.slots.get(slot, TupleValue(()))
+                whole = _joined(before, arguments.get(1, "keys") or UNKNOWN)
+                evaluator.heap.set(me.slots, slot, whole)
+        return NONE
+
+    return run
+
+
+def _registered(slot: str) -> Run:
+    def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+        me = arguments.get(0, "self")
+        found = me.slots.get(slot, UNKNOWN) if isinstance(me, Instance) else UNKNOWN
+        items = sequence(found)
+        return UNKNOWN if items is None else evaluator.new_list(items)
+
+    return run
+
+
+def _nothing(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    return NONE
+
+
+_STATE: Mapping[str, Run] = {
+    "__init__": _state,
+    "execute": _execute,
+    "register_outcomes": _register("$outcomes"),
+    "register_input_keys": _register("$inputs"),
+    "register_output_keys": _register("$outputs"),
+    "register_io_keys": _register("$inputs", "$outputs"),
+    "get_registered_outcomes": _registered("$outcomes"),
+    "get_registered_input_keys": _registered("$inputs"),
+    "get_registered_output_keys": _registered("$outputs"),
+    **dict.fromkeys(
+        ("request_preempt", "service_preempt", "recall_preempt", "preempt_requested",
+         "register_start_cb", "register_transition_cb", "register_termination_cb",
+         "set_initial_userdata", "check_consistency", "close"), _nothing,
+    ),
+}  # fmt: skip
+
+
+def _open(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    me = arguments.get(0, "self")
+    if me is not None:
+        evaluator.opened.append(me)
+    return NONE
+
+
+def _close(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    if evaluator.opened:
+        evaluator.opened.pop()
+    return NONE
+
+
+_CONTAINER: Mapping[str, Run] = {
+    **_STATE,
+    "open": _open,
+    "close": _close,
+    "set_initial_state": _set_initial,
+}
+
+_METHODS: Mapping[str, Mapping[str, Run]] = {
+    "smach.State": _STATE,
+    "smach.CBState": {**_STATE, "__init__": _cb_state},
+    "smach.StateMachine": {
+        **_CONTAINER,
+        "__init__": _container("StateMachine", 2, ()),
+        "add": _add("add"),
+        "add_auto": _add("add_auto"),
+    },
+    "smach.Sequence": {
+        **_CONTAINER,
+        "__init__": _container("Sequence", 3, ((2, "connector_outcome"),)),
+        "add": _add("sequence"),
+        "add_auto": _add("add_auto"),
+    },
+    "smach.Concurrence": {
+        **_CONTAINER,
+        "__init__": _container(
+            "Concurrence", 3,
+            ((2, "default_outcome"), (5, "outcome_map"), (6, "outcome_cb"),
+             (7, "child_termination_cb")),
+        ),
+        "add": _add("concurrence"),
+    },
+    "smach.Iterator": {
+        **_CONTAINER,
+        "__init__": _container(
+            "Iterator", 2, ((4, "it"), (5, "it_label"), (6, "exhausted_outcome"))
+        ),
+        "set_contained_state": _add("iterator"),
+    },
+    **{name: {**_STATE, "__init__": _ready(name)} for name in _READY},
+}  # fmt: skip
+
+
+def method_of(cls: str, name: str) -> Native | None:
+    """A method of a class of SMACH; None if it has none of that name."""
+    run = _METHODS.get(cls, {}).get(name)
+    return Native(f"{cls}.{name}", run, name in STATIC) if run is not None else None
+
+
+def new_object(evaluator: Interpreter, cls: LibraryClass, arguments: Arguments) -> Value:
+    """An object of a class of Python's library."""
+    make = MAKERS.get(cls.name)
+    return make(evaluator, arguments, None) if make is not None else UNKNOWN
+
+
+def _user_data(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    return DictValue({"items": {}, "$userdata": True})
+
+
+def _cb_interface(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    nothing = TupleValue(())
+    interface = Interface(
+        outcomes=arguments.get(0, "outcomes", nothing) or nothing,
+        input_keys=arguments.get(1, "input_keys", nothing) or nothing,
+        output_keys=arguments.get(2, "output_keys", nothing) or nothing,
+    )
+
+    def decorate(evaluator: Interpreter, given: Arguments, span: Span | None) -> Value:
+        function = given.get(0, "cb", UNKNOWN) or UNKNOWN
+        if isinstance(function, Function):
+            function.interface = interface
+        return function
+
+    return Native("cb_interface", decorate)
+
+
+def _partial(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    if not arguments.positional:
+        return UNKNOWN
+    return Partial(arguments.positional[0], arguments.without_first())
+
+
+def _copy(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    match arguments.get(0, "x", UNKNOWN):
+        case ListValue() as value:
+            return ListValue({"items": value.items}, value.span, value.kind)
+        case DictValue() as value:
+            return DictValue({"items": value.items}, value.span, value.repeated)
+        case Const() | TupleValue() as plain:
+            return plain
+    return UNKNOWN
+
+
+def _same(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    return arguments.get(0, "x", UNKNOWN) or UNKNOWN
+
+
+def _wraps(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    return Native("wraps", _same)
+
+
+def _named_tuple(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """`collections.namedtuple`: a function that makes objects with these attributes."""
+    fields = arguments.get(1, "field_names", UNKNOWN)
+    names: list[str] | None = None
+    if isinstance(fields, Const) and isinstance(fields.value, str):
+        names = fields.value.replace(",", " ").split()
+    elif (items := sequence(fields)) is not None:
+        names = [str(item.value) for item in items if isinstance(item, Const)]
+
+    def make(evaluator: Interpreter, given: Arguments, span: Span | None) -> Value:
+        if names is None or given.open:
+            return UNKNOWN
+        slots: dict[Any, Any] = {
+            name: given.get(at, name, UNKNOWN) for at, name in enumerate(names)
+        }
+        return Instance(LibraryClass("builtins.object"), slots, span)
+
+    return Native("namedtuple", make)
+
+
+def _module(name: str, **names: Value) -> ModuleValue:
+    return ModuleValue(name, {**names})
+
+
+def _classes(prefix: str, names: str) -> dict[str, Value]:
+    return {name: LibraryClass(f"{prefix}.{name}") for name in names.split()}
+
+
+def _libraries() -> dict[str, ModuleValue]:
+    smach = {
+        **_classes("smach", "State CBState StateMachine Sequence Concurrence Iterator"),
+        "ConditionState": LibraryClass("smach.ConditionState"),
+        "cb_interface": Native("cb_interface", _cb_interface),
+        "UserData": Native("UserData", _user_data),
+        "Container": UNKNOWN,
+        **dict.fromkeys(
+            ("loginfo", "logwarn", "logerr", "logdebug", "set_loggers", "set_shutdown_check"),
+            Native("nothing", _nothing),
+        ),
+    }
+    smach_ros = {
+        **_classes("smach_ros", "SimpleActionState ServiceState MonitorState ConditionState"),
+        "IntrospectionServer": Native("nothing", lambda e, a, s: Unknown(reason="rospy")),
+        "set_preempt_handler": Native("nothing", _nothing),
+        "ActionServerWrapper": Native("nothing", lambda e, a, s: Unknown(reason="rospy")),
+    }
+    partial = Native("partial", _partial)
+    return {
+        "smach": _module("smach", **smach),
+        "smach_ros": _module("smach_ros", **smach_ros),
+        "functools": _module("functools", partial=partial, wraps=Native("wraps", _wraps)),
+        "copy": _module("copy", copy=Native("copy", _copy), deepcopy=Native("copy", _copy)),
+        "enum": _module(
+            "enum", **_classes("enum", "Enum IntEnum StrEnum Flag IntFlag"),
+            unique=Native("unique", _same), auto=Native("auto", lambda e, a, s: UNKNOWN),
+        ),
+        "collections": _module(
+            "collections", **_classes("collections", "OrderedDict defaultdict deque"),
+            namedtuple=Native("namedtuple", _named_tuple),
+        ),
+        "sys": _module("sys", version_info=TupleValue(tuple(Const(n) for n in (3, 12, 0)))),
+        "dataclasses": _module("dataclasses"),
+        "typing": _module("typing"),
+        "__future__": _module("__future__"),
+    }  # fmt: skip
+
+
+def library_module(known: dict[str, ModuleValue], name: str) -> Value | None:
+    """A module that the evaluator models; None for any other. `known` are those of one run."""
+    if not known:
+        known.update(_libraries())
+    if name in known:
+        found = known[name]
+        if name in ("dataclasses", "typing", "__future__"):
+            return Unknown(reason=name)
+        return found
+    head = name.partition(".")[0]
+    if head in ("smach", "smach_ros") and name.count(".") == 1:
+        return known[head]
+    return None
+
+
+def functions_of(value: Value) -> Iterator[Function]:
+    """The functions of the project behind a value."""
+    for part in alternatives(value):
+        match part:
+            case Function():
+                yield part
+            case Method(function=Function() as inner):
+                yield inner
+            case Partial(function=inner_):
+                yield from functions_of(inner_)
+
+
+def is_container(value: Value) -> bool:
+    """Whether a value is a container of SMACH."""
+    return isinstance(value, Instance) and "$children" in value.slots
