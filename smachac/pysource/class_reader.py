@@ -241,6 +241,33 @@ def facts_of(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFact
         return None
 
 
+def facts_of_callback(
+    module: Module, function: ast.FunctionDef, userdata: str, library: UserCode
+) -> ClassFacts | None:
+    """The facts about a function that works as a state; `userdata` is its parameter."""
+    nothing = OwnClass(classes=(), names=(), root="object")
+    try:
+        flow = Flows(nothing, library).of(module, function, userdata)
+    except (RecursionError, MemoryError, ValueError):
+        return None
+    if flow is None or not is_plain(function):
+        return None
+    name = Word(function.name, name_span(module.text, function))
+    return ClassFacts(
+        name=name,
+        endings=flow.endings,
+        complete=flow.complete and not flow.passed,
+        execute=name.span,
+        silent=flow.silent,
+        always_silent=flow.always_silent,
+        open_end=flow.open_end,
+        in_loop=flow.in_loop,
+        reads=flow.reads,
+        writes=flow.writes,
+        closed=bool(flow.endings) and all(each.written is not None for each in flow.endings),
+    )
+
+
 def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
     """A fault at the name of the class in the interface."""
     at = word.span.text.rfind(fault.name.text)

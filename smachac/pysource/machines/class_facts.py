@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import PurePath
 
 from smachac.diagnostics.source import Source
 from smachac.ir.class_facts import ClassFacts
-from smachac.pysource.class_reader import facts_of
+from smachac.pysource.class_reader import facts_of, facts_of_callback
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.values import Class, ModuleValue
+from smachac.pysource.machines.values import Class, Function, ModuleValue
 from smachac.pysource.modules import Module, module_of
 from smachac.pysource.user_code import UserCode
 
@@ -22,7 +23,19 @@ class ClassReader:
         self.modules: dict[str, Module] = {}
         self.facts: dict[int, tuple[Class, ClassFacts | None]] = {}
 
-    def __call__(self, cls: Class) -> ClassFacts | None:
+    def of_callback(self, function: Function, *, bound: bool) -> ClassFacts | None:
+        """The facts about a function that works as a state; `bound`: it is a method."""
+        module = self._module(function.frame.module)
+        node = function.node
+        if module is None or not isinstance(node, ast.FunctionDef):
+            return None
+        parameters = [*node.args.posonlyargs, *node.args.args][bound:]
+        if not parameters:
+            return None
+        return facts_of_callback(module, node, parameters[0].arg, self.library)
+
+    def of_class(self, cls: Class) -> ClassFacts | None:
+        """The facts about a class."""
         known = self.facts.get(id(cls.node))
         if known is None:
             module = self._module(cls.frame.module)

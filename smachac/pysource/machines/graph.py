@@ -8,9 +8,9 @@ with several possible targets leads to a state of its own that leads to each of 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
 
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir import nodes, types
@@ -49,6 +49,7 @@ from smachac.pysource.machines.values import (
     Unknown,
     Value,
     alternatives,
+    one_of,
     sequence,
     truth,
 )
@@ -61,7 +62,12 @@ _DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef
 MOST_LEVELS = 60
 """The deepest nesting of containers."""
 
-ReadClass = Callable[[Class], ClassFacts | None]
+
+class FactReader(Protocol):
+    """Reads what the code of a state does."""
+
+    def of_class(self, cls: Class) -> ClassFacts | None: ...
+    def of_callback(self, function: Function, *, bound: bool) -> ClassFacts | None: ...
 
 
 class Coverage(NamedTuple):
@@ -79,10 +85,10 @@ class Graph(NamedTuple):
     coverage: Coverage
 
 
-def graphs(roots: Roots, evaluator: Evaluator, read_class: ReadClass) -> Iterator[Graph]:
+def graphs(roots: Roots, evaluator: Evaluator, reader: FactReader) -> Iterator[Graph]:
     """The machine of each root."""
     for container in roots.containers:
-        yield _Builder(roots, evaluator, read_class).graph(container)
+        yield _Builder(roots, evaluator, reader).graph(container)
 
 
 def _text(value: Value | None) -> str | None:
@@ -92,10 +98,10 @@ def _text(value: Value | None) -> str | None:
 
 
 class _Builder:
-    def __init__(self, roots: Roots, evaluator: Evaluator, read_class: ReadClass) -> None:
+    def __init__(self, roots: Roots, evaluator: Evaluator, reader: FactReader) -> None:
         self.roots = roots
         self.evaluator = evaluator
-        self.read_class = read_class
+        self.reader = reader
         self.types: dict[str, StateType] = {}
         self.type_names: dict[tuple[object, ...], str] = {}
         self.unknown: list[tuple[Span, str]] = []
@@ -263,7 +269,7 @@ class _Builder:
             what = "outcomes" if outcomes is None else "keys"
             reason = "a base class is not known" if value.opaque else f"its {what} are not known"
             return self.open_leaf(name, span, added, reason)
-        facts = self.read_class(value.cls) if isinstance(value.cls, Class) else None
+        facts = self._facts(value)
         required = sequence(value.slots.get("$required")) or ()
         names = {text for item in required if (text := _text(item)) is not None}
         if facts is not None:
@@ -279,6 +285,17 @@ class _Builder:
             inputs=in_keys, outputs=out_keys, span=span, class_facts=facts,
         )  # fmt: skip
 
+    def _facts(self, value: Instance) -> ClassFacts | None:
+        """What the code of a state does; None if it is not known."""
+        if isinstance(value.cls, Class):
+            return self.reader.of_class(value.cls)
+        callback = value.slots.get("$callback")
+        bound = isinstance(callback, Method)
+        function = callback.function if isinstance(callback, Method) else callback
+        if isinstance(function, Function):
+            return self.reader.of_callback(function, bound=bound)
+        return None
+
     def open_leaf(self, name: str, span: Span, added: Added, reason: str) -> Leaf:
         """A state of an unknown type: its outcomes are those of its transitions."""
         self.unknown.append((span, reason))
@@ -293,8 +310,10 @@ class _Builder:
     ) -> str:  # fmt: skip
         cls = value.cls
         short = cls.name if isinstance(cls, Class) else cls.short
+        if facts is not None and facts.name is not None:
+            short = facts.name.text
         which = (
-            id(cls) if isinstance(cls, Class) else cls.name,
+            id(cls) if isinstance(cls, Class) else f"{cls.name} {short}",
             tuple(name for name, _ in outcomes),
             tuple(key.name for key in inputs),
             tuple(key.name for key in outputs),
@@ -352,7 +371,8 @@ class _Children:
                 self.builder.unknown.append((one.span, "its name is not known"))
             elif one.possible:
                 self.builder.unknown.append((one.span, "a condition that is not known adds it"))
-        if len(known) < len(added) or any(one.possible for one in added):
+        known = _one_for_each_name(known)
+        if any(_text(one.label) is None for one in added) or (added and added[0].possible):
             self.incomplete = True
         if self.outcomes is None:
             self.incomplete = True
@@ -380,14 +400,15 @@ class _Children:
         return [*self.outside.items()]
 
     def initial(self, added: Sequence[Added]) -> str:
+        """The first state. Of a container that is not known as a whole it is ELSEWHERE: each state
+        can be reached, and each key can have a value."""
+        if self.incomplete:
+            return ELSEWHERE
         wanted = sequence(self.made.slots.get("$initial"))
         name = _text(wanted[0]) if wanted else None
         if name is not None and name in self.labels:
             return name
-        first = _text(added[0].label) if added and not added[0].possible else None
-        if first is not None and not (self.incomplete and added[0].possible):
-            return first
-        return ELSEWHERE if self.incomplete else ""
+        return _text(added[0].label) or "" if added else ""
 
     def _transitions(self, node: Node, added: Added, following: str | None) -> Iterator[Transition]:
         span: Span = added.span
@@ -492,6 +513,38 @@ class _Children:
                 for name in targets
             ),
         )  # fmt: skip
+
+
+def _one_for_each_name(added: Sequence[Added]) -> list[Added]:
+    """The states of a container. Those of one name that unknown conditions add are one state: it
+    is one of several, and leads to one of several targets."""
+    found: dict[str, list[Added]] = {}
+    order: list[Added] = []
+    for one in added:
+        name = _text(one.label) or ""
+        same = found.setdefault(name, [])
+        if same and (one.possible or same[-1].possible):
+            same.append(one)
+        else:
+            found[name] = [one]
+            order.append(one)
+    return [_together(found.get(_text(one.label) or "", [one]), one) for one in order]
+
+
+def _together(same: Sequence[Added], first: Added) -> Added:
+    if len(same) == 1 or same[0] is not first:
+        return first
+    pairs: dict[Any, list[tuple[Value, Value]]] = {}
+    for one in same:
+        items = one.transitions.items if isinstance(one.transitions, DictValue) else {}
+        if not isinstance(items, Mapping):
+            return replace(first, state=UNKNOWN, transitions=UNKNOWN)
+        for key, pair in items.items():
+            pairs.setdefault(key, []).append(pair)
+    joined = {key: (some[0][0], one_of(pair[1] for pair in some)) for key, some in pairs.items()}
+    return replace(
+        first, state=one_of(one.state for one in same), transitions=DictValue({"items": joined})
+    )
 
 
 def _without_targets(node: Node, known: Collection[str]) -> Node:
