@@ -21,6 +21,7 @@ from smachac.frontend.text.suppressions import Suppression
 from smachac.frontend.text.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outer_inputs, outer_outputs
+from smachac.python_machines import SUFFIX, PythonProject
 from smachac.records import dataclass, field
 
 
@@ -67,8 +68,11 @@ def check_scripts(
     templates: Sequence[Path] = (),
     extra: MachineCheck | None = None,
     previous: dict[str, Previous] | None = None,
+    *,
+    everything: bool = False,
 ) -> Batch:
-    """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone.
+    """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone; and
+    the machines in Python files, with `everything` by all rules.
 
     Templates of the user are rendered, for their findings. `previous` are the results of the last
     analyses by path, which become those of these ones.
@@ -93,9 +97,17 @@ def check_scripts(
                 analyses[str(path)] = analyse_alone(source, library, report, last)
         uses[str(path)] = disk.searched_files()
 
+    python = PythonProject(disk)
     for path in paths:
         disk.searched.clear()
         report: Report = []
+        if path.suffix == SUFFIX:
+            file = python.read(path, everything=everything)
+            analyses[str(path)] = Analysis(
+                script=str(path), source=file.source, report=file.report, coverage=file.coverage
+            )
+            uses[str(path)] = disk.searched_files()
+            continue
         source = disk.read(path, report)
         if source is not None and isinstance(disk.parse(source, []), Seq):
             alone.append(path)

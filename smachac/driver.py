@@ -25,7 +25,7 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span
-from smachac.frontend.errors import references, suppressions
+from smachac.frontend.errors import python_machines, references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import ROS_VERSIONS, Library
@@ -57,6 +57,7 @@ _PROBLEMS = (
     *suppressions.PROBLEMS,
     *checks.PROBLEMS,
     *errors.PROBLEMS,
+    *python_machines.PROBLEMS,
 )
 
 CODES: Mapping[str, Code] = {
@@ -83,7 +84,7 @@ class Analysis:
     be read; `checked` is the same machine if the report has no error. `library` is None if there is
     no text. `given` holds the suppressions of all texts of the script, `unused` those in
     sub-scripts that suppressed nothing. `alone`: the text is a sub-script that was analysed without
-    a caller.
+    a caller. `coverage`: how much of the machines of a Python file is known, if not all is.
     """
 
     script: str = ""
@@ -95,6 +96,7 @@ class Analysis:
     given: tuple[Suppression, ...] = ()
     unused: tuple[Suppression, ...] = ()
     alone: bool = False
+    coverage: str = ""
 
 
 @dataclass(slots=True)

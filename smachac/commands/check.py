@@ -46,6 +46,8 @@ examples:
   smachac check . --fix --diff                   show what --fix would change, as a patch
   smachac check main.yml --sim                   check what the simulated arm can reach
   smachac check main.yml --watch                 check again after every change
+  smachac check machine.py                       a machine in Python for SMACH; nothing is run
+  smachac check src --python                     all scripts, and all Python files with machines
 
 exit codes: 0 success, 1 findings that fail, 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
@@ -78,6 +80,10 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
                         help="show what --fix would change, as a patch; write nothing")  # fmt: skip
     parser.add_argument("--sim", action="store_true",
                         help="also check what the simulated arm can reach")  # fmt: skip
+    parser.add_argument("--python", action="store_true", help="in folders, also check Python files"
+                        " that build machines for SMACH")  # fmt: skip
+    parser.add_argument("--all", action="store_true", help="of Python files, report the findings of"
+                        " all rules, not only what cannot work")  # fmt: skip
     parser.add_argument("--watch", action="store_true",
                         help="check again when a file changes, until Ctrl-C")  # fmt: skip
     memory_limit(parser)
@@ -139,14 +145,16 @@ def _check_once(
     from smachac.diagnostics.diagnostic import Severity
     from smachac.frontend.discovery import scripts_of
     from smachac.frontend.files import Disk
+    from smachac.python_machines import files_with_machines
 
     started = time.perf_counter()
-    paths = scripts_of(arguments.script, disk)
+    python = files_with_machines if arguments.python else None
+    paths = scripts_of(arguments.script, disk, python)
     sim_rule = unreachable if arguments.sim else None
 
     def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
         folders = arguments.scripts, arguments.templates
-        return check_scripts(paths, disk, *folders, sim_rule, previous)
+        return check_scripts(paths, disk, *folders, sim_rule, previous, everything=arguments.all)
 
     whole = check(disk, previous)
     used.update(*whole.uses.values())
@@ -181,6 +189,7 @@ def _check_once(
         name: [item for item in each if item.severity in severe]
         for name, each in found.reports.items()
     }
+    notes += [each.coverage for each in whole.analyses.values() if each.coverage]
     if sys.stdout.isatty():
         notes.append(f"{time.perf_counter() - started:.2f} s")
     if not arguments.notes and len(without_notes(found.report)) < len(found.report):

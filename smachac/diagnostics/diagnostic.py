@@ -186,11 +186,11 @@ class Problem(Generic[P]):
 
 
 def problem(
-    code: str, name: str, severity: Severity, *, effect: str = ""
+    code: str, name: str, severity: Severity, *, effect: str = "", firm: bool = True
 ) -> Callable[[Callable[P, Finding]], Problem[P]]:
     """Make a problem of the function that makes its finding.
 
-    An error is firm: a script with such a fault has no meaning.
+    An error is firm, if nothing else is said: a script with such a fault has no meaning.
     """
 
     def declare(function: Callable[P, Finding]) -> Problem[P]:
@@ -199,7 +199,7 @@ def problem(
             name=name,
             severity=severity,
             explanation=function.__doc__ or "",
-            firm=severity is Severity.ERROR,
+            firm=firm and severity is Severity.ERROR,
             effect=effect,
         )
         return Problem(entry, function)

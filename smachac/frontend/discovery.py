@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from glob import has_magic
 from pathlib import Path
@@ -29,12 +29,18 @@ does not end goes up to the end, so that each character is read once."""
 _NAMED = {"name", "template", "outcomes", "n", "T", "o"}
 
 
+PythonFiles = Callable[[Path, Disk], "list[Path]"]
+
+
 class NothingFoundError(Exception):
     """An argument matches no script; the message names it."""
 
 
-def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
-    """The scripts that files, folders and patterns match, each once, in order.
+def scripts_of(
+    arguments: Sequence[Path], disk: Disk, python: PythonFiles | None = None
+) -> list[Path]:
+    """The scripts that files, folders and patterns match, each once, in order. `python` returns the
+    Python files with machines in a folder, which then belong to the result.
 
     A named file is always included. A folder stands for all YAML files in it that look like scripts
     and that the project file does not exclude. The disk refuses links that lead out of a folder or
@@ -45,6 +51,7 @@ def scripts_of(arguments: Sequence[Path], disk: Disk) -> list[Path]:
         paths = [argument]
         if os.path.isdir(argument):  # noqa: PTH112 (no error for a name that is too long)
             paths = [path for path in yaml_files([argument]) if _is_script(path, argument, disk)]
+            paths += python(argument, disk) if python is not None else []
         elif has_magic(str(argument)) and not os.path.lexists(argument):
             root = Path(argument.anchor)
             paths = sorted(root.glob(str(argument.relative_to(root))))

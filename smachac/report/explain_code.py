@@ -11,6 +11,7 @@ from smachac.diagnostics.diagnostic import Code
 from smachac.records import dataclass, field
 
 MAIN = "main.yml"
+MAIN_IN_PYTHON = "machine.py"
 
 WIDTH = 88
 """Width of prose on a terminal, in columns."""
@@ -24,6 +25,7 @@ GROUPS: Mapping[str, str] = {
     "SM5": "The robot",
     "SM6": "Targets",
     "SM7": "Properties",
+    "SM8": "Machines in Python",
 }
 """The subject of the codes of each hundred."""
 
@@ -45,7 +47,9 @@ def explanation(code: Code) -> Explanation:
     """The parts of the docstring of a code."""
     text = inspect.cleandoc(code.explanation)
     prose, *sections = _HEADINGS.split(text)
-    examples = dict(zip(sections[::2], map(_files, sections[1::2]), strict=True))
+    main = MAIN_IN_PYTHON if code.code.startswith("SM8") else MAIN
+    texts = [_files(section, main) for section in sections[1::2]]
+    examples = dict(zip(sections[::2], texts, strict=True))
     summary, _, reason = prose.strip().partition("\n\n")
     return Explanation(
         summary=" ".join(summary.split()),
@@ -55,9 +59,9 @@ def explanation(code: Code) -> Explanation:
     )
 
 
-def _files(block: str) -> dict[str, str]:
+def _files(block: str, main: str) -> dict[str, str]:
     first, *others = _FILE.split(dedent(block.strip("\n")))
-    texts = {MAIN: first, **dict(zip(others[::2], others[1::2], strict=True))}
+    texts = {main: first, **dict(zip(others[::2], others[1::2], strict=True))}
     return {name: text.strip("\n") + "\n" for name, text in texts.items()}
 
 
@@ -131,5 +135,7 @@ def render_section(code: Code) -> str:
 
 
 def _fenced(files: Mapping[str, str]) -> str:
-    texts = [text if name == MAIN else f"# --- {name}\n{text}" for name, text in files.items()]
-    return f"```yaml\n{''.join(texts)}```"
+    mains = (MAIN, MAIN_IN_PYTHON)
+    texts = [text if name in mains else f"# --- {name}\n{text}" for name, text in files.items()]
+    language = "python" if MAIN_IN_PYTHON in files else "yaml"
+    return f"```{language}\n{''.join(texts)}```"

@@ -147,11 +147,12 @@ def _sorted(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> 
     items = _items_of(arguments.get(0, "iterable"))
     if items is None or arguments.named or not all(isinstance(item, Const) for item in items):
         return UNKNOWN
+    keyed = [(item.value, item) for item in items if isinstance(item, Const)]
     try:
-        ordered = sorted(items, key=lambda item: item.value)  # type: ignore[union-attr]
+        ordered = sorted(keyed, key=lambda pair: pair[0])  # type: ignore[arg-type, return-value]
     except TypeError:
         return UNKNOWN
-    return evaluator.new_list(ordered)
+    return evaluator.new_list([item for _, item in ordered])
 
 
 def _reversed(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:

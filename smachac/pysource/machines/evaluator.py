@@ -95,6 +95,7 @@ class Evaluator:
         self.opened: list[Value] = []
         self.unsure = 0
         self.orphans = 0
+        self.tries = 0
         self.faults: list[UseFault] = []
 
     # --- statements
@@ -332,12 +333,17 @@ class Evaluator:
 
         def whole() -> Completion | None:
             nonlocal raised
+            self.tries += 1
             end = self.block(node.body, frame)
+            self.tries -= 1
             raised = end is not None and end[0] == "raise"
             return end or self.block(node.orelse, frame)
 
         if not node.handlers:
-            return whole() or self.block(node.finalbody, frame)
+            self.tries -= 1
+            end = whole()
+            self.tries += 1
+            return end or self.block(node.finalbody, frame)
         mark = self.heap.mark()
         end = whole()
         if end is not None and not raised:
@@ -677,7 +683,7 @@ class Evaluator:
             case ast.Constant(value=known):
                 if known is Ellipsis:
                     return UNKNOWN
-                return Const(known, self.span(node, frame))  # type: ignore[arg-type]
+                return Const(known, self.span(node, frame))
             case ast.Name(id=name):
                 return self.look_up(name, frame, node)
             case ast.Attribute(value=owner, attr=name):
@@ -1004,7 +1010,10 @@ class Evaluator:
                 if name in owner.slots:
                     return owner.slots[name]  # type: ignore[no-any-return]
                 found = self.project.load(self, f"{owner.name}.{name}", owner)
-                return found if isinstance(found, ModuleValue) else UNKNOWN
+                if isinstance(found, ModuleValue):
+                    return found
+                self._missing(owner, name, node, frame)
+                return UNKNOWN
             case Instance():
                 return self._of_instance(owner, name, node, frame)
             case Class() | LibraryClass():
@@ -1017,6 +1026,16 @@ class Evaluator:
                 at = next((i for i, c in enumerate(order) if c is cls), -1)
                 return self._search(order[at + 1 :], name, me)
         return attribute_of_value(self, owner, name)
+
+    def _missing(self, owner: ModuleValue, name: str, node: ast.expr, frame: Frame) -> None:
+        """Notes that a module of the project has no such name."""
+        span = self.span(node, frame)
+        sure = owner.text is not None and owner.is_loaded and not owner.dynamic
+        if span is None or not sure or self.tries or name.startswith("__"):
+            return
+        if "__getattr__" not in owner.slots and "globals" not in owner.text.source.text:  # type: ignore[union-attr]
+            place = Span(span.source, span.end - len(name), span.end)
+            self.faults.append(UseFault("missing member", place, (name, owner.file)))
 
     def _of_instance(self, owner: Instance, name: str, node: ast.expr, frame: Frame) -> Value:
         if name in owner.slots:

@@ -366,12 +366,12 @@ class _Children:
     def build(self, added: Sequence[Added], depth: int) -> tuple[Node, ...]:
         known = [one for one in added if _text(one.label) is not None]
         self.labels = {text for one in known if (text := _text(one.label)) is not None}
-        for one in added:
+        known = _one_for_each_name(known)
+        for one in (*(one for one in added if _text(one.label) is None), *known):
             if _text(one.label) is None:
                 self.builder.unknown.append((one.span, "its name is not known"))
             elif one.possible:
                 self.builder.unknown.append((one.span, "a condition that is not known adds it"))
-        known = _one_for_each_name(known)
         if any(_text(one.label) is None for one in added) or (added and added[0].possible):
             self.incomplete = True
         if self.outcomes is None:
@@ -379,8 +379,7 @@ class _Children:
         found: list[Node] = []
         for at, one in enumerate(known):
             name = _text(one.label) or ""
-            parts = alternatives(one.state)
-            state = parts[0] if len(parts) == 1 else UNKNOWN
+            state = _alike(alternatives(one.state))
             node = self.builder.state(state, one, name, depth)
             following = _text(known[at + 1].label) if at + 1 < len(known) else None
             transitions: tuple[Transition, ...] = ()
@@ -543,8 +542,26 @@ def _together(same: Sequence[Added], first: Added) -> Added:
             pairs.setdefault(key, []).append(pair)
     joined = {key: (some[0][0], one_of(pair[1] for pair in some)) for key, some in pairs.items()}
     return replace(
-        first, state=one_of(one.state for one in same), transitions=DictValue({"items": joined})
-    )
+        first, state=one_of(one.state for one in same), transitions=DictValue({"items": joined}),
+        possible=False,
+    )  # fmt: skip
+
+
+def _alike(states: Sequence[Value]) -> Value:
+    """The state that is one of several: the first one if all have the same outcomes and keys."""
+    interfaces = {
+        tuple(_names_of(state.slots.get(slot)) for slot in ("$outcomes", "$inputs", "$outputs"))
+        if isinstance(state, Instance) and "$children" not in state.slots
+        else None
+        for state in states
+    }
+    known = len(states) == 1 or (len(interfaces) == 1 and None not in interfaces)
+    return states[0] if known else UNKNOWN
+
+
+def _names_of(value: Value | None) -> frozenset[str] | None:
+    items = sequence(value) if value is not None else ()
+    return None if items is None else frozenset(text for item in items if (text := _text(item)))
 
 
 def _without_targets(node: Node, known: Collection[str]) -> Node:

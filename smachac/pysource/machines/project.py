@@ -86,7 +86,7 @@ class Repository:
             self.loaded[key] = found
             return found
         path = PurePath(file)
-        folder = ".".join(path.parent.parts)
+        folder = ".".join(part for part in path.parent.parts if part not in (path.anchor, ".."))
         name = "__main__" if main else f"{folder}.{path.stem}".strip(".")
         module = ModuleValue(name, {}, text, folder, file=file)
         module.slots["__name__"] = Const(name)
@@ -97,6 +97,7 @@ class Repository:
         frame = Frame(module.slots, module)
         evaluator.block(text.tree.body, frame)
         evaluator.opened[:] = around
+        module.is_loaded = True
         return module
 
 

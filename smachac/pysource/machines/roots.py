@@ -7,6 +7,7 @@ import ast
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
+from smachac.diagnostics.source import Span
 from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.project import Repository
@@ -148,7 +149,7 @@ def _of_class(
     yield build
 
 
-def _place(module: ModuleValue, cls: Class) -> object:
+def _place(module: ModuleValue, cls: Class) -> Span | None:
     return module.text.span(cls.node) if module.text is not None else None
 
 

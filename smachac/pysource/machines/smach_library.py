@@ -194,7 +194,7 @@ def _ready(name: str) -> Run:
         }
         callbacks = [values[key] for key in values if key.endswith("_cb") and key != "cond_cb"]
         interfaces = [_of_callback(value) for value in callbacks]
-        outcomes = [TupleValue(tuple(Const(text) for text in _READY[name]))]
+        outcomes: list[Value] = [TupleValue(tuple(Const(text) for text in _READY[name]))]
         outcomes += [_names(evaluator, values.get("outcomes"), span), *(i[0] for i in interfaces)]
         reads = [_one(values[key]) for key in _READ if key in values]
         writes = [_one(values[key]) for key in _WRITTEN if key in values]
@@ -250,6 +250,13 @@ def _add(kind: str) -> Run:
             whole = children.added
             children = Children(whole, False)
         evaluator.heap.set(container.slots, "$children", Children(whole, children.complete))
+        for given in (transitions, remapping):
+            if isinstance(given, DictValue):
+                for key in given.repeated:
+                    place = key.span or span
+                    fault = UseFault("repeated key", place, (str(key.value),))
+                    if fault not in evaluator.faults:
+                        evaluator.faults.append(fault)
         if isinstance(transitions, DictValue) and kind == "add" and isinstance(state, Instance):
             _write_missing(evaluator, transitions, state, span)
         return state or UNKNOWN

@@ -199,6 +199,7 @@ class ModuleValue:
     package: str = ""
     dynamic: bool = False
     file: str = ""
+    is_loaded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,11 +238,12 @@ class Interpreter(Protocol):
     """The part of the evaluator that models of libraries use. `opened` are the containers that
     `with` has opened; `orphans` counts the states that were added to a container of a caller."""
 
-    heap: Heap
     opened: list[Value]
     orphans: int
     faults: list[UseFault]
 
+    @property
+    def heap(self) -> Heap: ...
     def call(
         self, function: Value, arguments: Arguments, node: ast.expr | None, frame: Frame
     ) -> Value: ...
@@ -259,7 +261,7 @@ class Heap(Protocol):
     def set(self, slots: Slots, key: Any, value: Any) -> None: ...
 
 
-UseKind = Literal["text as list", "shared transitions"]
+UseKind = Literal["text as list", "shared transitions", "missing member", "repeated key"]
 
 
 class UseFault(NamedTuple):

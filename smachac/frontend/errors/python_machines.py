@@ -1,0 +1,247 @@
+"""Findings about machines that are written in Python for SMACH, beside those of the rules."""
+
+from __future__ import annotations
+
+from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
+from smachac.diagnostics.source import Span, Word
+
+
+@problem(
+    "SM801",
+    "text-as-list",
+    Severity.ERROR,
+    firm=False,
+    effect="the machine stops with an error, or a state has outcomes of one letter",
+)
+def text_as_list(word: Word) -> Finding:
+    """A text is passed where SMACH expects a list of names: each letter becomes a name.
+
+    SMACH makes a set of what it gets, and a text is a sequence of letters. The outcome that
+    `execute` returns is then not declared.
+
+    Wrong:
+        import smach
+
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("STOP", smach.State(outcomes="d"), {"d": "done"})
+
+    Right:
+        import smach
+
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("STOP", smach.State(outcomes=["d"]), {"d": "done"})
+    """
+    return Finding(
+        span=word.span,
+        message=f"`{word.text}` is a text, so that each letter counts as a name",
+        arguments=(word.text,),
+        help=f"write `[{word.span.text}]`",
+    )
+
+
+@problem(
+    "SM802",
+    "shared-transitions",
+    Severity.ERROR,
+    firm=False,
+    effect="SMACH raises InvalidTransitionError: the program stops when it adds the second state",
+)
+def shared_transitions(span: Span, outcome: str, first: Span | None) -> Finding:
+    """Two states get the same dictionary of transitions, and the second lacks an outcome of the
+    first.
+
+    SMACH writes the outcomes of the first state that have no transition into the dictionary it
+    got. They are then transitions of the second state, which does not have these outcomes.
+
+    Wrong:
+        import smach
+
+        class Grip(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok", "failed"])
+
+            def execute(self, userdata):
+                return "ok"
+
+        class Lift(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+
+        table = {"ok": "done"}
+        sm = smach.StateMachine(outcomes=["done", "failed"])
+        with sm:
+            smach.StateMachine.add("LIFT_FIRST", Lift(), {"ok": "GRIP"})
+            smach.StateMachine.add("GRIP", Grip(), table)
+            smach.StateMachine.add("LIFT", Lift(), table)
+        sm.set_initial_state(["LIFT"])
+
+    Right:
+        import smach
+
+        class Grip(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok", "failed"])
+
+            def execute(self, userdata):
+                return "ok"
+
+        class Lift(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+
+        table = {"ok": "done"}
+        sm = smach.StateMachine(outcomes=["done", "failed"])
+        with sm:
+            smach.StateMachine.add("LIFT_FIRST", Lift(), {"ok": "GRIP"})
+            smach.StateMachine.add("GRIP", Grip(), dict(table))
+            smach.StateMachine.add("LIFT", Lift(), dict(table))
+        sm.set_initial_state(["LIFT_FIRST"])
+    """
+    related = (Related(span=first, message="SMACH adds the outcome here"),) if first else ()
+    return Finding(
+        span=span,
+        message=f"this state gets a dictionary to which SMACH has added `{outcome}`, an outcome of"
+        " another state",
+        arguments=(outcome,),
+        help="pass a copy to each state: `transitions=dict(...)`",
+        related=related,
+    )
+
+
+@problem(
+    "SM803",
+    "missing-member",
+    Severity.ERROR,
+    firm=False,
+    effect="Python raises AttributeError or ImportError: the program stops when it starts",
+)
+def missing_member(word: Word, module: str) -> Finding:
+    """A module of the repository has no such name.
+
+    The module was read as a whole, and nothing in it can bind another name.
+
+    Wrong:
+        import smach
+        import skills
+
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("GRIP", skills.Grasp(), {"ok": "done"})
+        == skills.py ==
+        import smach
+
+
+        class Grip(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+
+    Right:
+        import smach
+        import skills
+
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("GRIP", skills.Grip(), {"ok": "done"})
+        == skills.py ==
+        import smach
+
+
+        class Grip(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+    """
+    return Finding(
+        span=word.span,
+        message=f"`{module}` has no `{word.text}`",
+        arguments=(module, word.text),
+        help="correct the name, or define it in the module",
+    )
+
+
+@problem("SM804", "repeated-key", Severity.ERROR, firm=False)
+def repeated_key(word: Word, first: Span | None) -> Finding:
+    """A dictionary of transitions or remappings has a key twice: Python keeps the last value.
+
+    The first target is never used.
+
+    Wrong:
+        import smach
+
+        class Grip(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+
+        sm = smach.StateMachine(outcomes=["done", "failed"])
+        with sm:
+            smach.StateMachine.add("GRIP", Grip(), {"ok": "failed", "ok": "done"})
+
+    Right:
+        import smach
+
+        class Grip(smach.State):
+            def __init__(self):
+                smach.State.__init__(self, outcomes=["ok"])
+
+            def execute(self, userdata):
+                return "ok"
+
+        sm = smach.StateMachine(outcomes=["done"])
+        with sm:
+            smach.StateMachine.add("GRIP", Grip(), {"ok": "done"})
+    """
+    related = (Related(span=first, message="the first one, which is not used"),) if first else ()
+    return Finding(
+        span=word.span,
+        message=f"`{word.text}` is twice in this dictionary: only the last value counts",
+        arguments=(word.text,),
+        help="remove one of the two",
+        effect="",
+        related=related,
+    )
+
+
+@problem("SM805", "unreadable-module", Severity.WARNING)
+def unreadable_module(span: Span, message: str, help: str) -> Finding:
+    """A Python file with machines cannot be read, so that nothing in it is checked.
+
+    Wrong:
+        import smach
+
+        sm = smach.StateMachine(outcomes=["done"]
+        with sm:
+            pass
+
+    Right:
+        import smach
+
+        sm = smach.StateMachine(outcomes=["done"])
+    """
+    return Finding(span=span, message=message, arguments=(message,), help=help,
+                   effect="nothing in this file is checked")  # fmt: skip
+
+
+PROBLEMS: tuple[Problem[...], ...] = (
+    text_as_list,
+    shared_transitions,
+    missing_member,
+    repeated_key,
+    unreadable_module,
+)
+"""The problems of this module, in the order of their codes."""

@@ -1,0 +1,222 @@
+"""Python files with machines for SMACH: read, checked by the rules, suppressed."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from smachac.checks import check_machine
+from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
+from smachac.diagnostics.severities import apply_severities
+from smachac.diagnostics.source import Source, Span, Word
+from smachac.driver import CODES
+from smachac.frontend.errors import python_machines as errors
+from smachac.frontend.files import Disk, disk_library
+from smachac.frontend.text.suppressions import suppress
+from smachac.ir.nodes import Machine
+from smachac.ir.recursion import deep_recursion
+from smachac.ir.traversal import walk
+from smachac.pysource.machines.class_facts import ClassReader
+from smachac.pysource.machines.evaluator import Evaluator
+from smachac.pysource.machines.graph import Graph, graphs
+from smachac.pysource.machines.project import Repository
+from smachac.pysource.machines.roots import Roots, machines_of
+from smachac.pysource.machines.values import UseFault
+from smachac.pysource.source import python_text, syntax_error
+from smachac.records import dataclass
+
+CANNOT_WORK = frozenset({
+    "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM308", "SM309", "SM310",
+    "SM403", "SM405", "SM609",
+})  # fmt: skip
+"""The codes of rules that are reported of Python files: with such a fault a machine cannot work.
+Only errors of these are, because a warning can be about a path that is impossible."""
+
+IN_ALL = frozenset({"SM201", "SM203"})
+"""The codes of findings that count only if they are true of each instance of a container: another
+one can have other transitions."""
+
+MOST_FILES = 20_000
+"""The most Python files of a repository that are searched for modules."""
+
+SUFFIX = ".py"
+
+_SKIPPED = ("__pycache__", "node_modules", "build", "install", "devel", "log")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PythonFile:
+    """The machines of a Python file, and the findings about them."""
+
+    path: Path
+    source: Source | None
+    graphs: tuple[Graph, ...]
+    report: Report
+
+    @property
+    def coverage(self) -> str:
+        """How much of its machines is known, in words; empty if all is."""
+        states = sum(graph.coverage.states for graph in self.graphs)
+        unknown = [each for graph in self.graphs for each in graph.coverage.unknown]
+        places = dict.fromkeys(span for span, _ in unknown)
+        if not places:
+            return ""
+        shown = dict(reversed([(span, reason) for span, reason in unknown]))
+        listed = "; ".join(
+            f"{span.source.name}:{span.line}: {reason}" for span, reason in [*shown.items()][:3]
+        )
+        more = f" and {len(shown) - 3} more" if len(shown) > 3 else ""
+        exact = max(states - len(places), 0)
+        return f"{exact} of {states} states exact; {len(places)} unknown ({listed}{more})"
+
+
+class PythonProject:
+    """Reads Python files of repositories; modules that several files import are read once."""
+
+    def __init__(self, disk: Disk) -> None:
+        self.disk = disk
+        self.repositories: dict[str, tuple[Repository, Evaluator, ClassReader]] = {}
+
+    def read(self, path: Path, *, everything: bool = False) -> PythonFile:
+        """The machines of a file with the findings about them; with `everything`, those of all
+        rules."""
+        report: Report = []
+        source = self.disk.read(path, report)
+        library = disk_library(path, report, disk=self.disk, codes=CODES)
+        if source is None:
+            return PythonFile(path=path, source=None, graphs=(), report=report)
+        if python_text(source, template=False) is None:
+            report.append(_unreadable(source))
+            found = grouped(apply_severities(in_order(report), library.policy))
+            return PythonFile(path=path, source=source, graphs=(), report=found)
+        repository, evaluator, reader = self._repository(path)
+        del evaluator.faults[:]
+
+        def made(roots: Roots) -> list[Graph]:
+            return [*graphs(roots, evaluator, reader)]
+
+        with deep_recursion():
+            several = machines_of(repository, evaluator, str(path), made)
+            whole = [graph for some in several for graph in some]
+            findings = [item for graph in whole for item in check_machine(graph.machine)]
+        if not everything:
+            findings = [item for item in findings
+                        if item.code in CANNOT_WORK and item.severity is Severity.ERROR]  # fmt: skip
+        report += _true_of_all(findings, [graph.machine for graph in whole])
+        report += _of_uses(evaluator.faults, whole)
+        rest, _, _ = suppress(report, source, (source,), CODES)
+        found = grouped(apply_severities(in_order(rest), library.policy))
+        return PythonFile(path=path, source=source, graphs=tuple(whole), report=found)
+
+    def _repository(self, path: Path) -> tuple[Repository, Evaluator, ClassReader]:
+        root = repository_of(path)
+        key = os.path.realpath(root)
+        if key not in self.repositories:
+            repository = Repository(map(str, python_files(root)), self._text)
+            evaluator = Evaluator(repository)
+            self.repositories[key] = repository, evaluator, ClassReader(repository)
+        return self.repositories[key]
+
+    def _text(self, file: str) -> Source | None:
+        return self.disk.read(Path(file), [])
+
+
+def repository_of(path: Path) -> Path:
+    """The folder in which the modules of a file are searched: that of its git repository, or of its
+    package of ROS, or its own."""
+    folder = path.parent
+    above = [folder, *Path(os.path.abspath(folder)).parents]  # noqa: PTH100
+    for parent in above:
+        if (parent / ".git").exists():
+            return _as_given(parent)
+    for parent in above[:8]:
+        if (parent / "package.xml").is_file():
+            return _as_given(parent)
+    return folder
+
+
+def _as_given(folder: Path) -> Path:
+    """A folder relative to the current one, so that findings name files as users write them."""
+    return Path(os.path.relpath(folder))
+
+
+def python_files(folder: Path) -> Iterator[Path]:
+    """The Python files below a folder, sorted."""
+    count = 0
+    for top, folders, names in os.walk(folder):
+        folders[:] = [name for name in sorted(folders)
+                      if not name.startswith(".") and name not in _SKIPPED]  # fmt: skip
+        for name in sorted(names):
+            if name.endswith(SUFFIX) and count < MOST_FILES:
+                count += 1
+                yield Path(top, name)
+
+
+def files_with_machines(folder: Path, disk: Disk) -> list[Path]:
+    """The Python files below a folder whose text names a container of SMACH."""
+    found = []
+    for path in python_files(folder):
+        source = disk.read(path, [])
+        if source is not None and builds_machines(source):
+            found.append(path)
+    return found
+
+
+def builds_machines(source: Source) -> bool:
+    """Whether the text of a Python file names SMACH and one of its containers."""
+    text = source.text
+    return "smach" in text and any(
+        word in text for word in ("StateMachine", "Concurrence", "Sequence", "Iterator")
+    )
+
+
+def _unreadable(source: Source) -> Diagnostic:
+    word = syntax_error(source)
+    if word is None:
+        span = Span(source, 0, 0)
+        help = "split the file, or end its lines with a line feed"
+        return errors.unreadable_module(span, "this file is too long or too deeply nested", help)
+    message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
+    help = "correct the code at the mark; code for Python 2 is not read"
+    return errors.unreadable_module(word.span, message, help)
+
+
+def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diagnostic]:
+    """The findings, without those about a state that another instance of the same code does not
+    have."""
+    counted: Counter[Span] = Counter()
+    for machine in machines:
+        counted.update(node.span for _, node in walk(machine.root))
+    found = Counter((item.code, item.span) for item in findings)
+    for item in findings:
+        single = item.code not in IN_ALL or found[item.code, item.span] >= counted[item.span]
+        if single:
+            yield item
+
+
+def _of_uses(faults: Sequence[UseFault], found: Sequence[Graph]) -> Iterator[Diagnostic]:
+    """The findings about wrong uses of SMACH."""
+    for fault in dict.fromkeys(faults):
+        name = fault.names[0] if fault.names else ""
+        match fault.kind:
+            case "text as list":
+                yield errors.text_as_list(Word(name, fault.span))
+            case "shared transitions":
+                yield errors.shared_transitions(fault.span, name, fault.other)
+            case "missing member":
+                yield errors.missing_member(Word(name, fault.span), fault.names[1])
+            case "repeated key":
+                yield errors.repeated_key(Word(name, fault.span), fault.other)
+
+
+def machines_by_name(file: PythonFile) -> Mapping[str, Machine]:
+    """The machines of a file by the names of their roots; later ones of a name have a number."""
+    named: dict[str, Machine] = {}
+    for graph in file.graphs:
+        name, number = graph.machine.root.name, 2
+        while name in named:
+            name, number = f"{graph.machine.root.name}_{number}", number + 1
+        named[name] = graph.machine
+    return named
