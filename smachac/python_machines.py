@@ -22,7 +22,7 @@ from smachac.pysource.machines.class_facts import ClassReader
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.roots import Roots, machines_of
+from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.source import python_text, syntax_error
 from smachac.records import dataclass
@@ -101,10 +101,17 @@ class PythonProject:
             several = machines_of(repository, evaluator, str(path), made)
             whole = [graph for some in several for graph in some]
             findings = [item for graph in whole for item in check_machine(graph.machine)]
+            findings = _in_file(findings, str(path))
+            variants: list[Graph] = []
+            if any(item.code in IN_ALL for item in findings):
+                some = variants_of(repository, evaluator, str(path), made)
+                variants = [graph for several in some for graph in several]
+                findings += [item for graph in variants for item in check_machine(graph.machine)
+                             if item.code in IN_ALL and item.span.source.name == str(path)]  # fmt: skip
         if not everything:
             findings = [item for item in findings
                         if item.code in CANNOT_WORK and item.severity is Severity.ERROR]  # fmt: skip
-        report += _true_of_all(findings, [graph.machine for graph in whole])
+        report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
         report += _of_uses(evaluator.faults, whole)
         rest, _, _ = suppress(report, source, (source,), CODES)
         found = grouped(apply_severities(in_order(rest), library.policy))
@@ -181,6 +188,12 @@ def _unreadable(source: Source) -> Diagnostic:
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
     help = "correct the code at the mark; code for Python 2 is not read"
     return errors.unreadable_module(word.span, message, help)
+
+
+def _in_file(findings: Report, file: str) -> Report:
+    """The findings, without those of IN_ALL in other files: other machines can have instances of
+    the same code."""
+    return [item for item in findings if item.code not in IN_ALL or item.span.source.name == file]
 
 
 def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diagnostic]:

@@ -1106,7 +1106,9 @@ class Evaluator:
         at: Frame | None = frame
         while at is not None and (at.function is None or at.function.owner is None):
             at = at.around
-        if node.args:
+        owner = at.function.owner if at is not None and at.function is not None else None
+        named = isinstance(node.args[0], ast.Name) if node.args else False
+        if node.args and not (named and owner is not None and node.args[0].id == owner.name):  # type: ignore[attr-defined]
             found = self.value(node.args[0], frame)
             me = self.value(node.args[1], frame) if len(node.args) > 1 else UNKNOWN
             return Super(found, me) if isinstance(found, Class) else UNKNOWN

@@ -44,8 +44,10 @@ from smachac.pysource.machines.values import (
     DictValue,
     Function,
     Instance,
+    LibraryClass,
     Method,
     OneOf,
+    TupleValue,
     Unknown,
     Value,
     alternatives,
@@ -58,6 +60,8 @@ ELSEWHERE = "?"
 """The name of the state in place of all that is not known of a container."""
 
 _DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef
+
+_SEVERAL = LibraryClass("smach.State")
 
 MOST_LEVELS = 60
 """The deepest nesting of containers."""
@@ -548,15 +552,31 @@ def _together(same: Sequence[Added], first: Added) -> Added:
 
 
 def _alike(states: Sequence[Value]) -> Value:
-    """The state that is one of several: the first one if all have the same outcomes and keys."""
-    interfaces = {
-        tuple(_names_of(state.slots.get(slot)) for slot in ("$outcomes", "$inputs", "$outputs"))
-        if isinstance(state, Instance) and "$children" not in state.slots
+    """The state that is one of several with the same outcomes: it can have the keys of each, and
+    what it reads is not known."""
+    if len(states) == 1:
+        return states[0]
+    outcomes = {
+        _names_of(state.slots.get("$outcomes"))
+        if isinstance(state, Instance) and _is_leaf(state)
         else None
         for state in states
     }
-    known = len(states) == 1 or (len(interfaces) == 1 and None not in interfaces)
-    return states[0] if known else UNKNOWN
+    first = states[0]
+    if len(outcomes) > 1 or None in outcomes or not isinstance(first, Instance):
+        return UNKNOWN
+    slots = {"$outcomes": first.slots["$outcomes"]}
+    for name in ("$inputs", "$outputs"):
+        lists = [sequence(state.slots.get(name)) for state in states if isinstance(state, Instance)]
+        known = [items for items in lists if items is not None]
+        whole = TupleValue(tuple(item for items in known for item in items))
+        slots[name] = whole if len(known) == len(lists) else UNKNOWN
+    return Instance(_SEVERAL, slots, first.span)
+
+
+def _is_leaf(state: Instance) -> bool:
+    """Whether a value is a state with known outcomes, and no container."""
+    return "$outcomes" in state.slots and "$children" not in state.slots and not state.opaque
 
 
 def _names_of(value: Value | None) -> frozenset[str] | None:

@@ -41,12 +41,24 @@ class Roots:
     complete: bool
 
 
+def variants_of(
+    repository: Repository, evaluator: Evaluator, file: str, read: Callable[[Roots], T]
+) -> list[T]:
+    """What `read` makes of the machines that the functions and classes of a file build if no
+    argument is known: other code can call each of them with any."""
+    module = repository.module(evaluator, file, main=True)
+    if not isinstance(module, ModuleValue):
+        return []
+    return [*_built(evaluator, module, file, read, variants=True)]
+
+
 def machines_of(
     repository: Repository, evaluator: Evaluator, file: str, read: Callable[[Roots], T]
 ) -> list[T]:
     """What `read` makes of the machines of a file. It is called while the objects are as the code
     has left them; changes by one function are undone before the next one is called."""
-    evaluator.steps, found = 0, []
+    evaluator.steps = 0
+    found: list[T] = []
     before = len(evaluator.made)
     complete = True
     module: Value = UNKNOWN
@@ -58,25 +70,30 @@ def machines_of(
     found.append(read(_roots(evaluator, before, file, closed=True, complete=complete)))
     if not isinstance(module, ModuleValue):
         return found
-    for _ in range(2):  # functions that others call come last: they may be called by then
-        for candidate in _candidates(evaluator, module):
-            mark, before = evaluator.heap.mark(), len(evaluator.made)
-            orphans = evaluator.orphans
-            complete = True
-            evaluator.steps = 0
-            try:
-                candidate()
-            except BudgetError:
-                complete = False
-                evaluator.opened.clear()
-                evaluator.regions.clear()
-                evaluator.calls.clear()
-            if evaluator.orphans == orphans:
-                roots = _roots(evaluator, before, file, closed=False, complete=complete)
-                found.append(read(roots))
-            evaluator.heap.undo(mark)
-            del evaluator.made[before:]
-    return found
+    return [*found, *_built(evaluator, module, file, read, variants=False)]
+
+
+def _built(
+    evaluator: Evaluator, module: ModuleValue, file: str, read: Callable[[Roots], T], *,
+    variants: bool,
+) -> Iterator[T]:  # fmt: skip
+    """What `read` makes of the machines that single functions and classes build."""
+    for candidate in _candidates(evaluator, module, variants=variants):
+        mark, before = evaluator.heap.mark(), len(evaluator.made)
+        orphans = evaluator.orphans
+        complete = True
+        evaluator.steps = 0
+        try:
+            candidate()
+        except BudgetError:
+            complete = False
+            evaluator.opened.clear()
+            evaluator.regions.clear()
+            evaluator.calls.clear()
+        if evaluator.orphans == orphans:
+            yield read(_roots(evaluator, before, file, closed=False, complete=complete))
+        evaluator.heap.undo(mark)
+        del evaluator.made[before:]
 
 
 def _roots(evaluator: Evaluator, before: int, file: str, *, closed: bool, complete: bool) -> Roots:
@@ -104,8 +121,11 @@ def _children(container: Instance) -> tuple[Added, ...]:
     return children.added if isinstance(children, Children) else ()
 
 
-def _candidates(evaluator: Evaluator, module: ModuleValue) -> Iterator[Callable[[], object]]:
-    """The functions and classes of a module that nothing calls and that can build containers."""
+def _candidates(
+    evaluator: Evaluator, module: ModuleValue, *, variants: bool
+) -> Iterator[Callable[[], object]]:
+    """The functions and classes of a module that can build containers: those that nothing calls,
+    functions that others call last, because they may be called by then; for `variants` all."""
     frame = Frame(module.slots, module)
     called = _called_names(module)
     for first in (True, False):
@@ -115,20 +135,22 @@ def _candidates(evaluator: Evaluator, module: ModuleValue) -> Iterator[Callable[
                 continue
             match value:
                 case Function() if value.frame.module is module:
-                    if value.node not in evaluator.called and _builds(value.node, module):
+                    is_new = variants or value.node not in evaluator.called
+                    if is_new and _builds(value.node, module):
                         evaluator.called.add(value.node)
-                        yield lambda value=value: evaluator.run(value, _unknown(value))  # type: ignore[misc]
+                        given = _unknown(value, variants=variants)
+                        yield lambda value=value, given=given: evaluator.run(value, given)  # type: ignore[misc]
                 case Class() if value.frame.module is module:
-                    yield from _of_class(evaluator, value, module, frame)
+                    yield from _of_class(evaluator, value, module, frame, variants=variants)
 
 
 def _of_class(
-    evaluator: Evaluator, cls: Class, module: ModuleValue, frame: Frame
+    evaluator: Evaluator, cls: Class, module: ModuleValue, frame: Frame, *, variants: bool
 ) -> Iterator[Callable[[], object]]:
     order = evaluator.classes(cls)
     is_own = any(isinstance(base, LibraryClass) and base.name in CONTAINERS for base in order)
     maker = cls.slots.get("__init__")
-    is_made = isinstance(maker, Function) and maker.node in evaluator.called
+    is_made = isinstance(maker, Function) and maker.node in evaluator.called and not variants
     if is_made or not (is_own or _builds(cls.node, module)):
         return
     methods = [
@@ -140,11 +162,13 @@ def _of_class(
     def build() -> None:
         arguments = Arguments()
         if isinstance(maker, Function):
-            arguments = _unknown(maker).without_first()
+            arguments = _unknown(maker, variants=variants).without_first()
         made = evaluator.make(cls, arguments, _place(module, cls), frame)
         for method in methods:
-            if method.node not in evaluator.called and _builds(method.node, module):
-                evaluator.run(method, _unknown(method).without_first().with_first(made))
+            is_new = variants or method.node not in evaluator.called
+            if is_new and _builds(method.node, module):
+                given = _unknown(method, variants=variants)
+                evaluator.run(method, given.without_first().with_first(made))
 
     yield build
 
@@ -153,11 +177,13 @@ def _place(module: ModuleValue, cls: Class) -> Span | None:
     return module.text.span(cls.node) if module.text is not None else None
 
 
-def _unknown(function: Function) -> Arguments:
-    """Unknown arguments for the parameters that have no default value."""
+def _unknown(function: Function, *, variants: bool) -> Arguments:
+    """Unknown arguments for the parameters that have no default value; for `variants` for all."""
     taken = function.node.args
     positional = [*taken.posonlyargs, *taken.args]
-    return Arguments((UNKNOWN,) * (len(positional) - len(function.defaults)))
+    names = [(argument.arg, UNKNOWN) for argument in taken.kwonlyargs] if variants else []
+    known = 0 if variants else len(function.defaults)
+    return Arguments((UNKNOWN,) * (len(positional) - known), tuple(names))
 
 
 def _builds(node: ast.AST, module: ModuleValue) -> bool:
