@@ -105,7 +105,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
     for empty in context.empty_remaps:
         unset.setdefault(empty.scope.path, set()).add(empty.remap.to)
     in_functions = function_reads(context)
-    all_misnamed = misnamed_keys(context)
+    all_misnamed = context.of_machine(misnamed_keys)
     misnamed = {each.word.span: each for each in all_misnamed.values()}
     inner = {(path.rpartition("/")[0], key) for path, key in all_misnamed}
     for scope in flow.scopes.values():
@@ -207,7 +207,7 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= {(each.other, each.key) for each in context.missing_keys("outside")}
     found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
     found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
-    found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
+    found |= {(path, meant.word.text) for path, meant in context.of_machine(meant_keys).items()}  # SM301
     scopes = context.corrected_flow.scopes
     unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
     found |= {place for place in unset if place is not None}  # SM301
@@ -372,9 +372,9 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept |= _swapped_lists(context)
     loops = [(each.scope.path, loop_in_a_body(each)) for each in context.missing_keys("outside")]
     kept |= {(path, loop.item_key) for path, loop in loops if loop is not None}  # SM303
-    kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
+    kept |= {(path, meant.word.text) for path, meant in context.of_machine(meant_keys).items()}  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
-    misnamed = {each.word.span: each for each in misnamed_keys(context).values()}
+    misnamed = {each.word.span: each for each in context.of_machine(misnamed_keys).values()}
     kept |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
     misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
     yield from context.at_containers(_unused_in)

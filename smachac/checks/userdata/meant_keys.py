@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
@@ -12,7 +13,7 @@ from smachac.analysis.unset_reads import Missing, Reader, provided_keys, reader_
 from smachac.checks.help_text import other_place
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser, respelt
+from smachac.diagnostics.spelling import MOST_COMPARED, MOST_EXPLAINED, guesser, respelt
 from smachac.ir import nodes
 from smachac.ir.graph import START
 from smachac.ir.nodes import Data, Leaf
@@ -110,11 +111,15 @@ class Misnamed(NamedTuple):
 
 def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
     """The presets and inputs that mean a key of a similar name, by the path of their container and
-    that key."""
+    that key; for the first MOST_EXPLAINED missing keys of a container."""
     found: dict[tuple[str, str], Misnamed] = {}
-    presets = meant_keys(context)
+    presets = context.of_machine(meant_keys)
+    searched: Counter[str] = Counter()
     for each in context.missing_keys("unset", "nowhere", "outside"):
         scope = each.scope
+        searched[scope.path] += 1
+        if searched[scope.path] > MOST_EXPLAINED:
+            continue
         if context.of_container(sees_everything, scope.path, scope) or scope.container.sugar:
             continue
         if loop_in_a_body(each) is not None:
@@ -126,7 +131,8 @@ def misnamed_keys(context: Context) -> dict[tuple[str, str], Misnamed]:
         inputs = [Word(key.name, key.span) for key in scope.container.inputs]
         unread = [*words, *(word for word in inputs if word.text not in read)]
         guess = guesser([each.key])
-        alike = turned or [word for word in unread if guess(word.text) is not None]
+        compared = unread if len(unread) <= MOST_COMPARED else []
+        alike = turned or [word for word in compared if guess(word.text) is not None]
         if not alike and each.cause == "outside":
             alike = _unset_input(context, each, read)
         if len(alike) != 1:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 from smachac.analysis.unset_reads import Missing
 from smachac.ir import nodes
 from smachac.ir.graph import START
@@ -14,7 +16,6 @@ def swapped_loop(missing: Missing) -> nodes.Iterator | None:
     scope = missing.scope
     if missing.cause not in ("nowhere", "remapped"):
         return None
-    held = {*scope.held, *scope.inputs}
     for vertex in missing.vertices:
         node = scope.container if vertex == START else scope.children.get(str(vertex))
         if not isinstance(node, nodes.Iterator) or not node.item_key:
@@ -22,8 +23,11 @@ def swapped_loop(missing: Missing) -> nodes.Iterator | None:
         if (remapping(node) if vertex != START else OuterNames())[node.items_key] != missing.key:
             continue
         read = {key.name for child in node.children for key in child.inputs}
-        for steps in scope.steps.values() if vertex != START else ():
-            held.update(*(step.writes.perhaps for step in steps))
-        if node.item_key in held and missing.key in read and node.item_key not in read:
+        if missing.key not in read or node.item_key in read:
+            continue
+        if node.item_key in scope.held or node.item_key in scope.inputs:
+            return node
+        steps = chain.from_iterable(scope.steps.values() if vertex != START else ())
+        if any(node.item_key in step.writes.perhaps for step in steps):
             return node
     return None

@@ -103,8 +103,8 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     """
     flow = context.corrected_flow
     searches = Searches(flow)
-    presets, misled = meant_keys(context), misled_failures(context)
-    misnamed = misnamed_keys(context)
+    presets, misled = context.of_machine(meant_keys), misled_failures(context)
+    misnamed = context.of_machine(misnamed_keys)
     causes = _with_their_own_cause(context)
     for lacking in missing_together(causes):
         if lacking[0].scope.path in presets:
@@ -140,7 +140,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
 def _with_their_own_cause(context: Context) -> list[Missing]:
     """The keys that nothing sets, or not on every path, without those whose cause another rule
     reports: SM308, SM306, SM305, SM405, or SM201."""
-    misnamed = misnamed_keys(context)
+    misnamed = context.of_machine(misnamed_keys)
     unwritten = set(read_unwritten(context, unwritten_keys(context)).values()) | raced_keys(context)
     found: list[Missing] = []
     hidden: dict[tuple[str, str], frozenset[str]] | None = None
@@ -472,7 +472,7 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
               transitions: {done: held}
     """
     flow = context.corrected_flow
-    misnamed = misnamed_keys(context)
+    misnamed = context.of_machine(misnamed_keys)
     for missing in context.missing_keys("outside"):
         scope, key = missing.scope, missing.key
         if (scope.path, key) in misnamed and misnamed[scope.path, key].declared:
