@@ -93,9 +93,7 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
         near = near or (None if shouted and target.isupper() else every(target))
         if near is not None:
             found[target] = MeantTarget(near)
-    return {
-        target: meant._replace(certain=every.sure(target)) for target, meant in found.items()
-    }
+    return {target: meant._replace(certain=every.sure(target)) for target, meant in found.items()}
 
 
 def _names_by_word(names: Iterable[str]) -> dict[str, list[str]]:

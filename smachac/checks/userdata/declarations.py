@@ -207,7 +207,9 @@ def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
     found |= {(each.other, each.key) for each in context.missing_keys("outside")}
     found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
     found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
-    found |= {(path, meant.word.text) for path, meant in context.of_machine(meant_keys).items()}  # SM301
+    found |= {
+        (path, meant.word.text) for path, meant in context.of_machine(meant_keys).items()
+    }  # SM301
     scopes = context.corrected_flow.scopes
     unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
     found |= {place for place in unset if place is not None}  # SM301
@@ -372,7 +374,9 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
     kept |= _swapped_lists(context)
     loops = [(each.scope.path, loop_in_a_body(each)) for each in context.missing_keys("outside")]
     kept |= {(path, loop.item_key) for path, loop in loops if loop is not None}  # SM303
-    kept |= {(path, meant.word.text) for path, meant in context.of_machine(meant_keys).items()}  # SM301
+    kept |= {
+        (path, meant.word.text) for path, meant in context.of_machine(meant_keys).items()
+    }  # SM301
     kept |= {place for each in context.item_reads for place in each.declared}
     misnamed = {each.word.span: each for each in context.of_machine(misnamed_keys).values()}
     kept |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
