@@ -198,7 +198,7 @@ def test_a_robot_file_that_declares_another_encoding_than_it_has(
         "arm.yml": DESCRIPTION.encode(),
         "arm.urdf": URDF.replace("ENCODING", declared).encode(encoding),
     }
-    assert findings(tmp_path, files)[0][:2] == ("SM007", message)
+    assert [item[:2] for item in findings(tmp_path, files)] == [("SM007", message)]
 
 
 def test_a_simulation_reads_the_encodings_that_the_check_accepts(tmp_path: Path) -> None:
@@ -236,20 +236,21 @@ def test_a_macro_file_in_the_encoding_that_it_declares(tmp_path: Path) -> None:
 
 
 BROKEN = {
-    "sub.yml": (SCRIPT.replace("template: ScriptedState, outcomes: [done]", "script: sub"), "sub"),
-    "templates/Wave.yml": (CALL, "interface"),
-    "templates/Wave.tpl.py": (CALL, "template"),
-    "arm.yml": (ROBOT, "robot"),
-    "scene.yml": (ROBOT.replace("arm.yml", "panda\nscene: scene.yml"), "scene"),
-    "smachac.toml": (SCRIPT, "settings"),
-    "pyproject.toml": (SCRIPT, "settings"),
+    "sub.yml": SCRIPT.replace("template: ScriptedState, outcomes: [done]", "script: sub"),
+    "templates/Wave.yml": CALL,
+    "templates/Wave.tpl.py": CALL,
+    "arm.yml": ROBOT,
+    "scene.yml": ROBOT.replace("arm.yml", "panda\nscene: scene.yml"),
+    "states.yml": SCRIPT.replace("outcomes", "properties: states.yml\noutcomes", 1),
+    "smachac.toml": SCRIPT,
+    "pyproject.toml": SCRIPT,
 }
 
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_each_file_of_a_project_names_its_wrong_byte(tmp_path: Path, name: str) -> None:
-    files = {"main.yml": BROKEN[name][0].encode(), name: b"# gr\xf6sse\n"}
-    assert findings(tmp_path, files)[0] == ("SM007", "the byte 0xf6 is not valid in UTF-8", LATIN)
+    files = {"main.yml": BROKEN[name].encode(), name: b"# gr\xf6sse\n"}
+    assert findings(tmp_path, files) == [("SM007", "the byte 0xf6 is not valid in UTF-8", LATIN)]
 
 
 def test_a_template_is_utf_8_because_the_program_is() -> None:

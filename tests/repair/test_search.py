@@ -21,7 +21,7 @@ from smachac.driver import Analysis, analyse
 from smachac.frontend.loader import memory_library
 from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.repair.search import MOST_CLUSTERS, again, clusters
-from tests.trust.judged_repairs import ALL_MUTATIONS, judged
+from tests.trust.judged_repairs import ALL_MUTATIONS, mutated
 from tests.trust.project_text import BUILT_IN, MAIN
 from tests.trust.unusual_projects import unusual_projects
 
@@ -109,10 +109,10 @@ def test_clusters_of_damaged_texts_obey_the_laws() -> None:
     projects = unusual_projects()
     count = 0
     for kind, name in mutants():
-        mutant = judged(projects[name], kind, f"search {name}")
+        file, mutant = mutated(projects[name], kind, f"search {name}")
         if mutant is None:
             continue
-        analysis, found = found_in(mutant.files)
+        analysis, found = found_in({**projects[name], file: mutant.text})
         count += len(found)
         assert len(found) <= MOST_CLUSTERS
         assert_disjoint(analysis, found)

@@ -77,11 +77,16 @@ def names_all(item: Diagnostic, lost: tuple[str, ...]) -> bool:
     return all(piece in words for piece in lost)
 
 
-def judged(files: Files, kind: str, seed: str) -> JudgedRepair | None:
-    """One mutant of a project, judged; None if the mutation does not fit its file."""
+def mutated(files: Files, kind: str, seed: str) -> tuple[str, TextMutant | None]:
+    """A file of a project and its mutant, which is None if the mutation does not fit the file."""
     draw = random.Random(seed)
     file = draw.choice(scripts(files))
-    mutant = ALL_MUTATIONS[kind](files[file], draw)
+    return file, ALL_MUTATIONS[kind](files[file], draw)
+
+
+def judged(files: Files, kind: str, seed: str) -> JudgedRepair | None:
+    """One mutant of a project, judged; None if the mutation does not fit its file."""
+    file, mutant = mutated(files, kind, seed)
     if mutant is None:
         return None
     changed = {**files, file: mutant.text}

@@ -198,6 +198,7 @@ class _Resolver:
         self.calls: dict[Span, KeptCall] = {}
         self.others: dict[str, StateType | None] = {}  # types that the script need not use
         self.unknown: set[str] = set()  # the templates that were not found
+        self.unread: set[str] = set()  # the sub-scripts and templates whose fault is reported
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
@@ -536,10 +537,11 @@ class _Resolver:
             self.report[before:] = findings
         return state
 
-    def not_found(self, item: Diagnostic) -> None:
-        """Reports a file that was not found, except as a consequence: its folder may be in settings
-        that could not be read, which are reported."""
-        if self.library.settings_read or not has_errors(self.report):
+    def not_found(self, name: str, item: Diagnostic) -> None:
+        """Reports a file that was not found, except as a consequence: it is there, but could not be
+        read, or its folder may be in settings that could not be read, which are reported."""
+        settings_read = self.library.settings_read or not has_errors(self.report)
+        if settings_read and name not in self.unread:
             self.report.append(item)
 
     def sub_script(
@@ -553,7 +555,8 @@ class _Resolver:
             known = self.library.script_names(caller)
             other = self.library.folder_with(word.text, SUFFIXES[1:], searched)
             template = word.text in self.known_templates()[1]
-            self.not_found(script_not_found(word, searched, known, other, template=template))
+            missing = script_not_found(word, searched, known, other, template=template)
+            self.not_found(word.text, missing)
             return None
         self.texts[word.text, caller] = source
         if (word.text, caller) not in self.parsed:
@@ -580,7 +583,10 @@ class _Resolver:
     def text(self, name: str, caller: str) -> Source | None:
         """The text of a sub-script, from the library at its first use."""
         if (name, caller) not in self.found_texts:
+            before = len(self.report)
             self.found_texts[name, caller] = self.library.script(name, caller)
+            if len(self.report) > before:
+                self.unread.add(name)
         return self.found_texts[name, caller]
 
     def known_templates(self) -> tuple[Sequence[str], Sequence[str]]:
@@ -593,7 +599,10 @@ class _Resolver:
         """The state type of that name, read from the library at its first use."""
         if name not in self.found_types:
             find = self.kept.state_type if self.kept is not None else find_state_type
+            before = len(self.report)
             self.found_types[name] = find(name, self.library, self.report)
+            if len(self.report) > before:
+                self.unread.add(name)
         self.types[name] = self.found_types[name]
         return self.types[name]
 
@@ -644,7 +653,7 @@ class _Resolver:
             self.unknown.add(word.text)
             called = [] if role else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
-            self.not_found(unknown_template(word, read, found_in, self.other_type))
+            self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
                 return schema.CONTAINER_TYPES[meant], meant
