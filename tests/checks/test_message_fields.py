@@ -139,7 +139,7 @@ def test_of_several_definitions_one_may_have_the_field() -> None:
 
     one = Source("one/Grasp.srv", "float64 width\n---\n")
     two = Source("two/Grasp.srv", "float64 opening\n---\n")
-    library = replace(memory_library({}, BUILT_IN), definitions=lambda path: [one, two])
+    library = replace(memory_library({}, BUILT_IN), definitions=lambda path, report: [one, two])
     slots = "request_slots: [{key}]\n      input_keys: [{key}]"
     for key, count in (("width", 0), ("opening", 0), ("force", 1)):
         script = service(slots.format(key=key), f"{key}: 0.1")
