@@ -249,3 +249,23 @@ def test_a_type_of_the_userdata_is_changed_there(
     printed = capsys.readouterr().out
     assert "output_keys" not in printed
     assert "declare `block_pose` as `str` in the `userdata` of `sm`" in printed
+
+
+TWO_SLIPS = [
+    # The rest of a text with a lost sign is checked, and operators read it as repaired.
+    (("- PICK:", "- PICK"), ("failed: aborted", "aborted: failed")),
+    (("name: sm", "name sm"), ("failed: aborted", "aborted: failed")),
+    (("[succeeded, aborted]", "[succeeded, aborted"), ("failed: aborted", "aborted: failed")),
+    (("states:\n", "states\n"), ("done: PICK", "done: PIKC")),
+    (("- LOOK:", "- LOOK"), ("input_keys:", "imput_kyes:")),
+]
+
+
+@pytest.mark.parametrize(("lost", "slip"), TWO_SLIPS)
+def test_a_slip_in_a_text_with_a_lost_sign_has_its_repair(
+    lost: tuple[str, str], slip: tuple[str, str]
+) -> None:
+    text = SCRIPT.replace(*lost).replace(*slip)
+    _, found = found_in({MAIN: text})
+    edits = [edit for cluster in found for edit in cluster.repair.edits]
+    assert edited_texts(edits).popitem()[1] == SCRIPT
