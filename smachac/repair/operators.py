@@ -245,8 +245,8 @@ def _end(part: Tree | Entry) -> int:
 
 
 def _near_names(item: Diagnostic, text: Text, vocabulary: Vocabulary) -> Iterator[Candidate]:
-    """A name at the place of the finding, or among its arguments, in place of a name that it is
-    like: at the place of the finding, and where a name that is like it is written only once."""
+    """A name in place of one that it is like: at the place of the finding, and where a name is
+    written only once that the finding is about, or that is like one that it is about."""
     words = dict.fromkeys(NAME.findall(item.span.text)[:MOST_NEAR])
     for word in words:
         for cost, name in _near(word, text):
@@ -254,6 +254,11 @@ def _near_names(item: Diagnostic, text: Text, vocabulary: Vocabulary) -> Iterato
             for span in _places(word, item.span):
                 yield candidate(cost, RENAME, Edit(span=span, text=name))
     yield from _declared_names(item, text, vocabulary, 0.5)
+    for word in _words_of(item):
+        if text.counts[word] == 1 and word not in item.span.text:
+            for cost, name in _near(word, text):
+                for span in _places(word, text.whole):
+                    yield candidate(cost + 0.5, RENAME, Edit(span=span, text=name))
 
 
 def _declared_names(

@@ -1,7 +1,8 @@
 """The search for what was meant: repairs of rules and of operators, each tried by a new check.
 
 A repair is proven if the script with it has fewer findings, none that is new, and if no less of it
-is understood: a state of an unknown type silences rules and corrects nothing. Literature: Lerner
+is understood: a state of an unknown type silences rules and corrects nothing. If more of it is
+understood, new findings are allowed. Literature: Lerner
 et al., Searching for type-error messages, PLDI 2007; Chen and Erwig, Counter-factual typing for
 debugging type errors, POPL 2014.
 """
@@ -48,6 +49,10 @@ CHARACTERS = 20
 
 MOST_FINDINGS = 100
 """In a report of more findings nothing is searched."""
+
+MOST_REVEALING = 1.5
+"""Up to this cost, a repair after which more is understood can reveal other findings: the name that
+it writes is like the one that it replaces."""
 
 Again: TypeAlias = "Callable[[Mapping[Source, str]], Analysis]"
 """A function that analyses a script again after changes of its texts."""
@@ -255,8 +260,10 @@ def _proof(
     before, marks = unknown(analysis), _marks(analysis.report)
     for candidate in proposed:
         after = analysed(edited_texts(candidate.repair.edits))
-        left = _marks(after.report)
-        if unknown(after) > before or left - marks or left[_mark(item)] >= marks[_mark(item)]:
+        left, still = _marks(after.report), unknown(after)
+        if still > before or left[_mark(item)] >= marks[_mark(item)]:
+            continue
+        if left - marks and (still == before or candidate.cost > MOST_REVEALING):
             continue
         if _leaves_its_type(item, candidate, analysis.machine, after.machine):
             continue

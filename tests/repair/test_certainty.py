@@ -125,3 +125,20 @@ def test_independent_faults_do_not_weaken_a_repair() -> None:
     found = clusters(analysis, analysis.report, again(analysis))
     assert len(found) == 2
     assert all(cluster.repair.certainty is not Certainty.POSSIBLE for cluster in found)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        # The finding is at another place, and about a name that is in the text only once.
+        ("outcomes: [ok, sensor_error]", "outcomes: [ok, senosr_error]"),
+        # With the right name more is understood, and the finding of another slip appears.
+        ("template: ScriptedState", "template: ScritpedState"),
+    ],
+)
+def test_a_slip_beside_another_one_has_its_repair(right: str, wrong: str) -> None:
+    text = FILES[MAIN].replace("ok: put", "okk: put").replace(right, wrong)
+    analysis = analysed({**FILES, MAIN: text})
+    found = clusters(analysis, analysis.report, again(analysis))
+    texts = {edit.text for cluster in found for edit in cluster.repair.edits}
+    assert right.partition(": ")[2].strip("[]").rpartition(", ")[2] in texts
