@@ -173,10 +173,10 @@ def _texts(
     analysis: Analysis, texts: Iterable[Source], interface: Callable[[str], Source | None]
 ) -> Iterable[str]:
     """The texts of a project: scripts, the user's interfaces, and classes of Python."""
-    found = dict.fromkeys(texts)
+    found: dict[Source | None, None] = dict.fromkeys(texts)
     if analysis.machine is not None:
         found.update(dict.fromkeys(node.span.source for _, node in walk(analysis.machine.root)))
-        found.update(dict.fromkeys(map(interface, analysis.machine.state_types)))
+        found.update((interface(name), None) for name in analysis.machine.state_types)
     if analysis.library is not None:
         found.update(dict.fromkeys(source for _, source in analysis.library.modules))
     return [source.text for source in found if source is not None]
