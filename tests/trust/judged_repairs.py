@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
-from smachac.diagnostics.repair import Repair, edited_texts
+from smachac.diagnostics.repair import Certainty, Repair, edited_texts
 from smachac.driver import Analysis
 from smachac.repair.search import again, clusters
 from smachac.report.text import with_cluster
@@ -98,7 +98,8 @@ def scripts(files: Files) -> list[str]:
 
 
 def shown(analysis: Analysis) -> tuple[tuple[Diagnostic, ...], Repair | None]:
-    """The errors and warnings of a project as they are printed, and the first repair."""
+    """The errors and warnings of a project as they are printed, and the first repair, if it is more
+    than possible."""
     found = clusters(analysis, analysis.report, again(analysis))
     hidden = {id(item) for cluster in found for item in cluster.explained}
     roots = {id(cluster.finding): cluster for cluster in found}
@@ -107,7 +108,9 @@ def shown(analysis: Analysis) -> tuple[tuple[Diagnostic, ...], Repair | None]:
         for item in analysis.report
         if item.severity is not Severity.INFO and id(item) not in hidden
     ]
-    return (*items,), found[0].repair if found else None
+    first = found[0].repair if found else None
+    is_likely = first is not None and first.certainty is not Certainty.POSSIBLE
+    return (*items,), first if is_likely else None
 
 
 def printed(files: Files) -> list[tuple[str, str, str]]:
