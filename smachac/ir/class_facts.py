@@ -93,8 +93,7 @@ FaultKind = Literal[
     "argument twice",
     "too many arguments",
     "missing base argument",
-    "shifted arguments",
-    "exchanged arguments",
+    "other lists",
     "no state class",
     "not called",
     "function not called",
@@ -107,8 +106,6 @@ FaultKind = Literal[
     "no value",
     "no member",
     "called early",
-    "other order",
-    "swapped arguments",
     "number of values",
     "no module here",
 ]

@@ -23,7 +23,6 @@ from smachac.pysource.modules import (
     module_name,
     source_module,
 )
-from smachac.pysource.renamed_members import renamed_member
 from smachac.pysource.user_code import UserCode
 
 _WORD = re.compile(r"\w+")
@@ -206,5 +205,5 @@ def _absent(
     public = [each for each in other.names if not each.startswith("_")]
     functions = [each for each in public if isinstance(other.names[each][-1], ast.FunctionDef)]
     more = f"its functions are {listed(functions)}" if functions else "define it in the module"
-    near = guesser(sorted(public))(name) or renamed_member(name, other, user.text, library)
+    near = guesser(sorted(public))(name)
     return near, file_of(other), more

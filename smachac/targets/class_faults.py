@@ -158,16 +158,12 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "missing base argument": (
         "`__init__` of `{owner}` requires {more}, which this call does not pass",
-        "write `{near}`",
+        "its parameters are {near}",
     ),
-    "shifted arguments": (
+    "other lists": (
         "the outcomes `{word}` are passed as `{more}` of `__init__` of `{owner}`, and `{file}` as"
         " `outcomes`",
-        "write `{near}`",
-    ),
-    "exchanged arguments": (
-        "`{word}` and `{more}` have changed places in this call of `__init__` of `{owner}`",
-        "write `{near}`",
+        "pass them in the order of its parameters: {near}",
     ),
     "no state class": (
         "`{word}` is not a class of SMACH",
@@ -217,15 +213,6 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
         "`{word}` is called here: `{more}` gets its result, None, in place of the function",
         "write `{near}`",
     ),
-    "other order": (
-        "`{owner}` returns its results in another order: the code compares `{word}` with values"
-        " that only the {more} result has",
-        "write `{near}`",
-    ),
-    "swapped arguments": (
-        "the arguments of `{word}` have changed places",
-        "write `{near}`",
-    ),
     "extra argument": (
         "`{owner}` has no parameter for `{word}`",
         "its parameters are those of `{near}`",
@@ -236,7 +223,7 @@ WORDS: Mapping[FaultKind, tuple[str, str]] = {
     ),
     "lacking argument": (
         "this call of `{word}` does not pass `{more}`",
-        "write `{near}`",
+        "its parameters are those of `{near}`",
     ),
     "number of values": (
         "the text has {more}, but gets {file}",
@@ -428,59 +415,66 @@ CHECKED_ONLY = frozenset[FaultKind](
         "no value",
         "no return",
         "called early",
-        "other order",
-        "swapped arguments",
     ]
 )
 """Faults of a class that a compiler or Python accepts: a build does not fail."""
 
 EFFECTS: Mapping[FaultKind, str] = {
-    "defined twice": "",
-    "undefined name": "the code raises NameError when it runs: the machine stops",
-    "undefined method": "the code raises AttributeError when it runs: the machine stops",
-    "no attribute": "the code raises AttributeError when it runs: the machine stops",
-    "no result": "",
+    **dict.fromkeys(["defined twice", "no result", "no effect", "lost text"], ""),
+    **dict.fromkeys(
+        [
+            "undefined name",
+            "no rospy import",
+            "no import",
+            "other scope",
+            "other userdata",
+            "lost argument",
+            "lost userdata",
+            "wrong import",
+        ],
+        "the code raises NameError when it runs: the machine stops",
+    ),
+    **dict.fromkeys(
+        [
+            "undefined method",
+            "no attribute",
+            "unset attribute",
+            "never set",
+            "no module here",
+            "no member",
+        ],
+        "the code raises AttributeError when it runs: the machine stops",
+    ),
+    **dict.fromkeys(
+        ["no self parameter", "extra argument", "unknown keyword", "lacking argument"],
+        "the call raises TypeError when it runs: the machine stops",
+    ),
+    **dict.fromkeys(
+        ["early return", "skipped output", "unset output"],
+        "a state that reads the key afterwards gets an old value, or fails",
+    ),
     "no return": "the result is None: code that uses it as a value fails, or goes on without it",
     "no tuple": "each letter of the text counts as a name",
-    "unset attribute": "the code raises AttributeError when it runs: the machine stops",
-    "never set": "the code raises AttributeError when it runs: the machine stops",
-    "no rospy import": "the code raises NameError when it runs: the machine stops",
-    "no import": "the code raises NameError when it runs: the machine stops",
-    "other scope": "the code raises NameError when it runs: the machine stops",
-    "other userdata": "the code raises NameError when it runs: the machine stops",
-    "lost argument": "the code raises NameError when it runs: the machine stops",
-    "lost userdata": "the code raises NameError when it runs: the machine stops",
     "early userdata": "the code raises NameError when the program makes the state",
     "super not called": "the call raises an error when it runs: the program stops",
-    "no self parameter": "the call raises TypeError when it runs: the machine stops",
-    "wrong import": "the code raises NameError when it runs: the machine stops",
     "not called": "the value is the method itself, which is true in every condition",
     "function not called": "the value is the function itself: it is no number, and true in every"
     " condition",
-    "no effect": "",
     "no answer": "the request stays set: when the state runs again, it is stopped at once",
     "identity": "the comparison can be false for equal values",
     "comparison": "the line has no effect: the old value stays, or there is none",
     "lost outcome": "`execute` goes on, and the outcome is lost",
-    "lost text": "",
     "other answer": "a stop or a time limit counts as `{word}`: a transition for `{near}` is never"
     " taken",
+    "no comma": "SMACH knows the joined name only: the machine stops with an error",
+    "other lists": "the state does not have the outcomes that it returns: the machine stops with an"
+    " error",
     "no value": "the code raises UnboundLocalError when it runs: the machine stops",
     "called early": "the function runs at once, and not later",
-    "other order": "the comparison has the same result in every run",
-    "swapped arguments": "{more}",
-    "extra argument": "the call raises TypeError when it runs: the machine stops",
-    "unknown keyword": "the call raises TypeError when it runs: the machine stops",
-    "lacking argument": "the call raises TypeError when it runs: the machine stops",
     "number of values": "the code raises {word} when it runs: the machine stops",
-    "no module here": "the code raises AttributeError when it runs: the machine stops",
-    "no member": "the code raises AttributeError when it runs: the machine stops",
     "unused call": "the state ends with the same outcome whatever the call returns",
     "unused outcome": "a transition for this outcome is never taken",
     "no answer to stops": "a transition for this outcome is never taken",
-    "early return": "a state that reads the key afterwards gets an old value, or fails",
-    "skipped output": "a state that reads the key afterwards gets an old value, or fails",
-    "unset output": "a state that reads the key afterwards gets an old value, or fails",
 }
 """What happens, where it differs from most faults; empty if the message contains it."""
 
@@ -489,16 +483,18 @@ _CALLED = "the program makes the state without this argument: the call raises a 
 
 _RAISED = "the call raises a TypeError when the program makes the state"
 
+_INCOMPLETE = "the outcomes and keys of the state are missing: the program stops"
+
 PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "no state": "SMACH uses attributes of `smach.State` that the object does not have",
     "no execute": "`execute` of `smach.State` raises a NotImplementedError when the state runs",
     "arguments": "SMACH calls `execute` with the userdata alone: the call raises a TypeError",
     "no method": "SMACH needs the name of an outcome: the machine stops with an error",
     "coroutine": "SMACH needs the name of an outcome: the machine stops with an error",
-    "no constructor call": "the outcomes and keys of the state are missing: the program stops",
+    "no constructor call": _INCOMPLETE,
+    "data class": _INCOMPLETE,
     "no base constructor call": "what the base class sets is missing, also the outcomes and keys:"
     " the program stops",
-    "no comma": "SMACH knows the joined name only: the machine stops with an error",
     "no argument": _RAISED,
     "no keyword": _RAISED,
     "no argument here": _RAISED,
@@ -506,10 +502,6 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
     "argument twice": _RAISED,
     "too many arguments": _RAISED,
     "missing base argument": _RAISED,
-    "shifted arguments": "the state does not have the outcomes that it returns: the machine stops"
-    " with an error",
-    "exchanged arguments": "the state has other outcomes or keys than its code uses: the machine"
-    " stops with an error",
     "no state class": "the definition of the class raises an error when the program starts",
     "no outcomes": "SMACH raises InvalidTransitionError for an undeclared outcome: the machine"
     " stops",
@@ -526,95 +518,9 @@ PYTHON_EFFECTS: Mapping[FaultKind, str] = {
 }
 """What happens in a program in Python, where it is certain."""
 
-STOPS_PROGRAM = frozenset[FaultKind](
-    [
-        "no state",
-        "no execute",
-        "no method",
-        "coroutine",
-        "arguments",
-        "no constructor call",
-        "no base constructor call",
-        "no outcomes",
-        "data class",
-        "no state class",
-        "no argument",
-        "no keyword",
-        "no argument here",
-        "no base argument",
-        "argument twice",
-        "too many arguments",
-        "missing base argument",
-        "no parameter",
-        "no such parameter",
-        "other parameter",
-        "renamed parameter",
-        "required parameter",
-        "missing argument",
-        "not passed",
-        "not accepted",
-        "other guard",
-        "no quotes",
-    ]
-)
+STOPS_PROGRAM = PYTHON_EFFECTS.keys()
 """The faults with which the program certainly stops when it makes the state, or the first time that
 the state runs: errors of a check."""
-
-WRITTEN = frozenset[FaultKind](
-    [
-        "wrong result",
-        "wrong parameters",
-        "wrong constructor",
-        "no first argument",
-        "not in with",
-        "no constructor parameter",
-        "extra parameter",
-        "unused call",
-        "parameter type",
-        "parameter order",
-        "refused order",
-        "no number",
-        "wrong number",
-        "skipped output",
-        "early return",
-        "other parameter",
-        "renamed parameter",
-        "no base constructor call",
-        "other class",
-        "other userdata",
-        "lost userdata",
-        "early userdata",
-        "no self parameter",
-        "wrong import",
-        "no comma",
-        "other guard",
-        "no tuple",
-        "no result",
-        "no state class",
-        "missing base argument",
-        "shifted arguments",
-        "exchanged arguments",
-        "not called",
-        "function not called",
-        "no effect",
-        "no answer",
-        "identity",
-        "comparison",
-        "lost outcome",
-        "no value",
-        "other answer",
-        "argument order",
-        "no quotes",
-        "called early",
-        "other order",
-        "swapped arguments",
-        "no module here",
-        "never set",
-        "extra argument",
-        "lacking argument",
-    ]
-)
-"""Faults whose words contain what was probably meant."""
 
 
 SET_IN_SCRIPT = ("no parameter", "other parameter", "renamed parameter")
@@ -648,7 +554,7 @@ def about_class(fault: ClassFault, state_type: str, name: str, lists: str) -> tu
         return message, f"write `{fault.more}` before this `return`{too}"
     if fault.kind == "unset output" and fault.more:
         return message, f"write `{fault.more}` before the `return`"
-    if near is None or fault.kind in WRITTEN:
+    if near is None or any("{near}" in text for text in WORDS[fault.kind]):
         return message, help
     if fault.kind == "no execute":
         return message, f"rename `{near}` to `execute`"
