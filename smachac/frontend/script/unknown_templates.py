@@ -4,7 +4,6 @@ and one finding for all states that name the same template."""
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
@@ -26,9 +25,6 @@ MOST_TYPES = 200
 
 MOST_MEANT = 3
 """If more types than these have the names that a state uses, none is proposed."""
-
-MOST_PLACES = 5
-"""The other states that are shown beside the first that names an unknown template."""
 
 
 def types_with_the_names(
@@ -194,27 +190,3 @@ def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:
     keys = {each.name for each in (*type_.input_keys, *type_.output_keys)}
     outcomes = {each.name for each in type_.outcomes} | {"error", "timeout"}
     return keys.union(type_.variables).issuperset(used) and outcomes.issuperset(ends)
-
-
-def one_for_each_template(found: Sequence[Diagnostic]) -> Report:
-    """The findings, with one for each template that was not found, at the first state that names
-    it."""
-    places: dict[str, list[Diagnostic]] = {}
-    for item in found:
-        if item.kind is template_not_found.code:
-            places.setdefault(item.finding.arguments[0], []).append(item)
-    kept: Report = []
-    for item in found:
-        if item.kind is not template_not_found.code:
-            kept.append(item)
-            continue
-        first, *others = places[item.finding.arguments[0]]
-        if item is first:
-            # The calls of one sub-script lead to one place.
-            others = list({each.span: each for each in others if each.span != item.span}.values())
-            shown = (
-                Related(span=each.span, message="the same here") for each in others[:MOST_PLACES]
-            )
-            finding = replace(item.finding, related=(*item.finding.related, *shown))
-            kept.append(replace(item, finding=finding) if others else item)
-    return kept
