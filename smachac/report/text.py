@@ -83,7 +83,7 @@ def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
     if cluster is None:
         return item
     words = in_words(cluster.repair, item.span)
-    own, repairs = item.help, [repair.edits for repair in item.finding.all_repairs]
+    own, repairs = item.help, [repair.edits for repair in item.finding.all_repairs[:1]]
     if own and (cluster.repair.edits in repairs or words in own):
         help = own
     else:
