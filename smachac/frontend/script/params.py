@@ -6,7 +6,6 @@ They may be at any depth of a value. A quoted word is data: `['params', x]` is a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -127,19 +126,6 @@ def look_up_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
     return None
 
 
-def _with_meant_look_ups(tree: Seq, scope: Scope, report: Report) -> Seq:
-    """A list with the misspelt `params` of the look-ups in it corrected, which are reported."""
-    items = list(tree.items)
-    for at, item in enumerate(items):
-        if not isinstance(item, Seq) or len(item.items) != 2:
-            continue
-        if look_up_meant(item, scope, report) is not None:
-            word = item.items[0]
-            assert isinstance(word, Scalar)
-            items[at] = Seq((replace(word, value="params"), item.items[1]), item.span)
-    return tree if items == list(tree.items) else Seq(tuple(items), tree.span)
-
-
 def look_ups(tree: Tree) -> Iterator[Word]:
     """The names of params in the look-ups of a value, at any depth."""
     todo: list[Tree] = [tree]
@@ -173,8 +159,9 @@ def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) ->
     word = look_up_word(tree)
     if word is not None:
         return _found(word, scope, report)
-    if scope:
-        tree = _with_meant_look_ups(tree, scope, report)
+    meant = look_up_meant(tree, scope, report) if scope else None
+    if meant is not None:
+        return meant
     items = tuple(fill_in(item, scope, report) for item in tree.items)
     if not names and any(look_up_word(item) is not None for item in tree.items):
         joined = _joined(items, tree, report)

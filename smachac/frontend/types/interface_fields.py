@@ -27,10 +27,17 @@ _OTHER_FIELDS: Mapping[str, tuple[str, ...]] = {
 }
 """Fields that other tools have, with those of interfaces that they are meant for."""
 
+SECTIONS = ("outcomes", "output_keys", "input_keys", "variables")
+"""The fields that are proposed in place of one with an unknown name: a new check shows which one is
+meant."""
+
 
 def interface_fields(tree: Map, report: Report) -> dict[str, Tree]:
     """The fields of an interface. One with an unknown name is also the field that it is certainly
     meant for: then it is one finding."""
+    given = {str(entry.key.value) for entry in tree.entries}
+    missing = [name for name in INTERFACE_FIELDS if name not in given]
+    proposed = [name for name in SECTIONS if name in missing]
     fields: dict[str, Tree] = {}
     meant: dict[str, Tree] = {}
     sure = guesser_of(tuple(INTERFACE_FIELDS)).sure
@@ -45,5 +52,9 @@ def interface_fields(tree: Map, report: Report) -> dict[str, Tree]:
         meant |= dict.fromkeys(names, entry.value)
         one = names[0] if names and key != "io_keys" else None
         word = Word(key, entry.key.span)
-        report.append(unknown_variable(word, owner, INTERFACE_FIELDS, meant=one))
+        report.append(
+            unknown_variable(
+                word, owner, INTERFACE_FIELDS, meant=one, fitting=missing, proposed=proposed
+            )
+        )
     return meant | fields
