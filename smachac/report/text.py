@@ -84,8 +84,10 @@ def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
     if cluster is None:
         return item
     words = in_words(cluster.repair, item.span)
-    own, repairs = item.help, [repair.edits for repair in item.finding.all_repairs]
-    if own and (cluster.repair.edits in repairs or words in own):
+    own, repairs = item.help, item.finding.all_repairs
+    # The help is about the first repair of the rule, if that is likely.
+    named = [each.edits for each in repairs[:1] if each.certainty is not Certainty.POSSIBLE]
+    if own and (cluster.repair.edits in named or words in own):
         help = own
     elif own and not repairs:
         is_possible = cluster.repair.certainty is Certainty.POSSIBLE
