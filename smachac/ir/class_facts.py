@@ -10,122 +10,60 @@ from smachac.ir.function_facts import ArgumentUses
 from smachac.ir.message_types import PARTS, DefinitionKind
 from smachac.records import dataclass
 
-FaultKind = Literal[
-    "no module",
-    "no class",
-    "no imported module",
-    "no imported name",
-    "circular import",
-    "syntax",
-    "no state",
-    "no execute",
-    "no method",
-    "coroutine",
-    "arguments",
-    "no constructor call",
-    "no base constructor call",
-    "no outcomes",
-    "data class",
-    "self twice",
-    "no self",
-    "other class",
-    "hidden method",
-    "defined twice",
-    "no parameter",
-    "required parameter",
-    "other parameter",
-    "renamed parameter",
-    "no such parameter",
-    "missing argument",
-    "not passed",
-    "not accepted",
-    "argument order",
-    "no keyword",
-    "no argument here",
-    "no quotes",
-    "other guard",
-    "no outcome",
-    "no key member",
-    "wrong result",
-    "wrong parameters",
-    "wrong constructor",
-    "no first argument",
-    "not in with",
-    "no constructor parameter",
-    "extra parameter",
-    "parameter type",
-    "parameter order",
-    "refused order",
-    "no number",
-    "wrong number",
-    "unused outcome",
-    "unused call",
-    "no answer to stops",
-    "other answer",
-    "unset output",
-    "skipped output",
-    "early return",
-    "undefined name",
-    "other scope",
-    "other userdata",
-    "lost argument",
-    "lost userdata",
-    "early userdata",
-    "super not called",
-    "no self parameter",
-    "no import",
-    "no rospy import",
-    "wrong import",
-    "undefined method",
-    "no attribute",
-    "unset attribute",
-    "never set",
-    "extra argument",
-    "lacking argument",
-    "unknown keyword",
-    "no list",
-    "no comma",
-    "no tuple",
-    "no result",
-    "no return",
-    "no argument",
-    "no base argument",
-    "argument twice",
-    "too many arguments",
-    "missing base argument",
-    "shifted arguments",
-    "exchanged arguments",
-    "no state class",
-    "not called",
-    "function not called",
-    "no effect",
-    "no answer",
-    "identity",
-    "comparison",
-    "lost outcome",
-    "lost text",
-    "no value",
-    "no member",
-    "called early",
-    "other order",
-    "swapped arguments",
-    "number of values",
-    "no module here",
-]
+STATE_PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
+"""The parameters of `smach.State.__init__` with lists of names, in their order."""
 
 ANY = "*"
 """In place of outcomes that are not known."""
+
+
+DID_YOU_MEAN = "did you mean `{near}`?"
+"""The `near_help` of kinds of which `near` is a name."""
+
+SUGGESTION = "{suggestion}"
+"""The `near_help` of kinds of which `near` is a name or other code."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaultKind:
+    """A kind of fault of a class, with its words. The module that finds such faults defines it.
+
+    `name` is a part of fingerprints, so it never changes. `message`, `help` and `effect` are
+    templates; their fields are those of a `ClassFault`, `{word}` for the text of its `name`,
+    `{name}` for the class, `{type}` for the state type, `{lists}` for the arguments of the
+    constructor of `smach.State` that fit the interface, and `{place}` for the file of the fault, or
+    `unnamed` if it has none. `near_help` is the help where `near` is known, if `help` does not
+    contain it. `effect` is what happens if that differs from most faults; empty if the message
+    contains it.
+
+    `missing`: the code does not exist, or does not load (SM608). `stops`: the program certainly
+    stops when it makes the state, or the first time that the state runs: an error of a check.
+    `accepted`: a compiler or Python accepts the code, so that a build does not fail. `early`: only
+    a state that reads the key `{word}` after the outcome `{near}` makes it a fault.
+    """
+
+    name: str
+    message: str
+    help: str
+    near_help: str = ""
+    effect: str | None = None
+    unnamed: str = ""
+    missing: bool = False
+    stops: bool = False
+    accepted: bool = False
+    early: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassFault:
     """A certain fault in the structure of a class, at the name that it is about.
 
-    For `syntax`, the text of `name` is the message of the parser. `near` is the name that was
-    probably meant. `file` is the module that lacks the name,
-    `owner` the class that lacks it, and `more` another part of the words. `outcomes` are those that
-    `execute` does not return because of the fault, or ANY. `also` is another place that the fault
-    is about, with the words for it. `lines` are others that use the name.
+    `near` is the name, or the code, that was probably meant. `file` is the module that lacks the
+    name, `owner` the class that lacks it, and `more` another part of the words. `help` takes the
+    place of that of the kind, if it is not empty. `variable` is the variable of the interface for
+    which a parameter has another name. `outcomes` are those that `execute` does not
+    return because of the fault, or ANY. `also` is another place that the fault is about, with the
+    words for it.
     """
 
     kind: FaultKind
@@ -134,9 +72,10 @@ class ClassFault:
     file: str = ""
     more: str = ""
     owner: str = ""
+    help: str = ""
+    variable: str = ""
     outcomes: tuple[str, ...] = ()
     also: Word | None = None
-    lines: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,10 +9,54 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.functions import access_of, alternatives, returns_of
 from smachac.pysource.modules import Module, Names, OwnClass
 from smachac.pysource.source import PythonText
+
+NO_BASE_ARGUMENT = FaultKind(
+    name="no base argument",
+    message="`__init__` of `{owner}` has no parameter `{word}`",
+    help="its parameters are {more}",
+    near_help=SUGGESTION,
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+ARGUMENT_TWICE = FaultKind(
+    name="argument twice",
+    message="`__init__` of `{owner}` gets `{word}` twice: by its place, and by its name",
+    help="remove one of the two arguments",
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+TOO_MANY_ARGUMENTS = FaultKind(
+    name="too many arguments",
+    message="`__init__` of `{owner}` has no parameter for `{word}`",
+    help="its parameters are {more}",
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+MISSING_BASE_ARGUMENT = FaultKind(
+    name="missing base argument",
+    message="`__init__` of `{owner}` requires {more}, which this call does not pass",
+    help="write `{near}`",
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+SHIFTED_ARGUMENTS = FaultKind(
+    name="shifted arguments",
+    message="the outcomes `{word}` are passed as `{more}` of `__init__` of `{owner}`, and"
+    " `{file}` as `outcomes`",
+    help="write `{near}`",
+    effect="the state does not have the outcomes that it returns: the machine stops with an error",
+)
+EXCHANGED_ARGUMENTS = FaultKind(
+    name="exchanged arguments",
+    message="`{word}` and `{more}` have changed places in this call of `__init__` of `{owner}`",
+    help="write `{near}`",
+    effect="the state has other outcomes or keys than its code uses: the machine stops"
+    " with an error",
+)
 
 
 class _Call(NamedTuple):
@@ -142,10 +186,10 @@ def _name_faults(call: _Call) -> Iterator[ClassFault]:
         start = text.offset(keyword.lineno, keyword.col_offset)
         word = Word(name, Span(text.source, start, start + len(name)))
         if name in passed and name in by_name:
-            yield ClassFault(kind="argument twice", name=word, owner=call.owner)
+            yield ClassFault(kind=ARGUMENT_TWICE, name=word, owner=call.owner)
         elif name not in by_name and call.taken.kwarg is None:
             near = guesser([each for each in free if each not in given])(name)
-            yield ClassFault(kind="no base argument", name=word, near=near, owner=call.owner,
+            yield ClassFault(kind=NO_BASE_ARGUMENT, name=word, near=near, owner=call.owner,
                              more=_in_order(by_name))  # fmt: skip
 
 
@@ -160,7 +204,7 @@ def _count_faults(call: _Call) -> Iterator[ClassFault]:
         span = text.span(call.arguments[len(positional)])
         more = _in_order(positional) if positional else "only `self`"
         word = Word(" ".join(span.text.split()), span)
-        yield ClassFault(kind="too many arguments", name=word, owner=call.owner, more=more)
+        yield ClassFault(kind=TOO_MANY_ARGUMENTS, name=word, owner=call.owner, more=more)
         return
     due = positional[: len(positional) - len(call.taken.defaults)]
     due += [each.arg for each, default in
@@ -176,7 +220,7 @@ def _count_faults(call: _Call) -> Iterator[ClassFault]:
         if near is None:
             added = [f"{name}={name if name in own else '...'}" for name in missing]
             near = f"{span.text}({', '.join([*_written(call), *added])})"
-        yield ClassFault(kind="missing base argument", name=Word(span.text, span), near=near,
+        yield ClassFault(kind=MISSING_BASE_ARGUMENT, name=Word(span.text, span), near=near,
                          owner=call.owner, more=listed(missing))  # fmt: skip
 
 
@@ -229,7 +273,7 @@ def _shifted(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
         return
     span = call.module.text.span(call.arguments[at])
     yield ClassFault(
-        kind="shifted arguments",
+        kind=SHIFTED_ARGUMENTS,
         name=Word(" ".join(span.text.split()), span),
         near=_with(call, at),
         owner=call.owner,
@@ -287,7 +331,7 @@ def _exchange(call: _Call, first: int, second: int) -> ClassFault:
     names = written[some], written[more]
     written[some], written[more] = written[more], written[some]
     return ClassFault(
-        kind="exchanged arguments",
+        kind=EXCHANGED_ARGUMENTS,
         name=Word(names[0], text.span(call.arguments[first])),
         near=f"{text.span(call.node.func).text}({', '.join(written)})",
         owner=call.owner,

@@ -11,7 +11,7 @@ from inspect import isbuiltin, isclass, isfunction
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.class_members import enumeration_of
 from smachac.pysource.functions import is_plain, returns_of
 from smachac.pysource.library_names import MODULES, is_shadowed, module_of_library
@@ -26,6 +26,53 @@ from smachac.pysource.swapped_arguments import (
 )
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import tried_code
+
+EXTRA_ARGUMENT = FaultKind(
+    name="extra argument",
+    message="`{owner}` has no parameter for `{word}`",
+    help="its parameters are those of `{near}`",
+    effect="the call raises TypeError when it runs: the machine stops",
+)
+LACKING_ARGUMENT = FaultKind(
+    name="lacking argument",
+    message="this call of `{word}` does not pass `{more}`",
+    help="write `{near}`",
+    effect="the call raises TypeError when it runs: the machine stops",
+)
+UNKNOWN_KEYWORD = FaultKind(
+    name="unknown keyword",
+    message="`{owner}` has no parameter `{word}`",
+    help="remove it, or add it to the parameters",
+    near_help=SUGGESTION,
+    effect="the call raises TypeError when it runs: the machine stops",
+)
+CALLED_EARLY = FaultKind(
+    name="called early",
+    message="`{word}` is called here: `{more}` gets its result, None, in place of the function",
+    help="write `{near}`",
+    effect="the function runs at once, and not later",
+    accepted=True,
+)
+OTHER_ORDER = FaultKind(
+    name="other order",
+    message="`{owner}` returns its results in another order: the code compares `{word}`"
+    " with values that only the {more} result has",
+    help="write `{near}`",
+    effect="the comparison has the same result in every run",
+    accepted=True,
+)
+NUMBER_OF_VALUES = FaultKind(
+    name="number of values",
+    message="the text has {more}, but gets {file}",
+    help="write one value for each place",
+    effect="the code raises {word} when it runs: the machine stops",
+)
+NO_MODULE_HERE = FaultKind(
+    name="no module here",
+    message="`{word}` is a {owner} here, not the module `{word}`: it has no `{more}`",
+    help="write `{near}`",
+    effect="the code raises AttributeError when it runs: the machine stops",
+)
 
 TAKERS: Mapping[str, tuple[int, str]] = {
     "Timer": (1, "function"),
@@ -97,7 +144,7 @@ def _called_early(code: MethodCode) -> Iterator[ClassFault]:
             if call.args or call.keywords:
                 near = f"lambda{'' if name in WITHOUT_ARGUMENTS else ' *_'}: {text}"
             more = module.text.span(each.func).text
-            yield ClassFault(kind="called early", name=Word(text, span), near=near, more=more)
+            yield ClassFault(kind=CALLED_EARLY, name=Word(text, span), near=near, more=more)
 
 
 # --- results in another order
@@ -139,7 +186,7 @@ def _in_other_order(
             span = module.text.span(target)
             rest = " ".join(module.text.span(call).text.split())
             yield ClassFault(
-                kind="other order",
+                kind=OTHER_ORDER,
                 name=Word(local[at], span),
                 near=f"{', '.join(right)} = {rest}",
                 owner=found[1].name if found is not None else "",
@@ -240,18 +287,16 @@ def _wrong_counts(code: MethodCode) -> Iterator[ClassFault]:
             start = module.text.offset(keyword.lineno, keyword.col_offset)
             place = Span(module.text.source, start, start + len(unknown[0]))
             word = Word(unknown[0], place)
-            yield ClassFault(kind="unknown keyword", name=word, near=near, owner=head)
+            yield ClassFault(kind=UNKNOWN_KEYWORD, name=word, near=near, owner=head)
             continue
         if len(call.args) > len(names) and taken.vararg is None:
             more = module.text.span(call.args[len(names)])
             near = ", ".join([*names, *(each.arg for each in taken.kwonlyargs)])
             word = Word(" ".join(more.text.split()), more)
-            yield ClassFault(kind="extra argument", name=word, near=f"{head}({near})", owner=head)
+            yield ClassFault(kind=EXTRA_ARGUMENT, name=word, near=f"{head}({near})", owner=head)
         elif missing and not is_base:
             near, lacking = _completed(module, method, call, names, missing[0])
-            yield ClassFault(
-                kind="lacking argument", name=Word(head, span), more=lacking, near=near
-            )
+            yield ClassFault(kind=LACKING_ARGUMENT, name=Word(head, span), more=lacking, near=near)
 
 
 def _completed(
@@ -301,7 +346,7 @@ def _wrong_numbers(module: Module, every: Sequence[ast.AST]) -> Iterator[ClassFa
         error = "TypeError" if exact else "IndexError"
         span = module.text.span(each)
         yield ClassFault(
-            kind="number of values",
+            kind=NUMBER_OF_VALUES,
             name=Word(error, span),
             more=f"{places} place{'s' * (places != 1)} for values",
             file=f"{given} value{'s' * (given != 1)}",
@@ -370,7 +415,7 @@ def _no_modules(
             near = f"from {name} import {', '.join(sorted([attribute, name]))}`, and here `"
             near += attribute
         what = "class" if isclass(kept) else "function"
-        yield ClassFault(kind="no module here", name=Word(name, module.text.span(head)), near=near,
+        yield ClassFault(kind=NO_MODULE_HERE, name=Word(name, module.text.span(head)), near=near,
                          owner=what, more=attribute)  # fmt: skip
 
 

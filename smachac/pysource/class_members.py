@@ -13,7 +13,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import ClassFault
 from smachac.pysource.functions import caught
 from smachac.pysource.modules import Module, OwnClass, file_of, find_class, names_of
-from smachac.pysource.own_objects import has_no_base, members_of, shows_all
+from smachac.pysource.own_objects import NO_MEMBER, has_no_base, members_of, shows_all
 from smachac.pysource.user_code import UserCode
 
 KINDS = frozenset(["Enum", "IntEnum", "StrEnum", "Flag", "IntFlag"])
@@ -53,7 +53,7 @@ def missing_constants(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
             names = _constants(found[1])
             where = f" in `{file_of(found[0])}`" if found[0].name else ""
             more = f"its members are {listed(names)}" if names else "define it in the class"
-            yield ClassFault(kind="no member", name=place, near=guesser(names)(member), file=where,
+            yield ClassFault(kind=NO_MEMBER, name=place, near=guesser(names)(member), file=where,
                              more=more, owner=found[1].name)  # fmt: skip
 
 

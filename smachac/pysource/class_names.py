@@ -14,9 +14,92 @@ from typing import TypeAlias
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFault, FaultKind
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.functions import caught
 from smachac.pysource.modules import AttributeUse, Module, OwnClass, of_other_objects
+
+UNDEFINED_NAME = FaultKind(
+    name="undefined name",
+    message="`{word}` is used in `{name}`, but nothing defines it",
+    help="define it in the module, or import it",
+    near_help=SUGGESTION,
+    effect="the code raises NameError when it runs: the machine stops",
+)
+OTHER_SCOPE = FaultKind(
+    name="other scope",
+    message="`{word}` is not visible here: only another function of the file defines it",
+    help="write `self.{word}` in both places, or define `{word}` in this method",
+    effect="the code raises NameError when it runs: the machine stops",
+)
+OTHER_USERDATA = FaultKind(
+    name="other userdata",
+    message="the parameter of `execute` is `{word}`, but its code uses `{near}`",
+    help="write `def execute(self, {near}):`",
+    effect="the code raises NameError when it runs: the machine stops",
+)
+LOST_ARGUMENT = FaultKind(
+    name="lost argument",
+    message="`{word}` is a parameter of `__init__`, which this method cannot use",
+    help="write `self.{word} = {word}` in `__init__`, and `self.{word}` here",
+    effect="the code raises NameError when it runs: the machine stops",
+)
+LOST_USERDATA = FaultKind(
+    name="lost userdata",
+    message="`{word}` is a parameter of `execute`, which this method cannot use",
+    help="write `{near}`, and pass `{word}` in `execute`",
+    effect="the code raises NameError when it runs: the machine stops",
+)
+EARLY_USERDATA = FaultKind(
+    name="early userdata",
+    message="`{word}` is a parameter of `execute`, but `{more}` runs when the program makes"
+    " the state",
+    help="a state has no userdata before it runs: write `{near}` in `execute`",
+    effect="the code raises NameError when the program makes the state",
+)
+NO_SELF_PARAMETER = FaultKind(
+    name="no self parameter",
+    message="the method `{word}` uses `self`, but has no parameter `self`",
+    help="write `{near}`",
+    effect="the call raises TypeError when it runs: the machine stops",
+)
+NO_IMPORT = FaultKind(
+    name="no import",
+    message="`{word}` is used in this file, but not imported",
+    help="write `import {word}` at the top of the file",
+    effect="the code raises NameError when it runs: the machine stops",
+)
+NO_ROSPY_IMPORT = FaultKind(
+    name="no rospy import",
+    message="`{word}` is used in this file, but not imported",
+    help="in ROS 1 write `import rospy` at the top of the file; ROS 2 has no `rospy`:"
+    " there write `time.sleep(...)` for `rospy.sleep(...)`",
+    effect="the code raises NameError when it runs: the machine stops",
+)
+WRONG_IMPORT = FaultKind(
+    name="wrong import",
+    message="the file imports `{word}`, but uses `{near}`",
+    help="write `import {near}`",
+    effect="the code raises NameError when it runs: the machine stops",
+)
+UNDEFINED_METHOD = FaultKind(
+    name="undefined method",
+    message="neither `{name}` nor `smach.State` defines `{word}`",
+    help="define `{word}` in the class, or correct the name",
+    near_help=SUGGESTION,
+    effect="the code raises AttributeError when it runs: the machine stops",
+)
+UNSET_ATTRIBUTE = FaultKind(
+    name="unset attribute",
+    message="`self.{word}` of `{name}` is never set",
+    help="write `self.{word} = {word}` in `__init__`",
+    effect="the code raises AttributeError when it runs: the machine stops",
+)
+NEVER_SET = FaultKind(
+    name="never set",
+    message="`self.{word}` of `{name}` is never set",
+    help="write `self.{word} = {near}` in `__init__`",
+    effect="the code raises AttributeError when it runs: the machine stops",
+)
 
 BUILT_IN = frozenset([*dir(builtins), "__file__", "__builtins__", "__path__", "__class__", "_"])
 """Names that a module has without a definition; `_` is that of gettext."""
@@ -189,7 +272,7 @@ class _Near:
         elif node.id in SMACH_CLASSES and "smach" in self.module.names:
             near = f"smach.{node.id}"
         elif node.id in self.given and bound:
-            return ClassFault(kind="lost argument", name=word)
+            return ClassFault(kind=LOST_ARGUMENT, name=word)
         elif node.id in self.inputs and self.userdata is not None and runs:
             near = f"{self.userdata}.{node.id}"
         elif self._is_text(node, bound):
@@ -201,8 +284,8 @@ class _Near:
         if near is None and not bound and not self.module.name:
             return None
         if near is None and bound:
-            return ClassFault(kind="other scope", name=word)
-        return ClassFault(kind="undefined name", name=word, near=near)
+            return ClassFault(kind=OTHER_SCOPE, name=word)
+        return ClassFault(kind=UNDEFINED_NAME, name=word, near=near)
 
     def _is_text(self, node: ast.Name, bound: bool) -> bool:
         """Whether a name that nothing binds is probably a text without its quotes: the code has the
@@ -223,7 +306,7 @@ class _Near:
         key = next(attributes, None)
         near = self.userdata or word.text
         near = f"{near}.{key}" if key is not None else near
-        return ClassFault(kind="early userdata", name=word, near=near, more=method)
+        return ClassFault(kind=EARLY_USERDATA, name=word, near=near, more=method)
 
     def _no_parameter(self, word: Word, method: Method) -> ClassFault | None:
         """The fault of `self` or the userdata in a method that has no such parameter."""
@@ -235,22 +318,20 @@ class _Near:
             parameter = method.args.args[1]
             names = (part.id for part in ast.walk(method) if isinstance(part, ast.Name))
             if parameter.arg in names:
-                return ClassFault(kind="undefined name", name=word, near=parameter.arg)
+                return ClassFault(kind=UNDEFINED_NAME, name=word, near=parameter.arg)
             start = text.offset(parameter.lineno, parameter.col_offset)
             place = Span(text.source, start, start + len(parameter.arg))
-            return ClassFault(
-                kind="other userdata", name=Word(parameter.arg, place), near=word.text
-            )
+            return ClassFault(kind=OTHER_USERDATA, name=Word(parameter.arg, place), near=word.text)
         rest = text.source.text[: text.span(method.body[0]).start]
         if method.decorator_list or f"({', '.join(given)})" not in rest:
-            return ClassFault(kind="other scope", name=word)
+            return ClassFault(kind=OTHER_SCOPE, name=word)
         if word.text == "self":
             near = f"def {method.name}({', '.join(['self', *given])}):"
             start = text.source.text.find(method.name, text.span(method).start)
             place = Span(text.source, start, start + len(method.name))
-            return ClassFault(kind="no self parameter", name=Word(method.name, place), near=near)
+            return ClassFault(kind=NO_SELF_PARAMETER, name=Word(method.name, place), near=near)
         near = f"def {method.name}({', '.join([*given, word.text])}):"
-        return ClassFault(kind="lost userdata", name=word, near=near)
+        return ClassFault(kind=LOST_USERDATA, name=word, near=near)
 
     def _not_imported(self, name: str) -> ClassFault:
         """A module that is not imported, at its first use in the file, or at the import of a module
@@ -263,10 +344,10 @@ class _Near:
                 if written not in used and guesser([name]).sure(written) is not None:
                     start = text.offset(alias.lineno, alias.col_offset)
                     span = Span(text.source, start, start + len(alias.name))
-                    return ClassFault(kind="wrong import", name=Word(alias.name, span), near=name)
+                    return ClassFault(kind=WRONG_IMPORT, name=Word(alias.name, span), near=name)
         uses = (text.span(each) for each in self.owners
                 if isinstance(each, ast.Name) and each.id == name)  # fmt: skip
-        kind: FaultKind = "no rospy import" if name == "rospy" else "no import"
+        kind: FaultKind = NO_ROSPY_IMPORT if name == "rospy" else NO_IMPORT
         return ClassFault(kind=kind, name=Word(name, min(uses, key=lambda each: each.start)))
 
 
@@ -351,7 +432,7 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
             word = Word(each.attr, _end_of(span, each.attr))
             defined.add(each.attr)
             if each.attr in given:
-                found.append(ClassFault(kind="unset attribute", name=word))
+                found.append(ClassFault(kind=UNSET_ATTRIBUTE, name=word))
                 continue
             known = {*usual, *(name for names in elsewhere for name in names)}
             near = guesser(sorted(name for name in known if not name.startswith("__")
@@ -360,10 +441,10 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
             if near is None and not calls:
                 near = unread
             if near is not None or calls:
-                found.append(ClassFault(kind="undefined method", name=word, near=near))
+                found.append(ClassFault(kind=UNDEFINED_METHOD, name=word, near=near))
             elif isinstance(each.ctx, ast.Load) and constructor and each not in caught(node):
                 near = _meant_value(module, each.attr)
-                found.append(ClassFault(kind="never set", name=word, near=near))
+                found.append(ClassFault(kind=NEVER_SET, name=word, near=near))
     return found
 
 
@@ -418,7 +499,7 @@ def undefined_in_base(own: OwnClass) -> Iterator[ClassFault]:
             plain = name.strip("_") in ("init", "int")
             near = "__init__" if plain else guesser(usual)(name)
             word = Word(name, _end_of(span, name))
-            yield ClassFault(kind="undefined method", name=word, near=near)
+            yield ClassFault(kind=UNDEFINED_METHOD, name=word, near=near)
 
 
 def _of_self(node: ast.Attribute) -> bool:

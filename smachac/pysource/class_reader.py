@@ -13,13 +13,15 @@ from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
+from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts, ClassFault, FaultKind, Parameter
 from smachac.pysource.base_calls import arguments_to_base, base_call_faults, copied
 from smachac.pysource.call_slips import call_slips
 from smachac.pysource.class_members import missing_constants
 from smachac.pysource.class_messages import class_messages
 from smachac.pysource.class_names import (
+    OTHER_USERDATA,
     STATE_METHODS,
+    UNDEFINED_NAME,
     undefined_in_base,
     undefined_methods,
     undefined_names,
@@ -48,6 +50,8 @@ from smachac.pysource.local_values import local_values, text_of, unused_values
 from smachac.pysource.lost_outcomes import lost_outcomes
 from smachac.pysource.module_members import module_slips
 from smachac.pysource.modules import (
+    CLASS_ELSEWHERE,
+    SYNTAX,
     Module,
     OwnClass,
     absent_module,
@@ -66,8 +70,102 @@ from smachac.pysource.source import PythonText, name_span
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import parts_of_arguments, parts_read
 
-PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
-"""The parameters of `smach.State.__init__` with lists of names, in their order."""
+NO_STATE = FaultKind(
+    name="no state",
+    message="the class `{name}` is not derived from `smach.State`",
+    help="write `class {word}(smach.State):`",
+    effect="SMACH uses attributes of `smach.State` that the object does not have",
+    stops=True,
+)
+NO_EXECUTE = FaultKind(
+    name="no execute",
+    message="the class `{name}` has no method `execute`",
+    help="add the method `execute`, which returns an outcome",
+    near_help="rename `{near}` to `execute`",
+    effect="`execute` of `smach.State` raises a NotImplementedError when the state runs",
+    stops=True,
+)
+NO_METHOD = FaultKind(
+    name="no method",
+    message="`execute` of `{name}` returns a generator, not an outcome",
+    help="write `return` in place of `yield`",
+    effect="SMACH needs the name of an outcome: the machine stops with an error",
+    stops=True,
+)
+COROUTINE = FaultKind(
+    name="coroutine",
+    message="`execute` of `{name}` returns a coroutine, not an outcome",
+    help="write `def execute(self, userdata):`, and `asyncio.run(...)` for what it awaits",
+    effect="SMACH needs the name of an outcome: the machine stops with an error",
+    stops=True,
+)
+ARGUMENTS = FaultKind(
+    name="arguments",
+    message="`execute` of `{name}` must accept exactly one argument: the userdata",
+    help="write `def execute(self, userdata):`",
+    effect="SMACH calls `execute` with the userdata alone: the call raises a TypeError",
+    stops=True,
+)
+NO_CONSTRUCTOR_CALL = FaultKind(
+    name="no constructor call",
+    message="`__init__` of `{name}` does not call `__init__` of `smach.State`",
+    help="write `super().__init__({lists})` as the first line of `__init__`",
+    effect="the outcomes and keys of the state are missing: the program stops",
+    stops=True,
+)
+NO_BASE_CONSTRUCTOR_CALL = FaultKind(
+    name="no base constructor call",
+    message="`__init__` of `{name}` does not call `__init__` of its base class",
+    help="write `{near}` as the first line of `__init__`",
+    effect="what the base class sets is missing, also the outcomes and keys: the program stops",
+    stops=True,
+)
+NO_OUTCOMES = FaultKind(
+    name="no outcomes",
+    message="the class `{name}` has no `__init__`, so the state has no outcomes",
+    help="add `def __init__(self):` with the line `super().__init__({lists})`",
+    effect="SMACH raises InvalidTransitionError for an undeclared outcome: the machine stops",
+    stops=True,
+)
+DATA_CLASS = FaultKind(
+    name="data class",
+    message="the `__init__` that `@dataclass` makes for `{name}` does not call that of"
+    " `smach.State`",
+    help="add `def __post_init__(self):` with the line `super().__init__({lists})`",
+    stops=True,
+)
+SELF_TWICE = FaultKind(
+    name="self twice",
+    message="`super()` passes `{word}` already: here it is passed twice",
+    help="remove `{word}`: write `super().__init__({lists})`",
+)
+NO_SELF = FaultKind(
+    name="no self",
+    message="`smach.State.__init__` is called without `{word}`",
+    help="write `super().__init__({lists})`",
+)
+OTHER_CLASS = FaultKind(
+    name="other class",
+    message="`super({word}, ...)` is in the class `{near}`, which is not derived from `{word}`",
+    help="write `super().__init__({lists})`",
+)
+HIDDEN_METHOD = FaultKind(
+    name="hidden method",
+    message="`self.{word}` hides the method `{word}` of `smach.State`, which SMACH calls",
+    help="give the attribute another name, such as `self.own_{word}`",
+)
+DEFINED_TWICE = FaultKind(
+    name="defined twice",
+    message="`{word}` is defined twice: only the last definition counts",
+    help="remove one of them, or give it another name",
+    effect="",
+)
+NO_LIST = FaultKind(
+    name="no list",
+    message="`{word}` of `{name}` must be a list: SMACH cannot use another collection",
+    help="write `{word}=[...]`",
+    near_help="write `{near}`",
+)
 
 REGISTERS = re.compile(r"\.(register)?_(outcomes|(io|input|output)_keys)\b")
 """Methods and attributes that change the declared interface; a class that has one is not read."""
@@ -113,18 +211,21 @@ def read_module(word: Word, library: UserCode) -> ClassFacts | None:
         if module is None:
             module = absent_module(place, library)
         if not isinstance(module, Module):
-            if module is not None and module.kind == "syntax":
+            if module is not None and module.kind is SYNTAX:
                 module = replace(module, file="")
             return ClassFacts(faults=(module,)) if module is not None else None
         found = find_class(module, name, library)
-        if isinstance(found, ClassFault) and found.kind == "syntax":
+        if isinstance(found, ClassFault) and found.kind is SYNTAX:
             return ClassFacts(faults=(found,))
         if isinstance(found, ClassFault):
             file = file_of(module)
             other = module_with(found.name.text, file, library)
             if other is not None:
                 missing = Word(found.name.text, place.span)
-                return ClassFacts(faults=(replace(found, name=missing, file=file, more=other),))
+                fault = ClassFault(kind=CLASS_ELSEWHERE, name=missing, file=file,
+                                   more=f"{other.replace('.', '/')}.py",
+                                   help=f"write `{other}:{missing.text}`")  # fmt: skip
+                return ClassFacts(faults=(fault,))
             fault = replace(found, file=file)
             return ClassFacts(faults=(_at_the_name(fault, word),))
         return _facts(*found, library) if found is not None else None
@@ -229,8 +330,8 @@ def _undefined(
 def _is_userdata(fault: ClassFault, execute: ast.FunctionDef) -> bool:
     """Whether a fault is another name for the userdata in `execute`."""
     parameter = execute.args.args[1].arg
-    return fault.kind == "other userdata" or (
-        fault.kind == "undefined name" and fault.near == parameter
+    return fault.kind is OTHER_USERDATA or (
+        fault.kind is UNDEFINED_NAME and fault.near == parameter
     )
 
 
@@ -283,7 +384,7 @@ def _faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[ClassFaul
         return [*found, *_data_class_fault(module, node), *wrong_base(*own.classes[-1])]
     if own.root == "object":
         certain = not own.binds("get_registered_outcomes")
-        return [*found, _at_class("no state", module, node)] if certain else found
+        return [*found, _at_class(NO_STATE, module, node)] if certain else found
     return [*found, *_execute_faults(own, module, node), *_constructor_faults(own), *_hidden(own),
             *_call_faults(own), *base_call_faults(own), *_list_faults(own)]  # fmt: skip
 
@@ -303,12 +404,12 @@ def _twice(module: Module, node: ast.ClassDef) -> list[ClassFault]:
     found = []
     same = [each for each in module.text.tree.body if getattr(each, "name", "") == node.name]
     if len(same) > 1 and same[-1] is node:
-        found.append(_at_class("defined twice", module, node))
+        found.append(_at_class(DEFINED_TWICE, module, node))
     methods: dict[str, ast.FunctionDef] = {}
     for each in node.body:
         if isinstance(each, ast.FunctionDef) and not each.decorator_list:
             if each.name in methods:
-                found.append(_at_method("defined twice", module, each))
+                found.append(_at_method(DEFINED_TWICE, module, each))
             methods[each.name] = each
     return found
 
@@ -322,22 +423,22 @@ def _execute_faults(own: OwnClass, module: Module, node: ast.ClassDef) -> list[C
         found = own.method(near) if near is not None else None
         if found is not None and found[1] in node.body:
             name = Word(found[1].name, name_span(module.text, found[1]))
-            return [ClassFault(kind="no execute", name=name, near=near)]
-        return [_at_class("no execute", module, node, near)]
+            return [ClassFault(kind=NO_EXECUTE, name=name, near=near)]
+        return [_at_class(NO_EXECUTE, module, node, near)]
     bound = own.names[0].get("execute", ())
     if bound and isinstance(bound[-1], ast.AsyncFunctionDef) and not bound[-1].decorator_list:
-        return [_at_class("coroutine", module, node)]
+        return [_at_class(COROUTINE, module, node)]
     found = own.method("execute")
     if found is None or found[1].decorator_list:
         return []
     module, function = found
     if not is_plain(function):
-        return [_at_method("no method", module, function)]
+        return [_at_method(NO_METHOD, module, function)]
     taken = function.args
     positional = len(taken.posonlyargs) + len(taken.args)
     few = positional < 2 and taken.vararg is None
     many = positional - len(taken.defaults) > 2 or None in taken.kw_defaults
-    return [_at_method("arguments", module, function)] if few or many else []
+    return [_at_method(ARGUMENTS, module, function)] if few or many else []
 
 
 def _names_super(node: ast.AST) -> bool:
@@ -350,7 +451,7 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
     if own.binds("__new__") or any(_registers(each) for _, each in own.classes):
         return []
     if not own.binds("__init__"):
-        return [_at_class("no outcomes", module, node)]
+        return [_at_class(NO_OUTCOMES, module, node)]
     found = own.method("__init__")
     if found is None:
         return []
@@ -375,7 +476,7 @@ def _without_call(own: OwnClass, module: Module, maker: ast.FunctionDef) -> Clas
     at = next(index for index, (_, node) in enumerate(own.classes) if maker in node.body)
     bases = [names["__init__"][-1] for names in own.names[at + 1 :] if "__init__" in names]
     if not bases or not isinstance(bases[0], ast.FunctionDef):
-        return _at_method("no constructor call", module, maker)
+        return _at_method(NO_CONSTRUCTOR_CALL, module, maker)
     taken, known = bases[0].args, {each.arg for each in maker.args.args[1:]}
     positional = [*taken.posonlyargs, *taken.args]
     required = positional[1 : len(positional) - len(taken.defaults)]
@@ -384,7 +485,7 @@ def _without_call(own: OwnClass, module: Module, maker: ast.FunctionDef) -> Clas
     given = [f"{each.arg}={each.arg if each.arg in known else '...'}" for each in required]
     name = Word(maker.name, name_span(module.text, maker))
     near = f"super().__init__({', '.join(given)})"
-    return ClassFault(kind="no base constructor call", name=name, near=near)
+    return ClassFault(kind=NO_BASE_CONSTRUCTOR_CALL, name=name, near=near)
 
 
 def _data_class_fault(module: Module, node: ast.ClassDef) -> Iterator[ClassFault]:
@@ -400,7 +501,7 @@ def _data_class_fault(module: Module, node: ast.ClassDef) -> Iterator[ClassFault
     names, _ = names_of(node.body)
     own = {"__init__", "__post_init__", "__new__"}.isdisjoint(names)
     if own and len(node.bases) == 1 and is_smach_state(module, node.bases[0]):
-        yield _at_class("data class", module, node)
+        yield _at_class(DATA_CLASS, module, node)
 
 
 def _call_faults(own: OwnClass) -> Iterator[ClassFault]:
@@ -429,19 +530,19 @@ def _call_faults(own: OwnClass) -> Iterator[ClassFault]:
                 alone = len(bound) == 1 and isinstance(bound[0], ast.ClassDef)
                 if name not in names and alone and own.root == "state":
                     word = Word(name, module.text.span(place))
-                    yield ClassFault(kind="other class", name=word, near=owner.name)
+                    yield ClassFault(kind=OTHER_CLASS, name=word, near=owner.name)
                     continue
             case ast.Call(func=ast.Name(id="super")):
                 pass
             case _ if is_smach_state(module, base):
                 lists = ast.List | ast.Tuple | ast.Constant | ast.Set
                 if isinstance(first, lists) or (first is None and call.keywords):
-                    yield ClassFault(kind="no self", name=Word(me, module.text.span(base)))
+                    yield ClassFault(kind=NO_SELF, name=Word(me, module.text.span(base)))
                 continue
             case _:
                 continue
         if passes and first is not None and not others:
-            yield ClassFault(kind="self twice", name=Word(me, module.text.span(first)))
+            yield ClassFault(kind=SELF_TWICE, name=Word(me, module.text.span(first)))
 
 
 def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
@@ -455,8 +556,12 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
         if not isinstance(call, ast.Call) or not _is_super(call):
             continue
         for keyword in call.keywords:
-            if keyword.arg is not None and keyword.arg not in PARAMETERS and own.root == "state":
-                yield unknown_argument(module.text, keyword, PARAMETERS)
+            if (
+                keyword.arg is not None
+                and keyword.arg not in STATE_PARAMETERS
+                and own.root == "state"
+            ):
+                yield unknown_argument(module.text, keyword, STATE_PARAMETERS)
         for key, value in (_given(call) or {}).items():
             span = module.text.span(value)
             for item in value.elts if isinstance(value, ast.List | ast.Tuple | ast.Set) else ():
@@ -465,13 +570,13 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
             kinds = ast.Tuple | ast.Set | ast.Dict | ast.SetComp | ast.GeneratorExp
             text = value.value if isinstance(value, ast.Constant) else None
             wrong = isinstance(text, str) or (key != "outcomes" and isinstance(value, kinds))
-            if key not in PARAMETERS or not wrong or module.text.is_filled(span):
+            if key not in STATE_PARAMETERS or not wrong or module.text.is_filled(span):
                 continue
             items = [word.text for word in _words(module.text, value) or ()]
             items = [text] if isinstance(text, str) else items
             listed = ", ".join(f'"{each}"' for each in items)
             near = f"{key}=[{listed}]" if items else None
-            yield ClassFault(kind="no list", name=Word(key, span), near=near)
+            yield ClassFault(kind=NO_LIST, name=Word(key, span), near=near)
 
 
 def _registers(node: ast.ClassDef) -> bool:
@@ -481,7 +586,7 @@ def _registers(node: ast.ClassDef) -> bool:
 def _hidden(own: OwnClass) -> list[ClassFault]:
     """The methods of `smach.State` that an attribute of the object hides."""
     return [
-        ClassFault(kind="hidden method", name=Word(name, span))
+        ClassFault(kind=HIDDEN_METHOD, name=Word(name, span))
         for name, entries in own.assigned().items()
         if name in STATE_METHODS
         for _, value, span in entries
@@ -511,7 +616,7 @@ def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
         return None
     if not own.binds("__init__"):
         place = name_span(own.classes[0][0].text, own.classes[0][1])
-        fixed = (Parameter(word=Word(name, place), required=False) for name in PARAMETERS)
+        fixed = (Parameter(word=Word(name, place), required=False) for name in STATE_PARAMETERS)
         return tuple(fixed) if own.root == "state" else None
     found = own.method("__init__")
     if found is None or found[1].decorator_list or found[1].args.kwarg is not None:
@@ -633,11 +738,15 @@ def _given(call: ast.Call) -> dict[str, ast.expr] | None:
         arguments = arguments[1:]  # the first one is `self`
     if any(isinstance(each, ast.Starred) for each in arguments):
         return None
-    found: dict[str, ast.expr] = dict(zip(PARAMETERS, arguments, strict=False))
+    found: dict[str, ast.expr] = dict(zip(STATE_PARAMETERS, arguments, strict=False))
     for keyword in call.keywords:
         if keyword.arg is None:
             return None
-        meant = keyword.arg if keyword.arg in PARAMETERS else guesser(PARAMETERS)(keyword.arg)
+        meant = (
+            keyword.arg
+            if keyword.arg in STATE_PARAMETERS
+            else guesser(STATE_PARAMETERS)(keyword.arg)
+        )
         if meant is None:
             return None
         found.setdefault(meant, keyword.value)

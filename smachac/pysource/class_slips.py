@@ -11,11 +11,74 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFault, FaultKind
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.class_names import SMACH_CLASSES, STATE_METHODS
 from smachac.pysource.library_names import methods_of_objects
 from smachac.pysource.modules import Module, OwnClass, compared, of_other_objects
 from smachac.pysource.source import PythonText
+
+SUPER_NOT_CALLED = FaultKind(
+    name="super not called",
+    message="`super` without `()` is not the base class of `{name}`",
+    help="write `super()`",
+    effect="the call raises an error when it runs: the program stops",
+)
+NO_COMMA = FaultKind(
+    name="no comma",
+    message="a comma is missing: Python joins the two texts to `{word}`",
+    help="write `{near}`",
+    effect="SMACH knows the joined name only: the machine stops with an error",
+)
+NO_ARGUMENT = FaultKind(
+    name="no argument",
+    message="`smach.State.__init__` has no argument `{word}`",
+    help="its arguments are `outcomes`, `input_keys`, `output_keys` and `io_keys`",
+    near_help=SUGGESTION,
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+NO_STATE_CLASS = FaultKind(
+    name="no state class",
+    message="`{word}` is not a class of SMACH",
+    help="write `{near}`",
+    effect="the definition of the class raises an error when the program starts",
+    stops=True,
+)
+NOT_CALLED = FaultKind(
+    name="not called",
+    message="`{word}` without `()` does not call the method",
+    help="write `{near}`",
+    effect="the value is the method itself, which is true in every condition",
+    accepted=True,
+)
+NO_EFFECT = FaultKind(
+    name="no effect",
+    message="the line `{word}` does nothing: without `()` a method is not called",
+    help="write `{near}`, or remove the line",
+    effect="",
+    accepted=True,
+)
+NO_ANSWER = FaultKind(
+    name="no answer",
+    message="the line `{word}` does nothing: without `()` a method is not called",
+    help="write `{near}`",
+    effect="the request stays set: when the state runs again, it is stopped at once",
+    accepted=True,
+)
+IDENTITY = FaultKind(
+    name="identity",
+    message="`is` compares objects, not values: two equal values can be two objects",
+    help="write `{near}`",
+    effect="the comparison can be false for equal values",
+    accepted=True,
+)
+COMPARISON = FaultKind(
+    name="comparison",
+    message="`==` compares, and nothing uses the result: `{word}` is not set",
+    help="write `{near}`",
+    effect="the line has no effect: the old value stays, or there is none",
+    accepted=True,
+)
 
 SMACH_MODULES = frozenset(
     ["state", "state_machine", "concurrence", "iterator", "sequence", "container", "user_data"]
@@ -81,15 +144,15 @@ def _uncalled(
         if isinstance(each, ast.If | ast.While | ast.IfExp | ast.Assert):
             for part in operands(each.test):
                 if isinstance(part, ast.Attribute) and is_method(part):
-                    yield _without_call("not called", text, part)
+                    yield _without_call(NOT_CALLED, text, part)
         elif isinstance(each, ast.Assign):
             if isinstance(each.value, ast.Attribute) and _is_method_of_key(each.value):
-                yield _without_call("not called", text, each.value)
+                yield _without_call(NOT_CALLED, text, each.value)
         elif isinstance(each, ast.Expr) and each not in tried:
             value = each.value
             if isinstance(value, ast.Attribute) and (is_method(value) or _is_method_of_key(value)):
                 answer = value.attr == "service_preempt"
-                yield _without_call("no answer" if answer else "no effect", text, value)
+                yield _without_call(NO_ANSWER if answer else NO_EFFECT, text, value)
 
 
 def _uncalled_super(text: PythonText, every: Iterable[ast.AST]) -> Iterator[ClassFault]:
@@ -97,7 +160,7 @@ def _uncalled_super(text: PythonText, every: Iterable[ast.AST]) -> Iterator[Clas
     for each in every:
         match each:
             case ast.Call(func=ast.Attribute(value=owner)) if is_uncalled_super(each):
-                yield ClassFault(kind="super not called", name=Word("super", text.span(owner)))
+                yield ClassFault(kind=SUPER_NOT_CALLED, name=Word("super", text.span(owner)))
 
 
 def is_uncalled_super(node: ast.AST) -> bool:
@@ -148,7 +211,7 @@ def _compared(text: PythonText, every: Iterable[ast.AST]) -> Iterator[ClassFault
             sign = _between(text, left, right, "==")
             if sign is not None:
                 near = f"{left.text} = {right.text}"
-                yield ClassFault(kind="comparison", name=Word(left.text, sign), near=near)
+                yield ClassFault(kind=COMPARISON, name=Word(left.text, sign), near=near)
         match each:
             case ast.Compare(left=one, ops=[ast.Is() | ast.IsNot() as sort], comparators=[other]):
                 if not (_is_value(one) or _is_value(other)):
@@ -157,7 +220,7 @@ def _compared(text: PythonText, every: Iterable[ast.AST]) -> Iterator[ClassFault
                 sign = _between(text, left, right, "is not" if _negates(sort) else "is")
                 if sign is not None:
                     near = f"{left.text} {'!=' if _negates(sort) else '=='} {right.text}"
-                    yield ClassFault(kind="identity", name=Word(sign.text, sign), near=near)
+                    yield ClassFault(kind=IDENTITY, name=Word(sign.text, sign), near=near)
 
 
 def _negates(sort: ast.cmpop) -> bool:
@@ -190,7 +253,7 @@ def wrong_base(module: Module, node: ast.ClassDef) -> Iterator[ClassFault]:
                 named = name.replace("_", "").casefold()
                 near = next(each for each in sorted(SMACH_CLASSES) if each.casefold() == named)
                 word = Word(f"smach.{name}", module.text.span(base))
-                yield ClassFault(kind="no state class", name=word, near=f"smach.{near}")
+                yield ClassFault(kind=NO_STATE_CLASS, name=word, near=f"smach.{near}")
 
 
 def unknown_argument(
@@ -200,7 +263,7 @@ def unknown_argument(
     name = keyword.arg or ""
     start = text.offset(keyword.lineno, keyword.col_offset)
     span = Span(text.source, start, start + len(name))
-    return ClassFault(kind="no argument", name=Word(name, span), near=guesser(parameters)(name))
+    return ClassFault(kind=NO_ARGUMENT, name=Word(name, span), near=guesser(parameters)(name))
 
 
 def joined_texts(text: PythonText, node: ast.Constant) -> list[Word]:
@@ -230,4 +293,4 @@ def missing_comma(text: PythonText, node: ast.Constant) -> Iterator[ClassFault]:
     words = joined_texts(text, node)
     if len(words) > 1:
         near = ", ".join(word.span.text for word in words)
-        yield ClassFault(kind="no comma", name=Word(str(node.value), text.span(node)), near=near)
+        yield ClassFault(kind=NO_COMMA, name=Word(str(node.value), text.span(node)), near=near)

@@ -7,12 +7,27 @@ import ast
 from collections.abc import Iterator
 
 from smachac.diagnostics.source import Span, Word
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.class_operations import bound_once
 from smachac.pysource.functions import alternatives, is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function, of_other_objects
 from smachac.pysource.source import PythonText
 from smachac.pysource.user_code import UserCode
+
+NO_TUPLE = FaultKind(
+    name="no tuple",
+    message="`{word}` is a text, but `{name}` uses it as a list of names: only a comma"
+    " makes a tuple",
+    help="write `{near}`",
+    effect="each letter of the text counts as a name",
+)
+NO_RESULT = FaultKind(
+    name="no result",
+    message="`{word}` changes a collection and returns None: `{owner}` becomes None",
+    help="write `{near}`",
+    effect="",
+    accepted=True,
+)
 
 NOTHING_RETURNED = frozenset(
     ["append", "extend", "insert", "remove", "sort", "reverse", "clear", "update", "add", "discard"]
@@ -237,7 +252,7 @@ def _lost(module: Module, function: ast.FunctionDef) -> Iterator[ClassFault]:
         span = module.text.span(node)
         if known and used and all(map(_is_collection, values)) and not module.text.is_filled(span):
             near = _changed(name, owner, method, node.value, module)
-            yield ClassFault(kind="no result", name=Word(method, span), near=near, owner=name)
+            yield ClassFault(kind=NO_RESULT, name=Word(method, span), near=near, owner=name)
 
 
 def _changed(name: str, owner: str, method: str, call: ast.expr, module: Module) -> str:
@@ -272,7 +287,7 @@ def texts_as_lists(own: OwnClass) -> Iterator[ClassFault]:
                     continue
             if name in used and span is not None and name not in own.assigned():
                 near = f"({module.text.span(value).text},)"
-                yield ClassFault(kind="no tuple", name=Word(name, span), near=near)
+                yield ClassFault(kind=NO_TUPLE, name=Word(name, span), near=near)
 
 
 def _in_parentheses(module: Module, node: ast.expr) -> Span | None:

@@ -11,9 +11,18 @@ import ast
 from collections.abc import Iterable, Iterator
 
 from smachac.diagnostics.source import Span, Word
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.modules import Module, file_of, load_module, names_of, source_module
 from smachac.pysource.user_code import UserCode
+
+CIRCULAR_IMPORT = FaultKind(
+    name="circular import",
+    message="`{word}` is not defined yet: `{file}` is still loading, and imports `{more}`"
+    " before it defines `{word}`",
+    help="import it in the function that uses it, or move `{word}` to a module that"
+    " imports neither of the two",
+    missing=True,
+)
 
 DEEPEST = 100
 """The most modules that load inside each other; Python's own limit is some hundreds."""
@@ -78,5 +87,5 @@ class _Loading:
                 start = module.text.offset(alias.lineno, alias.col_offset)
                 place = Span(module.text.source, start, start + len(alias.name))
                 word = Word(alias.name, place)
-                yield ClassFault(kind="circular import", name=word, file=file_of(other),
+                yield ClassFault(kind=CIRCULAR_IMPORT, name=word, file=file_of(other),
                                  more=file_of(module))  # fmt: skip

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import DID_YOU_MEAN, ClassFault, FaultKind
 from smachac.ir.python_code import parse_module
 from smachac.pysource.modules import (
     Module,
@@ -29,6 +29,22 @@ from smachac.pysource.other_modules import module_with
 from smachac.pysource.renamed_members import renamed_member
 from smachac.pysource.source import PythonText
 from smachac.pysource.user_code import UserCode
+
+NO_IMPORTED_MODULE = FaultKind(
+    name="no imported module",
+    message="no module `{word}` exists, which is imported here",
+    help="correct the name, or create the module",
+    near_help=DID_YOU_MEAN,
+    effect="Python raises ModuleNotFoundError: the program stops when it starts",
+    missing=True,
+)
+NO_IMPORTED_NAME = FaultKind(
+    name="no imported name",
+    message="`{file}` has no `{word}`, which is imported from it",
+    help="correct the name, or define it in `{file}`",
+    near_help=DID_YOU_MEAN,
+    missing=True,
+)
 
 MAKES_NAMES = frozenset(["exec", "globals", "locals", "vars", "setattr", "__import__"])
 """Functions that can define a name of a module at run time."""
@@ -164,14 +180,19 @@ def _no_names(
         if word.text not in known | words and not word.text.startswith("__"):
             other_module = module_with(word.text, file, library) or ""
             near = guess(word.text) or renamed_member(word.text, other, user, library)
-            yield ClassFault(
-                kind="no imported name",
-                name=word,
-                near=near,
-                file=file,
-                more=other_module,
-                lines=_lines_with(word.text, user) if user is not None and near else (),
-            )
+            lines = _lines_with(word.text, user) if user is not None and near else ()
+            help = _name_elsewhere(word.text, other_module, near, lines)
+            yield ClassFault(kind=NO_IMPORTED_NAME, name=word, near=near, file=file, help=help)
+
+
+def _name_elsewhere(name: str, module: str, near: str | None, lines: tuple[int, ...]) -> str:
+    """The help for a name that another module defines, or that is also used in other lines."""
+    if module:
+        return f"import `{name}` from `{module}`, which defines it"
+    if near is None or not lines:
+        return ""
+    numbers = ", ".join(map(str, lines))
+    return f"did you mean `{near}`? Write it here and in line{'s' if lines[1:] else ''} {numbers}"
 
 
 def _lines_with(name: str, user: PythonText) -> tuple[int, ...]:
@@ -195,7 +216,7 @@ def _no_module(name: str, place: Word, library: UserCode) -> Iterator[ClassFault
     if not exists or not (is_package or guesser([found.near]).sure(name)):
         return
     near = found.near if "." in place.text else found.near.rpartition(".")[2]
-    yield ClassFault(kind="no imported module", name=Word(name, place.span), near=near)
+    yield ClassFault(kind=NO_IMPORTED_MODULE, name=Word(name, place.span), near=near)
 
 
 def makes_names(tree: ast.Module) -> bool:

@@ -20,9 +20,17 @@ from types import ModuleType
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.modules import Module, OwnClass
 from smachac.pysource.user_code import UserCode
+
+NO_ATTRIBUTE = FaultKind(
+    name="no attribute",
+    message="the module `{file}` of Python has no `{word}`",
+    help="correct the name",
+    near_help=SUGGESTION,
+    effect="the code raises AttributeError when it runs: the machine stops",
+)
 
 MODULES = frozenset([
     "collections", "copy", "datetime", "functools", "itertools", "json", "math", "operator", "os",
@@ -140,7 +148,8 @@ def missing_attributes(
         if meant is not None and not is_shadowed(name, library):
             done.add((name, each.attr))
             word = Word(each.attr, Span(span.source, span.end - len(each.attr), span.end))
-            yield ClassFault(kind="no attribute", name=word, near=meant or None, file=name)
+            help = f"write `{meant}`" if meant.endswith(")") else f"did you mean `{meant}`?"
+            yield ClassFault(kind=NO_ATTRIBUTE, name=word, file=name, help=help if meant else "")
 
 
 def _is_plain(module: Module, name: str) -> bool:

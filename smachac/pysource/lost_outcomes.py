@@ -8,12 +8,34 @@ from collections.abc import Collection, Iterator
 
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed
-from smachac.ir.class_facts import ANY, ClassFault
+from smachac.ir.class_facts import ANY, ClassFault, FaultKind
 from smachac.ir.code_slips import texts_of
 from smachac.pysource.functions import is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function
 from smachac.pysource.path_ends import PathEnds
 from smachac.pysource.user_code import UserCode
+
+LOST_OUTCOME = FaultKind(
+    name="lost outcome",
+    message="the result of `{word}` ({more}) is not used",
+    help="write `{near}`",
+    effect="`execute` goes on, and the outcome is lost",
+    accepted=True,
+)
+LOST_TEXT = FaultKind(
+    name="lost text",
+    message="the line `{word}` does nothing: `execute` goes on",
+    help="write `return {word}`",
+    effect="",
+    accepted=True,
+)
+NO_VALUE = FaultKind(
+    name="no value",
+    message="`{word}` has no value here if `{more}` was taken",
+    help="end the `{more}` with `{near}`, or set `{word}` in it",
+    effect="the code raises UnboundLocalError when it runs: the machine stops",
+    accepted=True,
+)
 
 PREEMPTED = "preempted"
 
@@ -31,7 +53,7 @@ def lost_outcomes(own: OwnClass, library: UserCode) -> list[ClassFault]:
         return []
     module, execute = found
     faults = [*_alone(own, module, execute, outcomes)]
-    if outcomes and not any(each.kind == "lost text" for each in faults):
+    if outcomes and not any(each.kind is LOST_TEXT for each in faults):
         faults += _unbound(own, module, execute, outcomes, library)
     return faults
 
@@ -73,9 +95,9 @@ def _alone(
                 known = {*words} <= {*outcomes} if outcomes else all(map(str.isidentifier, words))
                 if words and known:
                     word = Word(" ".join(span.text.split()), span)
-                    yield ClassFault(kind="lost text", name=word, outcomes=words)
+                    yield ClassFault(kind=LOST_TEXT, name=word, outcomes=words)
             case ast.Name(id=name) if name in local:
-                yield ClassFault(kind="lost text", name=Word(name, span), outcomes=(ANY,))
+                yield ClassFault(kind=LOST_TEXT, name=Word(name, span), outcomes=(ANY,))
             case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=name)):
                 names, whole, answers = _results(own, name)
                 if not names or not names <= {*outcomes}:
@@ -85,7 +107,7 @@ def _alone(
                     if not whole:
                         near = f"outcome = {span.text}`, and return `outcome` if it is not `None"
                     lost = sorted(names)
-                    yield ClassFault(kind="lost outcome", name=Word(span.text, span), near=near,
+                    yield ClassFault(kind=LOST_OUTCOME, name=Word(span.text, span), near=near,
                                      more=listed(lost), outcomes=tuple(lost))  # fmt: skip
 
 
@@ -182,7 +204,7 @@ def _unbound(
                 continue
             head = _head(open_[0], module)
             place = Word(use.id, module.text.span(use))
-            yield ClassFault(kind="no value", name=place, near=near, more=head, outcomes=rest)
+            yield ClassFault(kind=NO_VALUE, name=place, near=near, more=head, outcomes=rest)
             return
 
 

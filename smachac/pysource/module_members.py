@@ -10,7 +10,7 @@ from collections.abc import Iterator, Set
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.class_slips import operands
 from smachac.pysource.imports import makes_names
 from smachac.pysource.modules import (
@@ -23,8 +23,17 @@ from smachac.pysource.modules import (
     module_name,
     source_module,
 )
+from smachac.pysource.own_objects import NO_MEMBER
 from smachac.pysource.renamed_members import renamed_member
 from smachac.pysource.user_code import UserCode
+
+FUNCTION_NOT_CALLED = FaultKind(
+    name="function not called",
+    message="`{word}` without `()` does not call the function",
+    help="write `{near}`",
+    effect="the value is the function itself: it is no number, and true in every condition",
+    accepted=True,
+)
 
 _WORD = re.compile(r"\w+")
 _Reference = ast.Name | ast.Attribute
@@ -69,7 +78,7 @@ def _uncalled(
             given = found[1].args
             needed = len(given.posonlyargs) + len(given.args) > len(given.defaults)
             near = f"{span.text}({'...' if needed or None in given.kw_defaults else ''})"
-            yield ClassFault(kind="function not called", name=Word(span.text, span), near=near)
+            yield ClassFault(kind=FUNCTION_NOT_CALLED, name=Word(span.text, span), near=near)
 
 
 def _may_be_function(module: Module, node: _Reference, library: UserCode) -> bool:
@@ -173,7 +182,7 @@ def _missing(
             span = module.text.span(each)
             place = Span(span.source, span.end - len(name), span.end)
             near, file, more = fault
-            yield ClassFault(kind="no member", name=Word(name, place), near=near, owner=file,
+            yield ClassFault(kind=NO_MEMBER, name=Word(name, place), near=near, owner=file,
                              more=more)  # fmt: skip
 
 

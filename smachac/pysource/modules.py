@@ -8,15 +8,44 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Literal, TypeAlias, get_args
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFault
-from smachac.pysource.source import PythonText, python_text, syntax_error
+from smachac.ir.class_facts import DID_YOU_MEAN, ClassFault, FaultKind
+from smachac.pysource.source import ASSIGNED, PythonText, python_text, syntax_error
 from smachac.pysource.user_code import UserCode
 from smachac.records import dataclass
+
+NO_MODULE = FaultKind(
+    name="no module",
+    message="the code of `{type}` is in the module `{word}`, which does not exist",
+    help="correct the name in the `code` of `{type}.yml`, or create the module",
+    near_help=DID_YOU_MEAN,
+    effect="Python raises ModuleNotFoundError: the program stops when it starts",
+    missing=True,
+)
+NO_CLASS = FaultKind(
+    name="no class",
+    message="no class `{word}` is defined in {place}",
+    help="correct the name in the `code` of `{type}.yml`, or define the class",
+    near_help=DID_YOU_MEAN,
+    missing=True,
+    unnamed="the module that `{type}` names",
+)
+CLASS_ELSEWHERE = replace(
+    NO_CLASS, message="no class `{word}` is defined in {place}, but in `{more}`", near_help=""
+)
+SYNTAX = FaultKind(
+    name="syntax",
+    message="{place} is not valid Python: {word}",
+    help="correct the code at the mark, or just before it",
+    effect="Python raises SyntaxError: the program stops when it starts",
+    missing=True,
+    unnamed="the code of `{type}`",
+)
 
 MOST_STEPS = 10
 """The most imports, and the most base classes, that are followed."""
@@ -259,7 +288,29 @@ def _read(source: Source, name: str, file: str, *, package: bool) -> Module | Cl
     if text is not None:
         return _module(text, name, package=package)
     error = syntax_error(source)
-    return ClassFault(kind="syntax", name=error, file=file) if error is not None else None
+    if error is None:
+        return None
+    message = error.text.partition(". Maybe you meant")[0]
+    help = _syntax_help(error.text)
+    return ClassFault(kind=SYNTAX, name=Word(message, error.span), file=file, help=help)
+
+
+def _syntax_help(message: str) -> str:
+    """The help for a syntax error of Python, by the message of its parser; empty: not known."""
+    if message == "expected ':'":
+        return "write `:` at the mark"
+    if message.endswith(ASSIGNED):
+        return "write `==` to compare"
+    if message.endswith("was never closed"):
+        closing = {"'('": ")", "'['": "]", "'{'": "}"}.get(message.split(" ")[0])
+        return f"close the bracket: write `{closing}`" if closing else "close the bracket"
+    if message == "'await' outside async function":
+        return "remove `await`, or write `asyncio.run(...)` in its place"
+    if message.startswith("unterminated"):
+        return "write the quotation mark at the end of the text"
+    if message.startswith("expected an indented block"):
+        return "indent this line by 4 spaces more"
+    return ""
 
 
 def file_of(module: Module) -> str:
@@ -287,7 +338,7 @@ def absent_module(word: Word, library: UserCode) -> ClassFault | None:
         if near is None and (not at or not any(_is_package_file(each) for each in here)):
             return None
         meant = ".".join([*parts[:at], near, *parts[at + 1 :]]) if near is not None else None
-        return ClassFault(kind="no module", name=word, near=meant)
+        return ClassFault(kind=NO_MODULE, name=word, near=meant)
     return None
 
 
@@ -312,7 +363,7 @@ def find_class(
                 return None
             classes = [key for key, by in module.names.items() if isinstance(by[-1], ast.ClassDef)]
             top = Span(module.text.source, 0, 0)
-            return ClassFault(kind="no class", name=Word(name, top), near=guesser(classes)(name))
+            return ClassFault(kind=NO_CLASS, name=Word(name, top), near=guesser(classes)(name))
         case (ast.ImportFrom() as imported,) if steps and imported in module.text.tree.body:
             return _imported(module, imported, name, library, steps)
         case (*_, ast.ClassDef() as last) if all(isinstance(each, ast.ClassDef) for each in bound):
@@ -382,7 +433,7 @@ def _imported(
 
 
 def _is_syntax(found: ClassFault | None) -> bool:
-    return found is not None and found.kind == "syntax"
+    return found is not None and found.kind is SYNTAX
 
 
 def source_module(module: Module, node: ast.ImportFrom) -> str:

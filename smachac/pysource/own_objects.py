@@ -10,8 +10,8 @@ from typing import NamedTuple
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.class_facts import ClassFault, FaultKind
-from smachac.pysource.class_slips import operands
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
+from smachac.pysource.class_slips import NO_EFFECT, NOT_CALLED, operands
 from smachac.pysource.functions import caught
 from smachac.pysource.modules import (
     Module,
@@ -23,6 +23,14 @@ from smachac.pysource.modules import (
     source_module,
 )
 from smachac.pysource.user_code import UserCode
+
+NO_MEMBER = FaultKind(
+    name="no member",
+    message="`{owner}`{file} has no `{word}`",
+    help="{more}",
+    near_help=SUGGESTION,
+    effect="the code raises AttributeError when it runs: the machine stops",
+)
 
 LATE = frozenset(["__getattr__", "__getattribute__", "__slots__", "__new__", "__class__"])
 """Names by which a class can have attributes that its text does not show."""
@@ -49,7 +57,7 @@ def missing_members(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
             near = guesser(sorted(names))(member)
             if near is None:
                 near = next((one for one in methods if _is_part(one, member)), None)
-            yield ClassFault(kind="no member", name=place, near=near, file=where,
+            yield ClassFault(kind=NO_MEMBER, name=place, near=near, file=where,
                              more=_help(methods), owner=use.definition.name)  # fmt: skip
 
 
@@ -148,9 +156,9 @@ def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.e
                 | ast.Assert(test=test)
             ):
                 for part in operands(test):
-                    yield "not called", part
+                    yield NOT_CALLED, part
             case ast.Expr(value=value):
-                yield "no effect", value
+                yield NO_EFFECT, value
 
 
 def _is_method(node: ast.ClassDef, name: str) -> bool:

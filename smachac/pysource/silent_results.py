@@ -7,11 +7,20 @@ from collections import Counter
 from collections.abc import Iterator
 
 from smachac.diagnostics.source import Word
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.functions import is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function
 from smachac.pysource.source import name_span
 from smachac.pysource.user_code import UserCode
+
+NO_RETURN = FaultKind(
+    name="no return",
+    message="`{word}` never returns a value, but `{name}` uses the result of `{more}`",
+    help="end `{word}` with `return ...`",
+    near_help="write `{near}`",
+    effect="the result is None: code that uses it as a value fails, or goes on without it",
+    accepted=True,
+)
 
 COLLECTING = frozenset(["append", "add", "insert"])
 """Methods that put their last argument into a collection."""
@@ -131,7 +140,7 @@ def _fault(where: Module, function: ast.FunctionDef, module: Module, call: ast.C
     if isinstance(last, ast.Expr) and _is_value(last.value):
         span = where.text.span(last)
         near = f"return {' '.join(span.text.split())}"
-    return ClassFault(kind="no return", name=Word(function.name, span), near=near, more=used)
+    return ClassFault(kind=NO_RETURN, name=Word(function.name, span), near=near, more=used)
 
 
 def _is_value(node: ast.expr) -> bool:

@@ -9,11 +9,19 @@ from typing import NamedTuple
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import SHORTEST_PART, words_of
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.modules import Module, OwnClass, find_class, names_of
 from smachac.pysource.own_objects import Objects
 from smachac.pysource.silent_results import called_function
 from smachac.pysource.user_code import UserCode
+
+SWAPPED_ARGUMENTS = FaultKind(
+    name="swapped arguments",
+    message="the arguments of `{word}` have changed places",
+    help="write `{near}`",
+    effect="{more}",
+    accepted=True,
+)
 
 TURNED = frozenset(
     [
@@ -275,7 +283,7 @@ def _fault(
     head = text(call.func)
     start, end = module.text.span(call.args[first]), module.text.span(call.args[last])
     return ClassFault(
-        kind="swapped arguments",
+        kind=SWAPPED_ARGUMENTS,
         name=Word(head, Span(start.source, start.start, end.end)),
         near=f"{head}({', '.join(written)})",
         more=", and ".join(gets),

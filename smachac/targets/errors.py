@@ -6,11 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
+from smachac.diagnostics.diagnostic import Diagnostic, Finding, Problem, Related, Severity, problem
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import ClassFault
-from smachac.pysource.source import ASSIGNED
-from smachac.targets.class_faults import about_class, class_effect
 
 
 @problem(
@@ -450,86 +448,63 @@ def code_not_found(
             def execute(self, userdata):
                 return "done"
     """
-    word = fault.name
-    near = f"did you mean `{fault.near}`?" if fault.near is not None else None
-    interface = f"in the `code` of `{state_type}.yml`"
-    file = "header" if target == "cpp" else "module"
-    if fault.kind == "syntax":
-        said = word.text.partition(". Maybe you meant")[0]
-        where = f"`{fault.file}`" if fault.file else f"the code of `{state_type}`"
-        message = f"{where} is not valid Python: {said}"
-        help = _syntax_help(word.text)
-    elif fault.kind == "no module":
-        message = f"the code of `{state_type}` is in the {file} `{word.text}`, which does not exist"
-        help = near or f"correct the name {interface}, or create the {file}"
-    elif fault.kind == "no imported module":
-        message = f"no module `{word.text}` exists, which is imported here"
-        help = near or "correct the name, or create the module"
-    elif fault.kind == "no imported name":
-        message = f"`{fault.file}` has no `{word.text}`, which is imported from it"
-        help = near or f"correct the name, or define it in `{fault.file}`"
-        if near is not None and fault.lines:
-            lines = ", ".join(map(str, fault.lines))
-            help = f"{near} Write it here and in line{'s' if fault.lines[1:] else ''} {lines}"
-        if fault.more:
-            help = f"import `{word.text}` from `{fault.more}`, which defines it"
-    elif fault.kind == "circular import":
-        message = (
-            f"`{word.text}` is not defined yet: `{fault.file}` is still loading, and imports"
-            f" `{fault.more}` before it defines `{word.text}`"
-        )
-        help = (
-            f"import it in the function that uses it, or move `{word.text}` to a module that"
-            " imports neither of the two"
-        )
-    else:
-        place = f"`{fault.file}`" if fault.file else f"the {file} that `{state_type}` names"
-        message = f"no class `{word.text}` is defined in {place}"
-        help = near or f"correct the name {interface}, or define the class"
-        if fault.more:
-            meant = fault.more if target == "cpp" else f"{fault.more}:{word.text}"
-            message += f", but in `{_file_of(fault.more, target)}`"
-            help = f"write `{meant}`"
+    return _class_finding(fault, target, state_type, name, used)
+
+
+def class_fault(
+    fault: ClassFault,
+    target: str,
+    state_type: str,
+    name: str,
+    used: tuple[Related, ...],
+    lists: str = "outcomes=[...]",
+) -> Diagnostic:
+    """The finding for a fault of a class: SM608 for missing code, otherwise SM609."""
+    if fault.kind.missing:
+        return code_not_found(fault, target, state_type, name, used)
+    return bad_class(fault, target, state_type, name, used, lists)
+
+
+def _class_finding(
+    fault: ClassFault,
+    target: str,
+    state_type: str,
+    name: str,
+    used: tuple[Related, ...],
+    lists: str = "",
+) -> Finding:
+    """The finding for a fault of a class, in the words of its kind."""
+    kind, word, near = fault.kind, fault.name.text, fault.near
+    fields = {
+        "word": word,
+        "name": name,
+        "type": state_type,
+        "lists": lists,
+        "near": near,
+        "file": fault.file,
+        "more": fault.more,
+        "owner": fault.owner,
+        "place": f"`{fault.file}`" if fault.file else kind.unnamed.format(type=state_type),
+        "suggestion": _suggestion(word, near) if near is not None else "",
+    }
+    help = kind.near_help if near is not None and kind.near_help else kind.help
     return Finding(
-        span=word.span,
-        message=message,
-        arguments=(target, state_type, fault.kind, word.text),
-        help=help,
-        effect="the C++ compiler does not find it" if target == "cpp" else _not_imported(fault),
+        span=fault.name.span,
+        message=kind.message.format_map(fields),
+        arguments=(target, state_type, kind.name, word),
+        help=fault.help or help.format_map(fields),
+        effect=kind.effect.format_map(fields) if kind.effect is not None else None,
         related=used,
+        severity=None if kind.missing or kind.stops else Severity.WARNING,
     )
 
 
-def _not_imported(fault: ClassFault) -> str | None:
-    """What Python raises for code that does not exist, where it is another error than for a name
-    that a module lacks."""
-    error = {"no module": "ModuleNotFoundError", "syntax": "SyntaxError"}.get(fault.kind)
-    if fault.kind == "no imported module" and not fault.file:
-        error = "ModuleNotFoundError"
-    return f"Python raises {error}: the program stops when it starts" if error else None
-
-
-def _file_of(module: str, target: str) -> str:
-    """A header, or the file of a module."""
-    return module if target == "cpp" else f"{module.replace('.', '/')}.py"
-
-
-def _syntax_help(message: str) -> str:
-    """The help for a syntax error of Python, by the message of its parser."""
-    if message == "expected ':'":
-        return "write `:` at the mark"
-    if message.endswith(ASSIGNED):
-        return "write `==` to compare"
-    if message.endswith("was never closed"):
-        closing = {"'('": ")", "'['": "]", "'{'": "}"}.get(message.split(" ")[0])
-        return f"close the bracket: write `{closing}`" if closing else "close the bracket"
-    if message == "'await' outside async function":
-        return "remove `await`, or write `asyncio.run(...)` in its place"
-    if message.startswith("unterminated"):
-        return "write the quotation mark at the end of the text"
-    if message.startswith("expected an indented block"):
-        return "indent this line by 4 spaces more"
-    return "correct the code at the mark, or just before it"
+def _suggestion(word: str, near: str) -> str:
+    """The help that proposes a name, or other code, for a word."""
+    if near in ("None", "True", "False"):
+        return f"write `{near}`: Python has no `{word}`"
+    is_code = near.startswith('"') or "." in near
+    return f"write `{near}`" if is_code else f"did you mean `{near}`?"
 
 
 @problem(
@@ -544,7 +519,7 @@ def bad_class(
     state_type: str,
     name: str,
     used: tuple[Related, ...],
-    lists: str = "outcomes=[...]",
+    lists: str,
 ) -> Finding:
     """The class of a state type does not work as a state: a method is missing or hidden, or the
     constructor does not fit the interface.
@@ -606,15 +581,7 @@ def bad_class(
             def execute(self, userdata):
                 return "done"
     """
-    message, help = about_class(fault, state_type, name, lists)
-    return Finding(
-        span=fault.name.span,
-        message=message,
-        arguments=(target, state_type, fault.kind, fault.name.text),
-        help=help,
-        effect=class_effect(fault, target),
-        related=used,
-    )
+    return _class_finding(fault, target, state_type, name, used, lists)
 
 
 @problem("SM610", "param-fixed-at-build", Severity.WARNING)

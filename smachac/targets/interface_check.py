@@ -17,26 +17,35 @@ from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault, Parameter, renamed_name
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind, Parameter, renamed_name
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import inputs_from, outer_outputs, remapping, walk
 from smachac.pysource.import_cycles import circular_imports
 from smachac.records import dataclass, field
-from smachac.targets.class_faults import CHECKED_ONLY, SET_IN_SCRIPT, STOPS_PROGRAM
 from smachac.targets.errors import (
     Difference,
-    bad_class,
-    code_not_found,
+    class_fault,
     interfaces_differ,
     stale_code,
 )
 from smachac.targets.smacha_templates import call_faults, guard_faults
 from smachac.targets.template_bodies import body_faults
 
-NOT_FOUND = (
-    "no module", "no class", "syntax", "no imported module", "no imported name", "circular import",
-)  # fmt: skip
-"""The kinds of faults of code that does not exist, or does not load (SM608)."""
+NO_SUCH_PARAMETER = FaultKind(
+    name="no such parameter",
+    message="`__init__` of `{name}` does not accept `{word}`, which is set here",
+    help="add the parameter `{word}` to `__init__`, or remove it here",
+    near_help=SUGGESTION,
+    effect="the program passes each variable by its name: the call raises a TypeError",
+    stops=True,
+)
+MISSING_ARGUMENT = FaultKind(
+    name="missing argument",
+    message="`__init__` of `{name}` requires `{word}`, which this state does not set",
+    help="add `{word}: ...` to the state, or give `{word}` a default value in `__init__`",
+    effect="the program makes the state without this argument: the call raises a TypeError",
+    stops=True,
+)
 
 OF_CLASSES = ("SM608", "SM609")
 """The codes of faults for which a check reports an error and only a build for the language of the
@@ -96,10 +105,8 @@ def code_faults(machine: Machine, library: Library, load: Load) -> Iterator[Diag
                 found.extend(type_faults(leaf, type_, target, library, machine))
     found += [*cycles(machine, library, found), *argument_faults(machine, library)]
     for item in (*_once(found), *_smacha_faults(machine, library)):
-        stops = item.code == "SM608" or (
-            item.code == "SM609" and item.finding.arguments[2] in STOPS_PROGRAM
-        )
-        yield item if stops else replace(item, severity=Severity.WARNING)
+        judged = item.code in OF_CLASSES
+        yield item if judged else replace(item, severity=Severity.WARNING)
 
 
 def cycles(machine: Machine, library: Library, found: Sequence[Diagnostic]) -> list[Diagnostic]:
@@ -116,7 +123,7 @@ def cycles(machine: Machine, library: Library, found: Sequence[Diagnostic]) -> l
     for fault in faults:
         leaf, type_, name = next(iter(users.values()))
         used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`")
-        return [code_not_found(fault, "python", type_.name, name, (used,))]
+        return [class_fault(fault, "python", type_.name, name, (used,))]
     return []
 
 
@@ -150,10 +157,11 @@ def target_faults(machine: Machine, library: Library, target: Language) -> Itera
             found.extend(type_faults(leaf, type_, target, library))
     if target.name == "python":
         found += cycles(machine, library, found)
-    yield from _once(found)
+    found = [*_once(found)]
     if target.name == "python":
-        yield from argument_faults(machine, library)
-        yield from _smacha_faults(machine, library)
+        found += [*argument_faults(machine, library), *_smacha_faults(machine, library)]
+    for item in found:
+        yield replace(item, severity=Severity.ERROR) if item.code == "SM609" else item
 
 
 def _smacha_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
@@ -192,7 +200,7 @@ def argument_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
         given = {*type_.given, *(["outcomes"] if type_.optional else ())}
         given |= {"node"} if library.ros == 2 and parameters[0].word.text == "node" else set()
         for fault, related in _argument_faults(leaf, type_, parameters, given):
-            yield bad_class(fault, "python", type_.name, class_name, related)
+            yield class_fault(fault, "python", type_.name, class_name, related)
 
 
 def _argument_faults(
@@ -206,11 +214,11 @@ def _argument_faults(
     for name in sorted(set_.keys() - known.keys() - type_.variables.keys()):
         near = guess(name)
         meant.add(near)
-        yield ClassFault(kind="no such parameter", name=Word(name, set_[name].span), near=near), ()
+        yield ClassFault(kind=NO_SUCH_PARAMETER, name=Word(name, set_[name].span), near=near), ()
     for name in sorted(known.keys() - passed - meant):
         if known[name].required:
             place = Related(span=known[name].word.span, message="the constructor requires it")
-            yield ClassFault(kind="missing argument", name=Word(name, leaf.span)), (place,)
+            yield ClassFault(kind=MISSING_ARGUMENT, name=Word(name, leaf.span)), (place,)
 
 
 def languages(type_: StateType) -> tuple[str, ...]:
@@ -246,14 +254,14 @@ def type_faults(
     if found is None:
         return
     for fault in found.faults:
-        if fault.kind in CHECKED_ONLY and not checked:
+        if fault.kind.accepted and not checked:
             continue
         used: tuple[Related, ...] = (
             Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`"),
         )
         if fault.also is not None:
             used = (Related(span=fault.also.span, message=fault.also.text), *used)
-        if fault.kind == "early return":
+        if fault.kind.early:
             reader = _reader(machine, type_, fault) if machine is not None else None
             if reader is None:
                 continue
@@ -261,14 +269,8 @@ def type_faults(
         if fault.name.span.source is NOWHERE.source:
             fault = replace(fault, name=Word(fault.name.text, leaf.span))
             used = ()
-        if fault.kind in SET_IN_SCRIPT:
-            variable = fault.name.text if fault.kind == "no parameter" else fault.near
-            if any(each.name == variable for each in leaf.variables):
-                fault = replace(fault, owner=variable or "")
-        if fault.kind in NOT_FOUND:
-            yield code_not_found(fault, target.name, type_.name, found.name, used)
-        else:
-            yield bad_class(fault, target.name, type_.name, found.name, used, _lists(type_))
+        fault = _with_set_variable(fault, leaf)
+        yield class_fault(fault, target.name, type_.name, found.name, used, _lists(type_))
     facts = type_.class_facts if checked and target.name == "python" else None
     if found.stale is None and facts is not None:
         # Returned outcomes that the interface lacks are SM309, such reads SM310, such writes SM308.
@@ -291,6 +293,17 @@ def type_faults(
         named = [] if place is None else [Related(span=place, message="the class is named here")]
         here = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{type_.name}`")
         yield interfaces_differ((*named, here), target.name, type_.name, found.name, differences)
+
+
+def _with_set_variable(fault: ClassFault, leaf: Leaf) -> ClassFault:
+    """A fault of a parameter that has another name than a variable: the help is to rename the
+    parameter if the script sets the variable."""
+    variable, near = fault.variable, fault.near
+    if near is None or all(each.name != variable for each in leaf.variables):
+        return fault
+    parameter = near if variable == fault.name.text else fault.name.text
+    renamed = f"rename the parameter `{parameter}` to `{variable}`, which the script sets"
+    return replace(fault, help=f"{renamed}{fault.more}")
 
 
 def _reader(machine: Machine, type_: StateType, fault: ClassFault) -> Related | None:

@@ -15,10 +15,34 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import Diagnostic, Related
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault, StateCall
+from smachac.ir.class_facts import ClassFault, FaultKind, StateCall
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
-from smachac.targets.errors import bad_class
+from smachac.targets.errors import class_fault
+
+NOT_PASSED = FaultKind(
+    name="not passed",
+    message="`State.tpl.py` does not pass `{word}`, which `__init__` of `{name}` requires",
+    help="remove the line `{{% extends ... %}}`: the program then passes the variables"
+    " of the state; or write a block `body`",
+    effect="the program makes the state without this argument: the call raises a TypeError",
+    stops=True,
+)
+NOT_ACCEPTED = FaultKind(
+    name="not accepted",
+    message="`State.tpl.py` passes `{word}`, which `__init__` of `{name}` does not accept",
+    help="remove the line `{{% extends ... %}}`, or add the parameter `{word}=None` to `__init__`",
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+OTHER_GUARD = FaultKind(
+    name="other guard",
+    message="the program does not contain the class `{name}`: its template uses the name"
+    " `{word}` of another class",
+    help="write `{near}` here, and where the template adds the name to `defined_headers`",
+    effect="the program stops with a NameError when it makes the state",
+    stops=True,
+)
 
 _GUARD = re.compile(
     r"\{%[-+]?\s*if\s+(['\"])(?P<guard>\w+)\1\s+not\s+in\s+defined_headers\s*[-+]?%\}"
@@ -49,7 +73,7 @@ def guard_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
         first[name] = right
         near = name.replace(right.class_name, wrong.class_name)
         fault = ClassFault(
-            kind="other guard",
+            kind=OTHER_GUARD,
             name=wrong.word,
             near=near if near != name else f"class_{wrong.class_name}",
         )
@@ -57,7 +81,7 @@ def guard_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
             Related(span=right.word.span, message=f"`{right.class_name}` has this name too"),
             Related(span=wrong.leaf.span, message=f"`{wrong.leaf.name}` is of this type"),
         )
-        yield bad_class(fault, "python", wrong.type.name, wrong.class_name, places)
+        yield class_fault(fault, "python", wrong.type.name, wrong.class_name, places)
 
 
 def _guards(machine: Machine, library: Library) -> Iterator[_Guard]:
@@ -105,7 +129,7 @@ def call_faults(machine: Machine) -> Iterator[Diagnostic]:
             del left[leaf.type]
             used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")
             name = facts.name.text if facts.name is not None else leaf.type
-            yield bad_class(fault, "python", leaf.type, name, (used,))
+            yield class_fault(fault, "python", leaf.type, name, (used,))
 
 
 def _call_fault(call: StateCall, given: set[str]) -> ClassFault | None:
@@ -113,8 +137,8 @@ def _call_fault(call: StateCall, given: set[str]) -> ClassFault | None:
     known = {each.word.text for each in call.parameters}
     for each in call.parameters:
         if each.required and each.word.text not in given:
-            return ClassFault(kind="not passed", name=Word(each.word.text, call.place))
+            return ClassFault(kind=NOT_PASSED, name=Word(each.word.text, call.place))
     for name in CALL_ARGUMENTS:
         if name in given and name not in known:
-            return ClassFault(kind="not accepted", name=Word(name, call.place))
+            return ClassFault(kind=NOT_ACCEPTED, name=Word(name, call.place))
     return None

@@ -15,14 +15,48 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.ir.leaf import variable
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
+from smachac.pysource.base_calls import TOO_MANY_ARGUMENTS
+from smachac.pysource.class_names import UNDEFINED_NAME
 from smachac.pysource.jinja_tags import tags
 from smachac.pysource.modules import template_module
 from smachac.pysource.source import PythonText
-from smachac.targets.errors import bad_class
+from smachac.targets.errors import class_fault
+
+ARGUMENT_ORDER = FaultKind(
+    name="argument order",
+    message="the template passes its arguments in another order than `__init__` of `{name}`"
+    " has its parameters",
+    help="write `{near}`",
+    effect="{more}",
+)
+NO_KEYWORD = FaultKind(
+    name="no keyword",
+    message="the template passes `{word}`, but `__init__` of `{name}` has no parameter `{word}`",
+    help="its parameters are {more}",
+    near_help=SUGGESTION,
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+NO_ARGUMENT_HERE = FaultKind(
+    name="no argument here",
+    message="the template does not pass `{word}`, which `__init__` of `{name}` requires",
+    help="add `{word}={{{{ {word} }}}}` to the call, or give `{word}` a default value in"
+    " `__init__`",
+    effect="the call raises a TypeError when the program makes the state",
+    stops=True,
+)
+NO_QUOTES = FaultKind(
+    name="no quotes",
+    message="the template prints the text of `{word}` without quotes: here the name"
+    " `{more}`, which nothing defines",
+    help="write `{near}`",
+    effect="the program stops with a NameError when it makes the state",
+    stops=True,
+)
 
 _BODY = re.compile(r"\{%[-+]?\s*block\s+body\b[^%]*%\}(.*?)\{%[-+]?\s*endblock\b", re.DOTALL)
 _ARGUMENT = re.compile(
@@ -54,7 +88,7 @@ def body_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
         fault = _call_fault(template, body, leaf, _names(machine, library))
         if fault is not None:
             used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")
-            yield bad_class(fault[0], "python", leaf.type, fault[1], (used,))
+            yield class_fault(fault[0], "python", leaf.type, fault[1], (used,))
 
 
 def _not_printed(template: Source, body: re.Match[str], leaf: Leaf) -> Iterator[Diagnostic]:
@@ -146,7 +180,7 @@ def _call_fault(
     name, maker, text = made
     unknown = _unknown_class(text, body, name, leaf, names)
     if unknown is not None:
-        return ClassFault(kind="undefined name", name=unknown, near=name), name
+        return ClassFault(kind=UNDEFINED_NAME, name=unknown, near=name), name
     parameters = [each.arg for each in maker.args.args[1:]]
     callee = _callee(name, leaf)
     unfit = _argument_fault(text, body, name, maker, leaf)
@@ -174,14 +208,14 @@ def _call_fault(
                 for wanted, name_ in zip(due, order, strict=True) if wanted != name_]  # fmt: skip
         word = Word(place.text, place)
         more = ", and ".join(gets[:2])
-        return ClassFault(kind="argument order", name=word, near=near, more=more), name
+        return ClassFault(kind=ARGUMENT_ORDER, name=word, near=near, more=more), name
     for each in given:
         value = variable(leaf, each["name"]) if not (each["quote"] or each["filter"]) else None
         if isinstance(value, str) and value.isidentifier() and value not in names:
             place = Span(template, each.start(), each.start("end"))
             word = Word(place.text.rstrip(), place)
             near = f"'{word.text}'"
-            return ClassFault(kind="no quotes", name=word, near=near, more=value), name
+            return ClassFault(kind=NO_QUOTES, name=word, near=near, more=value), name
     return None
 
 
@@ -249,13 +283,13 @@ def _argument_fault(
         near = left[0] if len(left) == 1 else guesser(left)(word)
         more = ", ".join(f"`{each}`" for each in known) or "only `self`"
         if not text.is_filled(span):
-            return ClassFault(kind="no keyword", name=Word(word, span), near=near, more=more)
+            return ClassFault(kind=NO_KEYWORD, name=Word(word, span), near=near, more=more)
     if None in given or not _is_counted(text, call, {*known, *positional}):
         return None
     if len(call.args) > len(positional) and taken.vararg is None:
         span = text.span(call.args[len(positional)])
         more = ", ".join(f"`{each}`" for each in positional) or "only `self`"
-        return ClassFault(kind="too many arguments", name=Word(span.text, span), owner=name,
+        return ClassFault(kind=TOO_MANY_ARGUMENTS, name=Word(span.text, span), owner=name,
                           more=more)  # fmt: skip
     due = positional[: len(positional) - len(taken.defaults)]
     due += [each.arg for each, default in zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
@@ -265,7 +299,7 @@ def _argument_fault(
     span = text.span(call.func)
     if not text.is_filled(Span(span.source, span.end - 1, span.end)):
         span = Span(span.source, span.end - len(name), span.end)
-    return ClassFault(kind="no argument here", name=Word(missing[0], span)) if missing else None
+    return ClassFault(kind=NO_ARGUMENT_HERE, name=Word(missing[0], span)) if missing else None
 
 
 def _only_call(text: PythonText, body: re.Match[str], callee: re.Pattern[str]) -> ast.Call | None:

@@ -9,7 +9,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Severity
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Machine
 from smachac.pysource.imports import missing_in_template
-from smachac.targets.errors import code_not_found
+from smachac.targets.errors import class_fault
 
 
 def template_imports(machine: Machine, library: Library) -> Iterator[Diagnostic]:
@@ -22,5 +22,5 @@ def template_imports(machine: Machine, library: Library) -> Iterator[Diagnostic]
     for file, source in template_sources(machine, library):
         if library.own_template(file) is not None:
             for fault, is_printed in missing_in_template(source, library):
-                found = code_not_found(fault, "python", "", file, ())
+                found = class_fault(fault, "python", "", file, ())
                 yield found if is_printed else replace(found, severity=Severity.WARNING)

@@ -13,18 +13,65 @@ from dataclasses import replace
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import DID_YOU_MEAN, SUGGESTION, ClassFault, FaultKind
 from smachac.ir.nodes import Key, StateType
 from smachac.ir.types import STRUCTS, unknown_words
+from smachac.pysource.class_reader import NO_EXECUTE
 from smachac.pysource.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
+from smachac.pysource.modules import CLASS_ELSEWHERE, NO_CLASS
 from smachac.pysource.other_modules import file_with
 from smachac.records import dataclass
+from smachac.targets.cpp.constructors import (
+    EXTRA_PARAMETER,
+    NO_CONSTRUCTOR_PARAMETER,
+    WRONG_CONSTRUCTOR,
+)
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.member_faults import member_faults, signature_faults
+from smachac.targets.cpp.member_faults import WRONG_PARAMETERS, member_faults, signature_faults
 from smachac.targets.cpp.types import UnportableError
-from smachac.targets.cpp.user_classes import ClassCode, class_code, field_type, interface_hash
+from smachac.targets.cpp.user_classes import (
+    REFUSED,
+    ClassCode,
+    class_code,
+    field_type,
+    interface_hash,
+)
 from smachac.targets.errors import Difference
 from smachac.targets.interface_check import Declared, Words
+
+_NOT_FOUND = "the C++ compiler does not find it"
+NO_HEADER = FaultKind(
+    name="no module",
+    message="the code of `{type}` is in the header `{word}`, which does not exist",
+    help="correct the name in the `code` of `{type}.yml`, or create the header",
+    near_help=DID_YOU_MEAN,
+    effect=_NOT_FOUND,
+    missing=True,
+)
+NO_CPP_CLASS = replace(NO_CLASS, effect=_NOT_FOUND, unnamed="the header that `{type}` names")
+CPP_CLASS_ELSEWHERE = replace(
+    CLASS_ELSEWHERE, effect=_NOT_FOUND, unnamed="the header that `{type}` names"
+)
+NO_CPP_EXECUTE = replace(NO_EXECUTE, effect=REFUSED)
+NO_OUTCOME = FaultKind(
+    name="no outcome",
+    message="`Outcome` of `{name}` has no `{word}`",
+    help="write one of {file}, or add it to `Outcome` and to the interface",
+    near_help=SUGGESTION,
+    effect=REFUSED,
+)
+NO_NUMBER = FaultKind(
+    name="no number",
+    message="the class `{name}` does not contain the number of its interface, `smachac_interface`",
+    help="write in the class: `static constexpr std::uint32_t smachac_interface = {near};`",
+    effect=REFUSED,
+)
+WRONG_NUMBER = FaultKind(
+    name="wrong number",
+    message="`{word}` is no number of C++",
+    help="write `{near}`, the number of the interface",
+    effect=REFUSED,
+)
 
 _USED_OUTCOME = re.compile(r"(?<![\w:])Outcome\s*::\s*([A-Za-z_]\w*)")
 _STRUCT = r"\bstruct\s+{}\s*\{{"
@@ -74,7 +121,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         other = file_with(pattern, code.header, (".hpp", ".h", ".hh"), library) if fault else None
         if fault is not None and other is not None:
             header_span = type_.class_spans.get(("cpp", "header"), word.span)
-            fault = replace(fault, name=Word(word.text, header_span), more=other)
+            fault = ClassFault(kind=CPP_CLASS_ELSEWHERE, name=Word(word.text, header_span),
+                               file=fault.file, more=other, help=f"write `{other}`")  # fmt: skip
         return _absent(code, fault)
     head = whole.only(class_head(name))
     body = whole.inside(head)
@@ -154,7 +202,7 @@ def absent_header(header: Word, library: Library) -> ClassFault | None:
     if not others or (not folder and near is None):
         return None
     meant = f"{folder}/{near}" if folder and near is not None else near
-    return ClassFault(kind="no module", name=header, near=meant)
+    return ClassFault(kind=NO_HEADER, name=header, near=meant)
 
 
 def _header_elsewhere(header: Word, code: ClassCode, library: Library) -> ClassFault | None:
@@ -172,7 +220,7 @@ def _header_elsewhere(header: Word, code: ClassCode, library: Library) -> ClassF
         included = library.code(f"include/{path}")
         if folder or (included is not None and included.name == source.name):
             found.append(path)
-    return ClassFault(kind="no module", name=header, near=found[0]) if len(found) == 1 else None
+    return ClassFault(kind=NO_HEADER, name=header, near=found[0]) if len(found) == 1 else None
 
 
 def _defines(text: str, code: ClassCode) -> bool:
@@ -191,7 +239,7 @@ def _absent_class(name: Word, whole: Part, header: str) -> ClassFault | None:
     if any(not each.startswith("smachac/") for each in included):
         return None
     classes = re.findall(r"\b(?:class|struct)\s+(\w+)", whole.text)
-    return ClassFault(kind="no class", name=name, near=guesser(classes)(name.text), file=header)
+    return ClassFault(kind=NO_CPP_CLASS, name=name, near=guesser(classes)(name.text), file=header)
 
 
 def _faults(
@@ -199,7 +247,7 @@ def _faults(
 ) -> Iterator[ClassFault]:
     """A missing `execute`, and uses of enumerators that `Outcome` does not have."""
     if not derived and not re.search(r"\bexecute\b", body.text):
-        yield ClassFault(kind="no execute", name=name)
+        yield ClassFault(kind=NO_CPP_EXECUTE, name=name)
     if outcomes is None:
         return
     known = [identifier(each.text) for each in outcomes]
@@ -212,7 +260,7 @@ def _faults(
             word = body.word(found[1], *found.span(1))
             listed = ", ".join(f"`{each}`" for each in known)
             near = guess(found[1]) or only
-            yield ClassFault(kind="no outcome", name=word, near=near, file="" if near else listed)
+            yield ClassFault(kind=NO_OUTCOME, name=word, near=near, file="" if near else listed)
 
 
 def _without_number(
@@ -223,29 +271,26 @@ def _without_number(
     literal, known = body.member(_LITERAL), body.member(_NUMBER)
     if literal is not None and (known is None or _number(known[1]) is None):
         word = body.word(literal[1], *literal.span(1))
-        yield ClassFault(kind="wrong number", name=word, near=number)
+        yield ClassFault(kind=WRONG_NUMBER, name=word, near=number)
     if derived or "smachac_interface" in whole.text or _MACRO.search(body.text):
         return
-    yield ClassFault(kind="no number", name=name, near=number)
+    yield ClassFault(kind=NO_NUMBER, name=name, near=number)
 
 
 def _outdated(code: ClassCode, body: Part) -> Iterator[Difference]:
     """The parameters that a class lacks, or has in vain, in another version of its interface."""
+    texts = {
+        NO_CONSTRUCTOR_PARAMETER: "its constructor lacks {}",
+        EXTRA_PARAMETER: "its constructor takes `{}`, which is no variable now",
+        WRONG_CONSTRUCTOR: "its constructor has other parameters",
+        WRONG_PARAMETERS: "`execute` has other parameters",
+    }
     for fault in signature_faults(code, body):
-        word = fault.name
-        match fault.kind:
-            case "no constructor parameter":
-                text = f"its constructor lacks {word.text}"
-            case "extra parameter":
-                text = f"its constructor takes `{word.text}`, which is no variable now"
-            case "wrong constructor":
-                text = "its constructor has other parameters"
-            case "wrong parameters":
-                text = "`execute` has other parameters"
-            case _:
-                continue
+        text = texts.get(fault.kind, "").format(fault.name.text)
+        if not text:
+            continue
         help = f"write `{fault.near}`"
-        yield Difference(Word(text, word.span), help, change=help)
+        yield Difference(Word(text, fault.name.span), help, change=help)
 
 
 def _stale(body: Part, wanted: str) -> Word | None:

@@ -12,12 +12,64 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import Literal
 
 from smachac.diagnostics.source import NOWHERE, Word
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.cpp_text import Part
 from smachac.records import dataclass
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.types import UnportableError
-from smachac.targets.cpp.user_classes import ClassCode, parameter_type
+from smachac.targets.cpp.user_classes import REFUSED, ClassCode, parameter_type
+
+WRONG_CONSTRUCTOR = FaultKind(
+    name="wrong constructor",
+    message="the constructor of `{name}` has other parameters than the variables of its interface",
+    help="write `{near}`",
+    effect=REFUSED,
+)
+NO_FIRST_ARGUMENT = FaultKind(
+    name="no first argument",
+    message="the constructor of `{name}` takes {word} first, which the interface `{type}`"
+    " does not provide",
+    help='add `with: "{near}"` to `cpp` in the `code` of `{type}.yml`',
+    effect=REFUSED,
+)
+NOT_IN_WITH = FaultKind(
+    name="not in with",
+    message="the constructor of `{name}` takes {word}, which is neither in `with` nor a"
+    " variable of `{type}.yml`",
+    help='write `with: "{near}"` in `{type}.yml`, or remove the parameter from the class',
+    effect=REFUSED,
+)
+NO_CONSTRUCTOR_PARAMETER = FaultKind(
+    name="no constructor parameter",
+    message="the constructor of `{name}` lacks {word} {more}",
+    help="write `{near}`",
+    effect=REFUSED,
+)
+EXTRA_PARAMETER = FaultKind(
+    name="extra parameter",
+    message="the constructor of `{name}` takes `{word}`, which is not a variable of `{type}.yml`",
+    help="write `{near}`, or add `{more}` to the `variables` of `{type}.yml`",
+    effect=REFUSED,
+)
+PARAMETER_TYPE = FaultKind(
+    name="parameter type",
+    message="the constructor of `{name}` takes `{word}`, but the program passes a `{more}`",
+    help="write `{near}`",
+    effect=REFUSED,
+)
+PARAMETER_ORDER = FaultKind(
+    name="parameter order",
+    message="the constructor of `{name}` takes its parameters in another order than {owner}",
+    help="write `{near}`",
+    effect="{more}",
+    accepted=True,
+)
+REFUSED_ORDER = FaultKind(
+    name="refused order",
+    message="the constructor of `{name}` takes its parameters in another order than {owner}",
+    help="write `{near}`",
+    effect=REFUSED,
+)
 
 Kind = Literal["number", "text", "items", "object", "other"]
 """The kinds of parameters: two kinds, except `other`, have no conversion between them."""
@@ -75,7 +127,7 @@ def constructor_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
     word = body.word(name, heads[0].start(), heads[0].start() + len(name))
     if len(heads) > 1:
         if len(wanted) not in (len(each) for each in lists if each is not None):
-            yield ClassFault(kind="wrong constructor", name=word, near=_written(name, wanted))
+            yield ClassFault(kind=WRONG_CONSTRUCTOR, name=word, near=_written(name, wanted))
     elif len(own) == len(wanted):
         yield from _same_number(code, body, word, own, wanted)
     else:
@@ -145,17 +197,17 @@ def _same_number(
         name = body.word(name.text, pairs[0][0].start, pairs[-1][0].end)
         order = _order(code, {one.name for one, _ in pairs})
         if not all(_fit(one, each) for one, each in pairs):
-            yield ClassFault(kind="refused order", name=name, near=near, owner=order)
+            yield ClassFault(kind=REFUSED_ORDER, name=name, near=near, owner=order)
             return
         gets = " and ".join(f"`{one.name}` gets the value of `{each.name}`" for one, each in pairs)
         sure = all("other" not in (one.kind, each.kind) for one, each in pairs)
         more = f"it compiles, but {gets}" if sure else f"by their places, {gets}"
-        yield ClassFault(kind="parameter order", name=name, near=near, more=more, owner=order)
+        yield ClassFault(kind=PARAMETER_ORDER, name=name, near=near, more=more, owner=order)
     for one, each in zip(own, wanted, strict=True) if not pairs else ():
         plain = one.kind != each.kind and {one.kind, each.kind} <= {"number", "text", "items"}
         if plain and "bool" not in one.text:
             place = body.word(one.text, one.start, one.end)
-            yield ClassFault(kind="parameter type", name=place, near=each.text, more=_type(each))
+            yield ClassFault(kind=PARAMETER_TYPE, name=place, near=each.text, more=_type(each))
 
 
 def _type(parameter: _Parameter) -> str:
@@ -188,7 +240,7 @@ def _other_number(
         whose = f"which `with` in {file} passes" if objects == len(lacks) else f"of {file}"
         listed = " and ".join(f"`{each.text}`" for each in lacks)
         return ClassFault(
-            kind="no constructor parameter", name=name._replace(text=listed), near=near, more=whose
+            kind=NO_CONSTRUCTOR_PARAMETER, name=name._replace(text=listed), near=near, more=whose
         )
     if not lacks and _objects_before_variables(code, own, more):
         return _not_in_with(code, body, own, more)
@@ -196,8 +248,8 @@ def _other_number(
     if type_:
         place = body.word(more[0].text, more[0].start, more[0].end)
         variable = f"{more[0].name}: {{type: {type_}}}"
-        return ClassFault(kind="extra parameter", name=place, near=near, more=variable)
-    return ClassFault(kind="wrong constructor", name=name, near=near)
+        return ClassFault(kind=EXTRA_PARAMETER, name=place, near=near, more=variable)
+    return ClassFault(kind=WRONG_CONSTRUCTOR, name=name, near=near)
 
 
 def _script_type(parameter: _Parameter) -> str:
@@ -236,11 +288,11 @@ def _not_in_with(
     here = body.word("the constructor takes it here", one.start, one.end)
     if not given:
         place = Word(text, spans.get(("cpp", "class"), NOWHERE))
-        return ClassFault(kind="no first argument", name=place, near=near, also=here)
+        return ClassFault(kind=NO_FIRST_ARGUMENT, name=place, near=near, also=here)
     if len(re.findall(rf"\b{re.escape(one.name)}\b", body.text)) == 1:
-        return ClassFault(kind="not in with", name=here._replace(text=text), near=near)
+        return ClassFault(kind=NOT_IN_WITH, name=here._replace(text=text), near=near)
     place = Word(text, spans.get(("cpp", "with"), here.span))
-    return ClassFault(kind="not in with", name=place, near=near, also=here)
+    return ClassFault(kind=NOT_IN_WITH, name=place, near=near, also=here)
 
 
 def _qualified(parameter: str, name: str) -> str:

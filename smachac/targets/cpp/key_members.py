@@ -6,10 +6,18 @@ import re
 from collections.abc import Iterator
 
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.cpp_text import Part
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.user_classes import ClassCode
+from smachac.targets.cpp.user_classes import REFUSED, ClassCode
+
+NO_KEY_MEMBER = FaultKind(
+    name="no key member",
+    message="`{more}` of `{name}` has no `{word}`",
+    help="write one of {file}, or add it to `{more}` and to the interface",
+    near_help=SUGGESTION,
+    effect=REFUSED,
+)
 
 
 def unknown_members(
@@ -35,5 +43,5 @@ def unknown_members(
             near = near or (left[0] if len(left) == len(used - known) == 1 else None)
             word = run.word(each[1], *each.span(1))
             names = ", ".join(f"`{name}`" for name in own)
-            yield ClassFault(kind="no key member", name=word, near=near, more=struct,
+            yield ClassFault(kind=NO_KEY_MEMBER, name=word, near=near, more=struct,
                              file="" if near else names)  # fmt: skip

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import words_of
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFault
+from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.ir.outcome_names import is_failure
 from smachac.ir.traversal import PREEMPTED
 from smachac.pysource.cpp_text import Part
@@ -20,7 +20,79 @@ from smachac.targets.cpp.constructors import constructor_faults
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.key_members import unknown_members
 from smachac.targets.cpp.unused_calls import UnusedCall, unused_call
-from smachac.targets.cpp.user_classes import ClassCode, left_to_scripts, stops
+from smachac.targets.cpp.user_classes import REFUSED, ClassCode, left_to_scripts, stops
+
+WRONG_RESULT = FaultKind(
+    name="wrong result",
+    message="`execute` of `{name}` returns `{word}`, not an outcome",
+    help="write `{near}`",
+    effect=REFUSED,
+)
+WRONG_PARAMETERS = FaultKind(
+    name="wrong parameters",
+    message="`execute` of `{name}` {more}",
+    help="write `{near}`",
+    effect=REFUSED,
+)
+UNUSED_OUTCOME = FaultKind(
+    name="unused outcome",
+    message="`execute` of `{name}` never returns `Outcome::{word}`",
+    help="return it where it is meant, or remove it from `Outcome`, from the interface,"
+    " and from the transitions of the script",
+    effect="a transition for this outcome is never taken",
+    accepted=True,
+)
+UNUSED_CALL = FaultKind(
+    name="unused call",
+    message="`execute` of `{name}` never returns `Outcome::{more}`: the result of `{word}`"
+    " is not used",
+    help="write `{near}`",
+    effect="the state ends with the same outcome whatever the call returns",
+    accepted=True,
+)
+NO_ANSWER_TO_STOPS = FaultKind(
+    name="no answer to stops",
+    message="`execute` of `{name}` never returns `Outcome::{word}`: a time limit or a stop"
+    " cannot end it",
+    help="add where it waits: `if (stop.requested()) {{ stop.service(); return"
+    " Outcome::{word}; }}`",
+    effect="a transition for this outcome is never taken",
+    accepted=True,
+)
+OTHER_ANSWER = FaultKind(
+    name="other answer",
+    message="`execute` of `{name}` returns `Outcome::{word}` after a stop request",
+    help="write `return Outcome::{near};`",
+    effect="a stop or a time limit counts as `{word}`: a transition for `{near}` is never taken",
+    accepted=True,
+)
+UNSET_OUTPUT = FaultKind(
+    name="unset output",
+    message="`execute` of `{name}` never sets its output key `{word}`",
+    help="write `out.{word} = ...` before a `return`, or remove the key from the"
+    " interface and from `Out`",
+    effect="a state that reads the key afterwards gets an old value, or fails",
+    accepted=True,
+)
+SKIPPED_OUTPUT = FaultKind(
+    name="skipped output",
+    message="`execute` of `{name}` can return `Outcome::{near}` without setting its output"
+    " key `{word}`",
+    help="write `out.{word} = ...` before this `return`, or remove `{word}` from"
+    " `{near}` in the `writes:` of `{type}.yml`",
+    effect="a state that reads the key afterwards gets an old value, or fails",
+    accepted=True,
+)
+EARLY_RETURN = FaultKind(
+    name="early return",
+    message="`execute` of `{name}` returns `Outcome::{near}` here before its output key"
+    " `{word}` is set",
+    help="write `out.{word} = ...` before this `return`, or lead `{near}` to a state"
+    " that does not read `{word}`",
+    effect="a state that reads the key afterwards gets an old value, or fails",
+    accepted=True,
+    early=True,
+)
 
 _EXECUTE = re.compile(r"\bexecute\s*\(([^()]*)\)")
 _STOP_COPY = re.compile(r"(?:^|,)\s*((?:const\s+)?(?:smachac\s*::\s*)?Stop\s+(\w+))\s*(?=,|$)")
@@ -53,7 +125,7 @@ def member_faults(
     found = [*signature_faults(code, body)]
     yield from found
     head = _execute(code, body)
-    if head is None or any(each.kind in ("wrong result", "wrong parameters") for each in found):
+    if head is None or any(each.kind in (WRONG_RESULT, WRONG_PARAMETERS) for each in found):
         return
     run = _body_of(body, head.end())
     unknown = [*unknown_members(code, body, run, head[1])] if run is not None else []
@@ -79,7 +151,7 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
     if result is not None:
         at = body.text.rfind(result["type"], 0, head.start())
         word = body.word(result["type"], at, at + len(result["type"]))
-        yield ClassFault(kind="wrong result", name=word, near=wanted)
+        yield ClassFault(kind=WRONG_RESULT, name=word, near=wanted)
         return
     if _count(head[1]) not in (None, len(_arguments(code))):
         marked = head.span(1) if head[1].strip() else (head.start(), head.start() + len("execute"))
@@ -90,7 +162,7 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
             named = " and ".join(f"`{each}`" for each in lacks)
             more = f"lacks the parameter{'s' if len(lacks) > 1 else ''} {named}"
         place = body.word("execute", *marked)
-        yield ClassFault(kind="wrong parameters", name=place, near=wanted, more=more)
+        yield ClassFault(kind=WRONG_PARAMETERS, name=place, near=wanted, more=more)
         return
     copied = _STOP_COPY.search(head[1])
     if copied is not None:
@@ -98,7 +170,7 @@ def signature_faults(code: ClassCode, body: Part) -> Iterator[ClassFault]:
         place = body.word(copied[1], start, start + len(copied[1]))
         near = f"smachac::Stop &{copied[2]}"
         more = f"takes `{copied[1]}` as a copy, which `Stop` does not have"
-        yield ClassFault(kind="wrong parameters", name=place, near=near, more=more)
+        yield ClassFault(kind=WRONG_PARAMETERS, name=place, near=near, more=more)
 
 
 def _execute(code: ClassCode, body: Part) -> re.Match[str] | None:
@@ -163,9 +235,9 @@ def _unused(whole: Part, body: Part, run: Part, outcomes: Words) -> Iterator[Cla
             answer = _ANSWER.search(run.text) if stop else None
             if answer is not None:
                 place = run.word(answer[2], *answer.span(1))
-                yield ClassFault(kind="other answer", name=place, near=identifier(word.text))
+                yield ClassFault(kind=OTHER_ANSWER, name=place, near=identifier(word.text))
                 continue
-            yield ClassFault(kind="no answer to stops" if stop else "unused outcome", name=word)
+            yield ClassFault(kind=NO_ANSWER_TO_STOPS if stop else UNUSED_OUTCOME, name=word)
 
 
 def _at_execute(
@@ -178,7 +250,7 @@ def _at_execute(
 ) -> ClassFault:
     """The fault that an outcome is never returned, at the call whose result decides it, or at
     `execute`."""
-    if fault.kind != "unused outcome":
+    if fault.kind is not UNUSED_OUTCOME:
         return fault
     name = fault.name.text
     declared = fault.name._replace(text=f"`{name}` is declared here")
@@ -186,9 +258,9 @@ def _at_execute(
     if call is not None:
         written = _with_outcome(code, call, name)
         if written:
-            return ClassFault(kind="unused call", name=call.word, near=written, more=name)
+            return ClassFault(kind=UNUSED_CALL, name=call.word, near=written, more=name)
     place = body.word(name, head.start(), head.start() + len("execute"))
-    return ClassFault(kind="unused outcome", name=place, also=declared)
+    return ClassFault(kind=UNUSED_OUTCOME, name=place, also=declared)
 
 
 def _with_outcome(code: ClassCode, call: UnusedCall, outcome: str) -> str:
@@ -241,7 +313,8 @@ def _unset(code: ClassCode, body: Part, run: Part, parameters: str) -> Iterator[
                 continue
             value = _local_value(run, key.name, len(run.text), named[1])
             place = fields.word(key.name, *inside.span())
-            yield ClassFault(kind="unset output", name=place, more=value)
+            help = f"write `{value}` before the `return`" if value else ""
+            yield ClassFault(kind=UNSET_OUTPUT, name=place, help=help)
 
 
 _LOCAL = re.compile(r"(?:^|[;{}])\s*(?:const\s+)?[A-Za-z_][\w:]*(?:<[\w:<>, ]*>)?\s+(\w+)\s*[={]")
@@ -280,7 +353,8 @@ def _promised(code: ClassCode, run: Part, key: str, out: str) -> ClassFault | No
     ((outcome, end),) = found
     place = run.word(key, end.start(), end.end() - 1)
     value = _local_value(run, key, end.start(), out)
-    return ClassFault(kind="skipped output", name=place, near=outcome, more=value)
+    help = f"write `{value}` before this `return`" if value else ""
+    return ClassFault(kind=SKIPPED_OUTPUT, name=place, near=outcome, help=help)
 
 
 def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault]:
@@ -305,9 +379,8 @@ def _skipped(code: ClassCode, run: Part, parameters: str) -> Iterator[ClassFault
                 if set_ and (not before or (len(before) == 1 and _only_if(run, before[0], end))):
                     place = run.word(key, end.start(), end.end() - 1)
                     later = _later(run, out, key, end.start()) if not before else None
-                    more = later.text if later is not None else ""
-                    yield ClassFault(kind="skipped output", name=place, near=outcome, more=more,
-                                     also=_set_here(later))  # fmt: skip
+                    yield ClassFault(kind=SKIPPED_OUTPUT, name=place, near=outcome,
+                                     help=_moved(later), also=_set_here(later))  # fmt: skip
 
 
 def _early(code: ClassCode, run: Part, out: str) -> Iterator[ClassFault]:
@@ -324,9 +397,13 @@ def _early(code: ClassCode, run: Part, out: str) -> Iterator[ClassFault]:
             if outcome.name != PREEMPTED and end is not None and end.start() < set_.start():
                 place = run.word(key.name, end.start(), end.end() - 1)
                 later = _later(run, out, key.name, end.start())
-                more = later.text if later is not None else ""
-                yield ClassFault(kind="early return", name=place, near=outcome.name, more=more,
-                                 also=_set_here(later))  # fmt: skip
+                yield ClassFault(kind=EARLY_RETURN, name=place, near=outcome.name,
+                                 help=_moved(later), also=_set_here(later))  # fmt: skip
+
+
+def _moved(later: Word | None) -> str:
+    """The help to set a key before a `return` too, if it is set after it; otherwise empty."""
+    return f"write `{later.text}` before this `return` too" if later is not None else ""
 
 
 def _later(run: Part, out: str, key: str, at: int) -> Word | None:

@@ -15,6 +15,9 @@ from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, converts
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value, plain
 
+REFUSED = "the C++ compiler refuses the class"
+"""The effect of most faults of a class in C++."""
+
 BY_VALUE = ("bool", "int", "float")
 """Types that are passed by value, because a copy is cheaper than a reference."""
 

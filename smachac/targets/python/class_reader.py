@@ -7,11 +7,45 @@ from collections.abc import Iterator
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFacts, ClassFault, Parameter
+from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts, ClassFault, FaultKind, Parameter
 from smachac.ir.nodes import StateType
-from smachac.pysource.class_reader import PARAMETERS
+from smachac.pysource.class_reader import NO_OUTCOMES
 from smachac.targets.interface_check import Declared
 from smachac.targets.python.ros import has_node_parameter
+
+NO_PARAMETER = FaultKind(
+    name="no parameter",
+    message="`__init__` of `{name}` does not accept `{word}`, a variable of the interface `{type}`",
+    help="add the parameter `{word}` to `__init__`",
+    near_help="rename the parameter `{near}` to `{word}`, or correct the name in the interface",
+    effect="the program passes each variable by its name: the call raises a TypeError",
+    stops=True,
+)
+REQUIRED_PARAMETER = FaultKind(
+    name="required parameter",
+    message="`__init__` of `{name}` requires `{word}`, which is not a variable of the"
+    " interface `{type}`",
+    help="give `{word}` a default value, or add it to the `variables` of `{type}.yml`"
+    " and set it at the state",
+    effect="the program makes the state without this argument: the call raises a TypeError",
+    stops=True,
+)
+OTHER_PARAMETER = FaultKind(
+    name="other parameter",
+    message="`__init__` of `{name}` requires `{word}`, but the variable of the interface"
+    " `{type}` is `{near}`",
+    help="rename the parameter `{word}` to `{near}`{more}, or the variable to `{word}`",
+    effect="the program passes each variable by its name: the call raises a TypeError",
+    stops=True,
+)
+RENAMED_PARAMETER = FaultKind(
+    name="renamed parameter",
+    message="`__init__` of `{name}` has the parameter `{word}`, but the variable of the"
+    " interface `{type}` is `{near}`",
+    help="rename the parameter `{word}` to `{near}`{more}, or the variable to `{word}`",
+    effect="the program passes each variable by its name: the call raises a TypeError",
+    stops=True,
+)
 
 
 def declared(type_: StateType, library: Library) -> Declared | None:
@@ -39,7 +73,7 @@ def _certain(type_: StateType, facts: ClassFacts) -> Iterator[ClassFault]:
     """The faults of a class. One without a constructor gets its outcomes only from a script."""
     for fault in facts.faults:
         given = "outcomes" in type_.given or type_.optional or not type_.outcomes
-        if fault.kind != "no outcomes" or not given:
+        if fault.kind is not NO_OUTCOMES or not given:
             yield fault
 
 
@@ -58,23 +92,28 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
     given = passed | type_.given | {"node" if node else "", "outcomes" if type_.optional else ""}
     required = [p for p in facts.parameters if p.required and p.word.text not in given]
     if len(unknown) == len(required) == 1 and guess(unknown[0]) is None:
-        yield ClassFault(kind="other parameter", name=required[0].word, near=unknown[0],
-                         more=_also(required[0]))  # fmt: skip
+        yield _renamed(OTHER_PARAMETER, required[0], unknown[0])
         return
-    extra = [p for p in facts.parameters if p.word.text not in {*given, *PARAMETERS, "node"}]
+    extra = [p for p in facts.parameters if p.word.text not in {*given, *STATE_PARAMETERS, "node"}]
     if len(unknown) == len(extra) == 1 and guess(unknown[0]) is None:
-        yield ClassFault(kind="renamed parameter", name=extra[0].word, near=unknown[0],
-                         more=_also(extra[0]))  # fmt: skip
+        yield _renamed(RENAMED_PARAMETER, extra[0], unknown[0])
         return
     meant = set()
     for name in unknown:
         near = guess(name)
         meant.add(near)
         place = next((p.word.span for p in facts.parameters if p.word.text == near), None)
-        yield ClassFault(kind="no parameter", name=Word(name, place or facts.name.span), near=near)
+        word = Word(name, place or facts.name.span)
+        yield ClassFault(kind=NO_PARAMETER, name=word, near=near, variable=name)
     for each in required:
         if each.word.text not in meant:
-            yield ClassFault(kind="required parameter", name=each.word)
+            yield ClassFault(kind=REQUIRED_PARAMETER, name=each.word)
+
+
+def _renamed(kind: FaultKind, parameter: Parameter, variable: str) -> ClassFault:
+    """The fault that a parameter has another name than a variable of the interface."""
+    return ClassFault(kind=kind, name=parameter.word, near=variable, variable=variable,
+                      more=_also(parameter))  # fmt: skip
 
 
 def _also(parameter: Parameter) -> str:
