@@ -10,7 +10,6 @@ from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.code_slots import CodeSlot, code_slots
 from smachac.analysis.control_flow import Linear, correction, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
-from smachac.analysis.empty_remaps import EmptyRemap, empty_remaps
 from smachac.analysis.error_recovery import corrected_machine, with_meant_keys
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
@@ -252,11 +251,6 @@ class Context:
     def missing_keys(self, *causes: Cause) -> list[Missing]:
         """The keys that are missing for one of these causes, in the order of the script."""
         return [each for each in self._missing_keys if each.cause in causes]
-
-    @cached_property
-    def empty_remaps(self) -> tuple[EmptyRemap, ...]:
-        """The remappings of optional keys to keys that nothing sets."""
-        return empty_remaps(self.corrected_flow, self._missing_keys)
 
     @cached_property
     def lost_outputs(self) -> tuple[Lost, ...]:

@@ -13,6 +13,7 @@ from smachac.driver import CODES
 from smachac.frontend.config import Project, read_project
 from tests.checks.test_first_scripts import reported
 from tests.repair.test_moved_fields import CHOOSE, JOIN
+from tests.trust.judged_repairs import printed
 
 Row = tuple[str, str, str | None]
 
@@ -185,12 +186,10 @@ NO_WAY = "`EACH` has no other way to end with `tray_empty`"
         ("exhausted_outcome: empty",
          [("SM104", "empty", f"write `exhausted_outcome: tray_empty`: {NO_WAY}")]),
         ("tags: []", [("SM104", "EACH", f"write `exhausted_outcome: tray_empty`: {NO_WAY}")]),
-        ("final_outcome_map: {exhausted: empty}",
-         [("SM104", "EACH", f"write `final_outcome_map: {{exhausted: tray_empty}}`: {NO_WAY}")]),
     ],
 )  # fmt: skip
 def test_the_outcome_after_the_last_item(fields: str, found: list[Row]) -> None:
     assert [
-        each for each in reported({"main.yml": TRAY.replace("FIELDS", fields)})
+        each for each in printed({"main.yml": TRAY.replace("FIELDS", fields)})
         if each[0] not in ("SM208", "SM209")
     ] == found  # fmt: skip

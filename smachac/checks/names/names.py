@@ -27,7 +27,6 @@ from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.names.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.rule import rule
-from smachac.checks.userdata.meant_keys import meant_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Repair
 from smachac.diagnostics.source import Span, Word
@@ -35,7 +34,7 @@ from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, words
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
-from smachac.ir.outcome_names import OF_SMACH, PREEMPTED
+from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import outcome_names
 
 EXCEPTIONS = "error"
@@ -377,12 +376,7 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               transitions: {done: picked, slipped: lost}
     """
     misnamed = frozenset([path for path, _ in context.misnamed])
-    found = context.at_containers(_unknown_outcomes, misnamed)
-    loops: set[str] = set()
-    if any(each.span.text == PREEMPTED for each in found):
-        # The states in which `for_each` is probably missing, which SM301 reports.
-        loops = {each.state for each in context.of_machine(meant_keys).values() if each.looped}
-    yield from (each for each in found if each.span.text != PREEMPTED or each.node not in loops)
+    yield from context.at_containers(_unknown_outcomes, misnamed)
 
 
 def _unknown_outcomes(
