@@ -18,7 +18,7 @@ from smachac.analysis.code_slots import accepts, code_slots, free_in, parameters
 from smachac.analysis.context import Context
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.script import NameFix, undefined_name
 from smachac.frontend.loader import Library
@@ -82,12 +82,12 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
     attributes_used = [each for each in found if isinstance(each, _Attribute)]
     known = _known(machine, library) if used or classes else None
     own_base = machine.base in types and not types[machine.base].built_in
+    own = _own_sources(machine, library) if used else []
     for use in used:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
             if use.name.id not in imported and not _lacks_parameter(use, types):
-                fix = _import_fix(use, machine, library) or _fix(use, imported)
-                fix = fix or _own_fix(use, machine, library)
+                fix = _import_fix(use, own, library) or _fix(use, imported) or _own_fix(use, own)
                 by_look = _by_look(use.node, use.code)
                 yield undefined_name(
                     use.span,
@@ -117,10 +117,7 @@ def _missing_attributes(
     """The attributes of modules of Python's library that these do not have."""
     if not found:
         return
-    from smachac.targets.python.template_sources import template_sources
-
-    sources = template_sources(machine, library)
-    texts = [source.text for file, source in sources if library.own_template(file) is not None]
+    texts = [source.text for source in _own_sources(machine, library)]
     for code, module, node, meant in found:
         if only_imported(module, texts) and not is_shadowed(module, library):
             help = "correct the name"
@@ -288,33 +285,36 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
     return NameFix(f"did you mean `{near}`?") if near is not None else None
 
 
-def _import_fix(use: _Use, machine: Machine, library: Library) -> NameFix | None:
-    """The cure of a name that a module of the project defines from which a template of the user
-    imports other names."""
+def _own_sources(machine: Machine, library: Library) -> list[Source]:
+    """The templates of the user that a machine needs."""
     from smachac.targets.python.template_sources import template_sources
 
+    sources = template_sources(machine, library)
+    return [source for file, source in sources if library.own_template(file) is not None]
+
+
+def _import_fix(use: _Use, own: Sequence[Source], library: Library) -> NameFix | None:
+    """The cure of a name that a module of the project defines from which a template of the user
+    imports other names."""
     name = use.name.id
     if name in (*USERDATA, "params") or name in {key.name for key in use.node.inputs}:
         return None
-    for file, source in template_sources(machine, library):
-        for line in _FROM.finditer(source.text) if library.own_template(file) is not None else ():
+    for source in own:
+        for line in _FROM.finditer(source.text):
             module = load_module(line[1], library)
             if isinstance(module, Module) and not module.dynamic and name in module.names:
                 return NameFix(f"write `{line[0].strip()}, {name}` in `{source.name}`")
     return None
 
 
-def _own_fix(use: _Use, machine: Machine, library: Library) -> NameFix | None:
+def _own_fix(use: _Use, own: Sequence[Source]) -> NameFix | None:
     """The cure of a name that is one slip away from one that the user's templates define or
     import."""
-    from smachac.targets.python.template_sources import template_sources
-
     names: set[str] = set()
-    for file, source in template_sources(machine, library):
-        if library.own_template(file) is not None:
-            names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
-            names.update(word for line in _IMPORTED.findall(source.text)
-                         for word in _WORDS.findall(line))  # fmt: skip
+    for source in own:
+        names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
+        names.update(word for line in _IMPORTED.findall(source.text)
+                     for word in _WORDS.findall(line))  # fmt: skip
     near = guesser(sorted(names)).sure(use.name.id)
     if near is None:
         return None
