@@ -21,10 +21,11 @@ from smachac.ir.traversal import walk
 from smachac.pysource.machines.class_facts import ClassReader
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
-from smachac.pysource.machines.project import Repository
+from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
-from smachac.pysource.source import python_text, syntax_error
+from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
+from smachac.pysource.source import syntax_error
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
@@ -87,7 +88,7 @@ class PythonProject:
         library = disk_library(path, report, disk=self.disk, codes=CODES)
         if source is None:
             return PythonFile(path=path, source=None, graphs=(), report=report)
-        if python_text(source, template=False) is None:
+        if module_text(source) is None:
             report.append(_unreadable(source))
             found = grouped(apply_severities(in_order(report), library.policy))
             return PythonFile(path=path, source=source, graphs=(), report=found)
@@ -180,13 +181,16 @@ def builds_machines(source: Source) -> bool:
 
 
 def _unreadable(source: Source) -> Diagnostic:
+    if looks_like_python2(source) and not is_installed():
+        span = Span(source, 0, 0)
+        return errors.unreadable_module(span, "this is code for Python 2", INSTALL)
     word = syntax_error(source)
     if word is None:
         span = Span(source, 0, 0)
         help = "split the file, or end its lines with a line feed"
         return errors.unreadable_module(span, "this file is too long or too deeply nested", help)
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
-    help = "correct the code at the mark; code for Python 2 is not read"
+    help = "correct the code at the mark"
     return errors.unreadable_module(word.span, message, help)
 
 
