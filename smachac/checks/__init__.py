@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from smachac.analysis.context import Context
-from smachac.checks.classes import class_code
-from smachac.checks.code import code_slots, expressions
+from smachac.checks.classes import class_code, interfaces, state_code, template_blocks
+from smachac.checks.code import code_slots, expressions, undefined_names
 from smachac.checks.concurrence import concurrence, races
 from smachac.checks.names import names
 from smachac.checks.outcomes import failures, outcomes, reachability
@@ -30,7 +30,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnost
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import steps_in_script
 
-RULES: tuple[Rule, ...] = (
+MACHINE_RULES: tuple[Rule, ...] = (
     expressions.bad_expression,
     names.unknown_target,
     names.unknown_outcome,
@@ -102,7 +102,20 @@ RULES: tuple[Rule, ...] = (
     properties.unknown_event,
     properties.property_undecided,
 )
-"""All rules, in the order of their codes."""
+"""The rules that need the machine alone, in the order of their codes."""
+
+CODE_RULES: tuple[Rule, ...] = (
+    interfaces.interfaces_differ,
+    interfaces.stale_code,
+    template_blocks.unprinted_parts,
+    state_code.code_not_found,
+    state_code.unusable_class,
+)
+"""The rules about the code of state types, in the order of their codes. A build runs them too."""
+
+RULES = (*MACHINE_RULES, *CODE_RULES, undefined_names.undefined_name)
+"""All rules. Those that need the code of the project (`Context.project`) come last: a report lists
+the files in the order of their first finding."""
 
 PROBLEMS = workspace.PROBLEMS
 

@@ -10,8 +10,9 @@ smacha_context.py has their variables.
 from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
-from smachac.frontend.loader import Library, Ros
+from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
+from smachac.pysource.ros_names import Ros
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python import ros

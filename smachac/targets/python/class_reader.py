@@ -10,7 +10,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
 from smachac.ir.nodes import StateType
 from smachac.pysource.class_reader import NO_OUTCOMES, PARAMETERS
-from smachac.targets.interface_check import Declared
+from smachac.pysource.user_code import Declared
 from smachac.targets.python.ros import has_node_parameter
 
 NO_PARAMETER = FaultKind(
