@@ -10,6 +10,9 @@ from smachac.ir.function_facts import ArgumentUses
 from smachac.ir.message_types import PARTS, DefinitionKind
 from smachac.records import dataclass
 
+STATE_PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
+"""The parameters of `smach.State.__init__` with lists of names, in their order."""
+
 ANY = "*"
 """In place of outcomes that are not known."""
 

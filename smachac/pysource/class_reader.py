@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
+from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts, ClassFault, FaultKind, Parameter
 from smachac.pysource.base_calls import arguments_to_base, base_call_faults, copied
 from smachac.pysource.call_slips import call_slips
 from smachac.pysource.class_members import missing_constants
@@ -166,9 +166,6 @@ NO_LIST = FaultKind(
     help="write `{word}=[...]`",
     near_help="write `{near}`",
 )
-
-PARAMETERS = ("outcomes", "input_keys", "output_keys", "io_keys")
-"""The parameters of `smach.State.__init__` with lists of names, in their order."""
 
 REGISTERS = re.compile(r"\.(register)?_(outcomes|(io|input|output)_keys)\b")
 """Methods and attributes that change the declared interface; a class that has one is not read."""
@@ -559,8 +556,12 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
         if not isinstance(call, ast.Call) or not _is_super(call):
             continue
         for keyword in call.keywords:
-            if keyword.arg is not None and keyword.arg not in PARAMETERS and own.root == "state":
-                yield unknown_argument(module.text, keyword, PARAMETERS)
+            if (
+                keyword.arg is not None
+                and keyword.arg not in STATE_PARAMETERS
+                and own.root == "state"
+            ):
+                yield unknown_argument(module.text, keyword, STATE_PARAMETERS)
         for key, value in (_given(call) or {}).items():
             span = module.text.span(value)
             for item in value.elts if isinstance(value, ast.List | ast.Tuple | ast.Set) else ():
@@ -569,7 +570,7 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
             kinds = ast.Tuple | ast.Set | ast.Dict | ast.SetComp | ast.GeneratorExp
             text = value.value if isinstance(value, ast.Constant) else None
             wrong = isinstance(text, str) or (key != "outcomes" and isinstance(value, kinds))
-            if key not in PARAMETERS or not wrong or module.text.is_filled(span):
+            if key not in STATE_PARAMETERS or not wrong or module.text.is_filled(span):
                 continue
             items = [word.text for word in _words(module.text, value) or ()]
             items = [text] if isinstance(text, str) else items
@@ -615,7 +616,7 @@ def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
         return None
     if not own.binds("__init__"):
         place = name_span(own.classes[0][0].text, own.classes[0][1])
-        fixed = (Parameter(word=Word(name, place), required=False) for name in PARAMETERS)
+        fixed = (Parameter(word=Word(name, place), required=False) for name in STATE_PARAMETERS)
         return tuple(fixed) if own.root == "state" else None
     found = own.method("__init__")
     if found is None or found[1].decorator_list or found[1].args.kwarg is not None:
@@ -737,11 +738,15 @@ def _given(call: ast.Call) -> dict[str, ast.expr] | None:
         arguments = arguments[1:]  # the first one is `self`
     if any(isinstance(each, ast.Starred) for each in arguments):
         return None
-    found: dict[str, ast.expr] = dict(zip(PARAMETERS, arguments, strict=False))
+    found: dict[str, ast.expr] = dict(zip(STATE_PARAMETERS, arguments, strict=False))
     for keyword in call.keywords:
         if keyword.arg is None:
             return None
-        meant = keyword.arg if keyword.arg in PARAMETERS else guesser(PARAMETERS)(keyword.arg)
+        meant = (
+            keyword.arg
+            if keyword.arg in STATE_PARAMETERS
+            else guesser(STATE_PARAMETERS)(keyword.arg)
+        )
         if meant is None:
             return None
         found.setdefault(meant, keyword.value)

@@ -7,7 +7,6 @@ The simulation and the checker expand files in the same way.
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -50,6 +49,8 @@ def expand(path: Path, arguments: Mapping[str, str], packages: Packages) -> Expa
     `arguments` are the values of `<xacro:arg>`. `packages` are folders for `$(find PACKAGE)`, which
     `files.package_folders` completes.
     """
+    import subprocess  # slow to load, and few scripts have macro files
+
     task = {
         "path": sys.path,
         "file": str(path),

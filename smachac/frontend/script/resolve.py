@@ -29,7 +29,6 @@ from smachac.frontend.messages.message_definitions import (
     other_types_of,
 )
 from smachac.frontend.resolved_script import TIMER, Script, State, Sugar, no_states, unknown_state
-from smachac.frontend.robots.robots import robot_of
 from smachac.frontend.schema import FieldOwner
 from smachac.frontend.script.kept import Kept, KeptCall, same_objects
 from smachac.frontend.script.params import (
@@ -98,6 +97,7 @@ from smachac.frontend.types.type_annotations import (
     typed,
 )
 from smachac.ir.nodes import FixedParam, Preset, StateType
+from smachac.ir.robot import Robot
 from smachac.pysource.template_sources import TEMPLATE_FILES
 from smachac.records import dataclass, field
 
@@ -220,7 +220,7 @@ class _Resolver:
             self.report[:] = one_for_each_template(one_for_each_param(self.report, entries))
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
-        robot = None if is_wrong else robot_of(base, source, self.library, self.report)
+        robot = None if is_wrong else self._robot(base, source)
         if "types" in entries:
             self.uses.types |= explain_aliases(self.aliases, source, self.report)
             self.uses.aliases(entries["types"].value, self.report)
@@ -243,6 +243,14 @@ class _Resolver:
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
             aliases=self.aliases,
         )
+
+    def _robot(self, base: State, source: Source) -> Robot | None:
+        """The robot of a script. Scripts without one do not load what reads descriptions."""
+        if base.robot is None and base.scene is None and "robot" not in base.type.variables:
+            return None
+        from smachac.frontend.robots.robots import robot_of
+
+        return robot_of(base, source, self.library, self.report)
 
     def has_too_many_keys(self) -> bool:
         """Whether the script has too much userdata, which is reported where most of it is."""

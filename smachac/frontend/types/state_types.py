@@ -44,7 +44,7 @@ from smachac.frontend.types.value_facts import (
     limits_of,
     named,
 )
-from smachac.ir.class_facts import ClassFacts
+from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts
 from smachac.ir.nodes import (
     FunctionResult,
     Key,
@@ -57,7 +57,6 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
-from smachac.pysource.class_reader import PARAMETERS
 from smachac.pysource.template_sources import TEMPLATE_FILES
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
@@ -635,7 +634,7 @@ def _parameters(facts: ClassFacts | None) -> dict[str, VariableType]:
     return {
         each.word.text: VariableType(name=each.word.text, required=each.required)
         for each in known or ()
-        if each.word.text not in PARAMETERS
+        if each.word.text not in STATE_PARAMETERS
     }
 
 

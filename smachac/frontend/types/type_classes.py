@@ -10,7 +10,6 @@ from smachac.diagnostics.source import NOWHERE, Word
 from smachac.frontend.loader import Library
 from smachac.frontend.types import smacha_meta
 from smachac.ir.class_facts import ClassFacts, StateCall
-from smachac.pysource.class_reader import read_module, read_template
 
 ALL_GIVEN = frozenset(["variables", "input_keys", "output_keys", "outcomes"])
 
@@ -21,6 +20,8 @@ def class_facts(
     """The facts about the Python class, without parts that depend on what a script declares."""
     if word is None:
         return None
+    from smachac.pysource.class_reader import read_module, read_template  # few scripts have classes
+
     if ":" in word.text:
         facts = read_module(word, library)
     else:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from smachac.diagnostics.source import NOWHERE, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.loader import Library
-from smachac.ir.class_facts import ClassFacts, ClassFault, FaultKind, Parameter
+from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts, ClassFault, FaultKind, Parameter
 from smachac.ir.nodes import StateType
-from smachac.pysource.class_reader import NO_OUTCOMES, PARAMETERS
+from smachac.pysource.class_reader import NO_OUTCOMES
 from smachac.pysource.user_code import Declared
 from smachac.targets.python.ros import has_node_parameter
 
@@ -94,7 +94,7 @@ def _constructor_faults(type_: StateType, facts: ClassFacts, node: bool) -> Iter
     if len(unknown) == len(required) == 1 and guess(unknown[0]) is None:
         yield _renamed(OTHER_PARAMETER, required[0], unknown[0])
         return
-    extra = [p for p in facts.parameters if p.word.text not in {*given, *PARAMETERS, "node"}]
+    extra = [p for p in facts.parameters if p.word.text not in {*given, *STATE_PARAMETERS, "node"}]
     if len(unknown) == len(extra) == 1 and guess(unknown[0]) is None:
         yield _renamed(RENAMED_PARAMETER, extra[0], unknown[0])
         return
