@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.pysource.imports import missing_in_template
 from smachac.pysource.template_sources import template_sources, uses_own_templates
 from smachac.pysource.user_code import StateFault
 
@@ -86,6 +85,8 @@ def _template_imports(context: Context) -> Iterator[Finding]:
         return
     if not uses_own_templates(machine, project.library):
         return
+    from smachac.pysource.imports import missing_in_template
+
     for file, source in template_sources(machine, project.library):
         if project.library.own_template(file) is not None:
             for fault, is_printed in missing_in_template(source, project.library):

@@ -33,7 +33,6 @@ from smachac.pysource.library_names import (
     missing_name,
     only_imported,
 )
-from smachac.pysource.modules import Module, load_module
 from smachac.pysource.ros_names import importable, message_module
 from smachac.pysource.template_sources import template_sources
 from smachac.pysource.user_code import UserCode
@@ -367,6 +366,8 @@ def _import_fix(use: _Use, machine: Machine, library: UserCode) -> NameFix | Non
     name = use.name.id
     if name in (*USERDATA, "params") or name in {key.name for key in use.node.inputs}:
         return None
+    from smachac.pysource.modules import Module, load_module
+
     for file, source in template_sources(machine, library):
         for line in _FROM.finditer(source.text) if library.own_template(file) is not None else ():
             module = load_module(line[1], library)

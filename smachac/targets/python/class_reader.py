@@ -48,11 +48,8 @@ RENAMED_PARAMETER = FaultKind(
 )
 
 
-def declared(type_: StateType, library: Library) -> Declared | None:
-    """The interface that the class of a state type declares; None where nothing is known."""
-    facts = type_.class_facts
-    if facts is None:
-        return None
+def declared(type_: StateType, facts: ClassFacts, library: Library) -> Declared:
+    """The interface that the class of a state type declares, from the facts about it."""
     code = type_.code.get("python", "")
     name = code if ":" in code or facts.name is None else facts.name.text
     node = library.ros == 2 and has_node_parameter(type_)
