@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from smachac.analysis.context import Context
-from smachac.checks.classes import class_code, interfaces, state_code, template_blocks
-from smachac.checks.code import code_slots, expressions, undefined_names
+from smachac.checks.classes import class_code, interfaces, template_blocks, unusable_code
+from smachac.checks.code import callables, expressions, undefined_names
 from smachac.checks.concurrence import concurrence, races
 from smachac.checks.names import names
 from smachac.checks.outcomes import failures, outcomes, reachability
@@ -68,9 +68,9 @@ MACHINE_RULES: tuple[Rule, ...] = (
     initial_values.overruled_value,
     unset_outputs.unwritten_output,
     class_code.never_returned,
-    code_slots.not_a_function,
-    code_slots.wrong_arguments,
-    code_slots.wrong_result,
+    callables.not_a_function,
+    callables.wrong_arguments,
+    callables.wrong_result,
     stale_keys.stale_key,
     stores.dead_store,
     initial_values.secret_in_script,
@@ -108,8 +108,8 @@ CODE_RULES: tuple[Rule, ...] = (
     interfaces.interfaces_differ,
     interfaces.stale_code,
     template_blocks.unprinted_parts,
-    state_code.code_not_found,
-    state_code.unusable_class,
+    unusable_code.code_not_found,
+    unusable_code.unusable_class,
 )
 """The rules about the code of state types, in the order of their codes. A build runs them too."""
 

@@ -119,9 +119,9 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     """The interface that the class of a state type declares; None where nothing is known."""
     if type_.class_facts is None:
         return None
-    from smachac.targets.python import class_reader
+    from smachac.targets.python import declared_interface
 
-    return class_reader.declared(type_, type_.class_facts, library)
+    return declared_interface.declared(type_, type_.class_facts, library)
 
 
 TARGET = Target(
