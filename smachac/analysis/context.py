@@ -33,12 +33,10 @@ from smachac.ir import nodes, script_paths, traversal
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
 from smachac.ir.secret_keys import SecretKeys, secret_keys
-from smachac.pysource.user_code import ProjectCode, StateFault
+from smachac.pysource.user_code import CodeFacts, ProjectCode
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Judgement
-    from smachac.analysis.state_code import StateClass
-    from smachac.pysource.template_bodies import TemplateBody
 
 C = TypeVar("C")
 T = TypeVar("T")
@@ -327,46 +325,20 @@ class Context:
         return tuple(judge(self.machine.properties, self.machine.root, self.claims))
 
     @cached_property
-    def _own_types(self) -> bool:
-        """Whether a state type has an interface, a class or a template of the user."""
+    def code_facts(self) -> CodeFacts:
+        """The facts about the classes and templates of the user; none without such code."""
         if self.project is None:
-            return False
+            return CodeFacts()
         own = self.project.library.own_template
-        return any(
+        if not any(
             type_.class_facts is not None or own(file) is not None
             for name, type_ in self.machine.state_types.items()
             for file in (f"{name}.yml", type_.code.get("python", name))
-        )
+        ):
+            return CodeFacts()
+        from smachac.analysis.state_code import code_facts
 
-    @cached_property
-    def state_classes(self) -> tuple[StateClass, ...]:
-        """The user's classes of the state types, with the interfaces that they declare."""
-        if self.project is None or not self._own_types:
-            return ()
-        from smachac.analysis.state_code import state_classes
-
-        return tuple(state_classes(self.machine, self.project))
-
-    @cached_property
-    def template_bodies(self) -> tuple[TemplateBody, ...]:
-        """The blocks `body` of the user's templates, if a Python program is judged."""
-        if self.project is None or not self._own_types:
-            return ()
-        if self.project.target not in ("", "python"):
-            return ()
-        from smachac.pysource.template_bodies import template_bodies
-
-        return tuple(template_bodies(self.machine, self.project.library))
-
-    @cached_property
-    def state_faults(self) -> tuple[StateFault, ...]:
-        """The faults in the code of the state types."""
-        if self.project is None or not self._own_types:
-            return ()
-        from smachac.analysis.state_code import state_faults
-
-        classes, bodies = self.state_classes, self.template_bodies
-        return tuple(state_faults(self.machine, self.project, classes, bodies))
+        return code_facts(self.machine, self.project)
 
     @cached_property
     def failures(self) -> tuple[Failure, ...]:

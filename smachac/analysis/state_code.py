@@ -11,20 +11,21 @@ import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import replace
-from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Related
-from smachac.diagnostics.source import NOWHERE, Span, Word
+from smachac.diagnostics.source import NOWHERE, Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind, Parameter
 from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import inputs_from, outer_outputs, remapping, walk
 from smachac.pysource.import_cycles import circular_imports
 from smachac.pysource.smacha_templates import call_faults, guard_faults
-from smachac.pysource.template_bodies import TemplateBody, body_faults
+from smachac.pysource.template_bodies import TemplateBody, body_faults, template_bodies
 from smachac.pysource.user_code import (
+    CodeFacts,
     Declared,
     ProjectCode,
+    StateClass,
     StateFault,
     UserCode,
     languages,
@@ -48,21 +49,6 @@ MISSING_ARGUMENT = FaultKind(
 )
 
 
-class StateClass(NamedTuple):
-    """The class of a state type in one language, with the first state of the type."""
-
-    leaf: Leaf
-    type: StateType
-    language: str
-    declared: Declared
-
-    @property
-    def user(self) -> Related:
-        """The place of the first state."""
-        text = f"`{self.leaf.name}` is of the type `{self.type.name}`"
-        return Related(span=self.leaf.span, message=text)
-
-
 def state_classes(machine: Machine, project: ProjectCode) -> Iterator[StateClass]:
     """The classes of the state types that are read. For a program, those in its language; not that
     of a type without an interface, whose template may belong to another project."""
@@ -74,23 +60,40 @@ def state_classes(machine: Machine, project: ProjectCode) -> Iterator[StateClass
                 yield StateClass(leaf, type_, language, found)
 
 
-def state_faults(
-    machine: Machine,
-    project: ProjectCode,
-    classes: Sequence[StateClass],
-    bodies: Sequence[TemplateBody],
-) -> Iterator[StateFault]:
-    """The faults of the classes and templates of a machine, at the first state of each type."""
-    found = [fault for one in classes for fault in _class_faults(one, machine, project.target)]
-    if project.target not in ("", "python"):
-        yield from _once(found)
-        return
-    if not any(item.fault.kind.missing for item in found):
-        found += _cycles(machine, project.library)
-    yield from _once([*found, *_argument_faults(machine, project.library)])
-    yield from guard_faults(machine, project.library)
-    yield from call_faults(machine)
-    yield from body_faults(machine, project.library, bodies)
+def code_facts(machine: Machine, project: ProjectCode) -> CodeFacts:
+    """The facts about the code of the user, those of a state type at its first state."""
+    classes = tuple(state_classes(machine, project))
+    bodies: tuple[TemplateBody, ...] = ()
+    found: list[StateFault] = []
+    files: list[Source] = []
+    for of in classes:
+        own = [*_class_faults(of, machine, project.target)]
+        found += own
+        files += [*map(_file, own), *_declared_in(of.declared)]
+    if project.target in ("", "python"):
+        if not any(item.fault.kind.missing for item in found):
+            found += _cycles(machine, project.library)
+        found += _argument_faults(machine, project.library)
+        bodies = tuple(template_bodies(machine, project.library))
+    found = [*_once(found)]
+    if project.target in ("", "python"):
+        found += [*guard_faults(machine, project.library), *call_faults(machine)]
+        files += map(_file, found)
+        files += [body.template for body in bodies]
+        found += body_faults(machine, project.library, bodies)
+    return CodeFacts(classes, bodies, tuple(found), tuple(dict.fromkeys(files)))
+
+
+def _file(item: StateFault) -> Source:
+    return item.fault.name.span.source
+
+
+def _declared_in(declared: Declared) -> Iterator[Source]:
+    """The files in which a class declares its interface."""
+    for words in (declared.outcomes, declared.inputs, declared.outputs):
+        yield from (word.span.source for word in words or ())
+    yield from (difference.word.span.source for difference in declared.others)
+    yield declared.span.source
 
 
 def _once(found: Iterable[StateFault]) -> Iterator[StateFault]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from itertools import groupby
 
 from smachac.analysis.context import Context
 from smachac.checks.classes import class_code, interfaces, template_blocks, unusable_code
@@ -125,10 +126,22 @@ def check_machine(
 ) -> Report:
     """The findings of all rules over a machine, in the order of the rules. `context`: the context
     of the machine, for a caller that keeps the facts which the rules need."""
-    return list(_diagnostics(context or Context(machine), rules))
+    context = context or Context(machine)
+    found: Report = []
+    for about_code, some in groupby(rules, CODE_RULES.__contains__):
+        part = _diagnostics(context, some)
+        found += _in_order_of_use(part, context) if about_code else part
+    return found
 
 
-def _diagnostics(context: Context, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
+def _in_order_of_use(found: Iterable[Diagnostic], context: Context) -> Report:
+    """The findings about code, those in the file of the first state first: a report lists the files
+    in the order of their first finding."""
+    ranks = {file: rank for rank, file in enumerate(context.code_facts.files)}
+    return sorted(found, key=lambda item: ranks.get(item.span.source, len(ranks)))
+
+
+def _diagnostics(context: Context, rules: Iterable[Rule]) -> Iterator[Diagnostic]:
     for rule in rules:
         for finding in rule.function(context):
             plain = context.plain_paths

@@ -4,7 +4,7 @@ disk; the interface that a class declares; and a fault in the code of a state ty
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import Source, Span, Word
@@ -13,6 +13,9 @@ from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
 from smachac.pysource.ros_names import DEFAULT_ROS, Ros
 from smachac.records import dataclass, field
+
+if TYPE_CHECKING:
+    from smachac.pysource.template_bodies import TemplateBody
 
 Words: TypeAlias = "tuple[Word, ...]"
 
@@ -94,6 +97,32 @@ class StateFault(NamedTuple):
     class_name: str
     related: tuple[Related, ...]
     lists: str = "outcomes=[...]"
+
+
+class StateClass(NamedTuple):
+    """The class of a state type in one language, with the first state of the type."""
+
+    leaf: Leaf
+    type: StateType
+    language: str
+    declared: Declared
+
+    @property
+    def user(self) -> Related:
+        """The place of the first state."""
+        text = f"`{self.leaf.name}` is of the type `{self.type.name}`"
+        return Related(span=self.leaf.span, message=text)
+
+
+class CodeFacts(NamedTuple):
+    """The facts about the code of the state types of a machine: the classes that were read, the
+    blocks `body` of templates, the faults, and the files of these in the order in which the states
+    use them."""
+
+    classes: tuple[StateClass, ...] = ()
+    bodies: tuple[TemplateBody, ...] = ()
+    faults: tuple[StateFault, ...] = ()
+    files: tuple[Source, ...] = ()
 
 
 def languages(type_: StateType) -> tuple[str, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
 from smachac.checks.rule import rule
@@ -13,10 +12,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import renamed_name
 from smachac.ir.nodes import StateType
-from smachac.pysource.user_code import Declared, Difference, Words
-
-if TYPE_CHECKING:
-    from smachac.analysis.state_code import StateClass
+from smachac.pysource.user_code import Declared, Difference, StateClass, Words
 
 
 @rule(
@@ -77,7 +73,7 @@ def interfaces_differ(context: Context) -> Iterator[Finding]:
             def execute(self, userdata):
                 return "done"
     """
-    for of in context.state_classes:
+    for of in context.code_facts.classes:
         differences = (
             [*_differences(of.type, _judged(of, context))] if not of.declared.stale else []
         )
@@ -141,7 +137,7 @@ def stale_code(context: Context) -> Iterator[Finding]:
         };
         }
     """
-    for of in context.state_classes:
+    for of in context.code_facts.classes:
         number = of.declared.stale
         if number is not None:
             differences = [*_differences(of.type, of.declared)]

@@ -25,7 +25,7 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 
 def _unprinted_parts(context: Context) -> Iterator[Finding]:
-    for body in context.template_bodies:
+    for body in context.code_facts.bodies:
         yield from _tests(body)
         yield from _not_printed(body)
 

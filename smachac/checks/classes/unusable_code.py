@@ -71,7 +71,7 @@ def code_not_found(context: Context) -> Iterator[Finding]:
             def execute(self, userdata):
                 return "done"
     """
-    for item in context.state_faults:
+    for item in context.code_facts.faults:
         if item.fault.kind.missing:
             yield _finding(item)
     yield from _template_imports(context)
@@ -163,7 +163,7 @@ def unusable_class(context: Context) -> Iterator[Finding]:
                 return "done"
     """
     built = context.project is not None and context.project.target
-    for item in context.state_faults:
+    for item in context.code_facts.faults:
         kind = item.fault.kind
         if not kind.missing:
             yield _finding(item, None if built or kind.stops else Severity.WARNING)
