@@ -2,6 +2,8 @@
 PYTHON ?=
 ARGS ?=
 export PYTHON
+# Where this is set, each process of tests rewrites the assertions of Hypothesis again.
+export PYTHONDONTWRITEBYTECODE :=
 
 RUN := .venv/bin/python -m
 SMACHAC := .venv/bin/smachac

@@ -196,6 +196,16 @@ def near_targets(folder: Path, size: int) -> list[str]:
     return check(folder, "\n".join(text) + "\n")
 
 
+@hostile(5_000)
+def wrong_targets_of_a_state(folder: Path, size: int) -> list[str]:
+    outcomes, steps = words("o%(n)d", size), words("o%(n)d: T%(n)d", size)
+    return check(
+        folder,
+        f"{HEAD}states:\n- A: {{template: ScriptedState, outcomes: [{outcomes}],"
+        f" transitions: {{{steps}}}}}\n",
+    )
+
+
 @hostile(10_000)
 def wrong_outcomes(folder: Path, size: int) -> list[str]:
     return check(folder, chain(size).replace("transitions: {ok:", "transitions: {kko:"))
@@ -323,6 +333,14 @@ def input_keys(folder: Path, size: int) -> list[str]:
 @hostile(20_000)
 def unset_keys(folder: Path, size: int) -> list[str]:
     return check(folder, state(f", input_keys: [{words('k%(n)d', size)}]", "userdata: {a: 1}\n"))
+
+
+@hostile(5_000)
+def unset_beside_unread_keys(folder: Path, size: int) -> list[str]:
+    """Keys that nothing sets, and presets that nothing reads, all of them near one another."""
+    presets = words("key_%(n)06d: 1", size)
+    names = ", ".join(f"key_{number + 500_000:06}" for number in range(size))
+    return check(folder, state(f", input_keys: [{names}]", f"userdata: {{{presets}}}\n"))
 
 
 @hostile(20_000)

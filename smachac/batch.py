@@ -9,6 +9,7 @@ import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
@@ -24,7 +25,7 @@ from smachac.ir.traversal import outer_inputs, outer_outputs
 from smachac.records import dataclass, field
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Batch:
     """The reports of several scripts by name, in the order given.
 
@@ -37,7 +38,7 @@ class Batch:
     uses: Mapping[str, frozenset[str]]
     analyses: Mapping[str, Analysis] = field(default_factory=dict, compare=False, repr=False)
 
-    @property
+    @cached_property
     def report(self) -> Report:
         """All findings in order; a finding in a shared sub-script appears once."""
         return in_order(item for report in self.reports.values() for item in report)

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.code_slots import CodeSlot, code_slots
-from smachac.analysis.control_flow import Linear, corrected, endless_states
+from smachac.analysis.control_flow import Linear, correction, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
-from smachac.analysis.empty_remaps import EmptyRemap, empty_remaps
 from smachac.analysis.error_recovery import corrected_machine, with_meant_keys
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
@@ -69,6 +68,7 @@ class Context:
         self._facts: Facts = {}
         self._found_before = previous._found if previous is not None else {}
         self._found: dict[Fact, Found] = {}
+        self._of_machine: dict[Callable[[Context], object], object] = {}
 
     def of_container(self, fact: Callable[[C], T], path: str, container: C) -> T:
         """A fact about one container or its userdata scope, which is a function of nothing else;
@@ -81,6 +81,12 @@ class Context:
                 found = container, fact(container)
             self._facts[which] = found
         return cast(T, found[1])
+
+    def of_machine(self, fact: Callable[[Context], T]) -> T:
+        """A fact about the whole machine, which is a function of this context; computed once."""
+        if fact not in self._of_machine:
+            self._of_machine[fact] = fact(self)
+        return cast(T, self._of_machine[fact])
 
     def at_states(self, fact: Callable[..., Iterable[T]], *given: object) -> tuple[T, ...]:
         """What a function finds at each state that can have values, in the order of `states`: at
@@ -160,7 +166,8 @@ class Context:
     def corrected(self) -> tuple[Linear, ...]:
         """The containers of `linear`, with misspelt names corrected."""
         return tuple(
-            self.of_container(corrected, path, container) for path, container in self.linear
+            self.of_container(correction, path, container).container
+            for path, container in self.linear
         )
 
     @cached_property
@@ -242,7 +249,7 @@ class Context:
     def _corrected_container(self, path: str, container: Container) -> Container:
         whole = self.of_container(with_meant_keys, path, container)
         if isinstance(whole, StateMachine | nodes.Sequence):
-            return self.of_container(corrected, path, whole)
+            return self.of_container(correction, path, whole).container
         return whole
 
     @cached_property
@@ -252,11 +259,6 @@ class Context:
     def missing_keys(self, *causes: Cause) -> list[Missing]:
         """The keys that are missing for one of these causes, in the order of the script."""
         return [each for each in self._missing_keys if each.cause in causes]
-
-    @cached_property
-    def empty_remaps(self) -> tuple[EmptyRemap, ...]:
-        """The remappings of optional keys to keys that nothing sets."""
-        return empty_remaps(self.corrected_flow, self._missing_keys)
 
     @cached_property
     def lost_outputs(self) -> tuple[Lost, ...]:

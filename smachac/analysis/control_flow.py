@@ -44,10 +44,12 @@ def places_of(container: nodes.Container) -> Guesser:
 
 class MeantTarget(NamedTuple):
     """The known name that is meant by the unknown target of a transition. `paired`: the two are not
-    alike, but no transition leads to this name, and it is the only such name."""
+    alike, but no transition leads to this name, and it is the only such name. `certain` is the only
+    known name one slip away."""
 
     name: str
     paired: bool = False
+    certain: str | None = None
 
 
 MOST_MEANT = 1000
@@ -91,7 +93,7 @@ def meant_targets(container: Linear) -> dict[str, MeantTarget]:
         near = near or (None if shouted and target.isupper() else every(target))
         if near is not None:
             found[target] = MeantTarget(near)
-    return found
+    return {target: meant._replace(certain=every.sure(target)) for target, meant in found.items()}
 
 
 def _names_by_word(names: Iterable[str]) -> dict[str, list[str]]:
@@ -120,12 +122,14 @@ def strays(
     children: Iterable[Node], names: frozenset[str], exits: frozenset[str]
 ) -> list[Transition]:
     """The transitions of children that lead neither to one of `names` nor out by one of `exits`."""
-    return [  # `leads_to_child` in place: the check of every state comes here
-        step
-        for child in children
-        for step in child.transitions
-        if step.target not in exits and (step.target not in names or step.origin == "implicit")
+    return [
+        step for child in children for step in child.transitions if _is_stray(step, names, exits)
     ]
+
+
+def _is_stray(step: Transition, names: frozenset[str], exits: frozenset[str]) -> bool:
+    # `leads_to_child` in place: the check of every transition comes here
+    return step.target not in exits and (step.target not in names or step.origin == "implicit")
 
 
 def unknown_outcomes(child: Node) -> list[tuple[Transition, str | None]]:
@@ -226,7 +230,19 @@ def is_catch_all(step: Transition) -> bool:
     return step.outcome in CATCH_ALL
 
 
+class Correction(NamedTuple):
+    """A corrected container, and the names that are meant by its unknown targets."""
+
+    container: Linear
+    meant: Mapping[str, MeantTarget]
+
+
 def corrected(container: Linear) -> Linear:
+    """The container of a correction."""
+    return correction(container).container
+
+
+def correction(container: Linear) -> Correction:
     """A container with misspelt targets and outcomes corrected, where a near name exists.
 
     A state gets the unknown outcomes of its transitions for which no known one is meant. An unknown
@@ -237,9 +253,10 @@ def corrected(container: Linear) -> Linear:
     exits = frozenset(outcome_names(container))
     has_strays = bool(strays(container.children, names, exits))
     if not has_strays and not any(map(unknown_outcomes, container.children)):
-        return container
+        return Correction(container, {})
+    all_meant = meant_targets(container)
     # An unlike name can also be a missing state: then nothing follows from it.
-    meant = {name: each for name, each in meant_targets(container).items() if not each.paired}
+    meant = {name: target for name, target in all_meant.items() if not target.paired}
 
     def target(step: Transition) -> Transition:
         known = meant.get(step.target)
@@ -247,17 +264,17 @@ def corrected(container: Linear) -> Linear:
 
     def child(node: Node) -> Node:
         unknown = unknown_outcomes(node)
-        lost = strays([node], names, exits)
-        if not unknown and not lost:
+        lost = [_is_stray(step, names, exits) for step in node.transitions]
+        if not unknown and not any(lost):
             return node
         wrong = {step.outcome: meant for step, meant in unknown}
         steps = [
             replace(
-                target(step) if step in lost else step,
+                target(step) if is_lost else step,
                 outcome=wrong.get(step.outcome) or step.outcome,
             )
-            for step in node.transitions
-            if not (step in lost and _catches_itself(node, target(step)))
+            for step, is_lost in zip(node.transitions, lost, strict=True)
+            if not (is_lost and _catches_itself(node, target(step)))
         ]
         known = {each.name for each in node.outcomes}
         more = [step for step in steps if step.outcome not in known]
@@ -267,8 +284,8 @@ def corrected(container: Linear) -> Linear:
 
     children = (*map(child, container.children), *_missing_states(container, names, exits, meant))
     if len(children) == len(container.children) and all(map(is_, children, container.children)):
-        return container
-    return replace(container, children=children)
+        return Correction(container, all_meant)
+    return Correction(replace(container, children=children), all_meant)
 
 
 def _missing_states(

@@ -38,7 +38,9 @@ def with_output(node: Node, key: str) -> tuple[Edit, ...]:
 def with_key_list(node: Node, part: str, keys: Iterable[str]) -> tuple[Edit, ...]:
     """The edit that begins a list of keys of a state which has none, where its place is certain."""
     names = [*keys]
-    return _begun(node.span, f"{part}: [{', '.join(names)}]") if all(map(is_plain, names)) else ()
+    return (
+        with_field(node.span, f"{part}: [{', '.join(names)}]") if all(map(is_plain, names)) else ()
+    )
 
 
 def with_remapping(node: Node, key: str, to: str) -> tuple[Edit, ...]:
@@ -47,11 +49,17 @@ def with_remapping(node: Node, key: str, to: str) -> tuple[Edit, ...]:
         return ()
     last = max((remap.to_span for remap in node.remaps), key=lambda span: span.start, default=None)
     if last is None:
-        return _begun(node.span, f"remapping: {{{key}: {to}}}")
+        return with_field(node.span, f"remapping: {{{key}: {to}}}")
     source = last.source
     is_flow = "{" in source.text[source.text.rfind("\n", 0, last.start) + 1 : last.start]
     end = Span(source, last.end, last.end)
     return (Edit(span=end, text=f", {key}: {to}"),) if is_flow else ()
+
+
+def likely(edits: Iterable[Edit], operator: str) -> tuple[Repair, ...]:
+    """The repair with these edits, if there are any."""
+    repair = Repair(edits=tuple(edits), certainty=Certainty.LIKELY, operator=operator)
+    return (repair,) if repair.edits else ()
 
 
 def adding_outcome(node: Node, outcome: str) -> tuple[Repair, ...]:
@@ -62,8 +70,7 @@ def adding_outcome(node: Node, outcome: str) -> tuple[Repair, ...]:
         del after[0]  # the name is not the first one of a list
     count = sum(1 for _ in takewhile(_are_in_one_list, pairwise(after)))
     edits = _listed(after[count], outcome) if after and is_plain(outcome) else ()
-    repair = Repair(edits=edits, certainty=Certainty.LIKELY, operator="add the outcome")
-    return (repair,) if edits else ()
+    return likely(edits, "add the outcome")
 
 
 def _are_in_one_list(pair: tuple[Span, Span]) -> bool:
@@ -105,7 +112,7 @@ def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Ed
         return ()
     spans = (each.span for each in known if each.span.source is node.span.source)
     last = max(spans, key=lambda span: span.start, default=None)
-    return _listed(last, key) if last is not None else _begun(node.span, f"{part}: [{key}]")
+    return _listed(last, key) if last is not None else with_field(node.span, f"{part}: [{key}]")
 
 
 def _listed(last: Span, key: str) -> tuple[Edit, ...]:
@@ -122,7 +129,7 @@ def _listed(last: Span, key: str) -> tuple[Edit, ...]:
     return (Edit(span=Span(last.source, end, end), text=new),)
 
 
-def _begun(name: Span, field: str) -> tuple[Edit, ...]:
+def with_field(name: Span, field: str) -> tuple[Edit, ...]:
     """The edit that adds a field as the first one of a state."""
     text = name.source.text
     body = _BODY.match(text, name.end)

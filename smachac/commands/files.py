@@ -14,7 +14,8 @@ from pathlib import Path
 from smachac.commands.output import FINDINGS, OK, shown
 from smachac.commands.writing import PartlyWrittenError, put_all
 from smachac.diagnostics.source import Source
-from smachac.frontend.files import TooBigError, decoded, read_bytes
+from smachac.frontend.files import TooBigError, read_bytes
+from smachac.robots.encodings import decoded
 
 MARK = re.compile(
     r"""\s*(?:# |// |%% |<!-- |"made_by": ")Made by smachac(?: \d\S* from |, as it is )"""
@@ -137,7 +138,7 @@ def rewrite_files(texts: Mapping[str, str], before: Mapping[str, Source]) -> Non
             contents[path] = text.encode("utf-8")
             continue
         data = read_bytes(path)
-        if decoded(data) != before[name].text:
+        if decoded(data, path.name) != before[name].text:
             raise ChangedError(
                 f"{before[name].name} was changed by another program in the meantime"
             )

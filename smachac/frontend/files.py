@@ -33,6 +33,7 @@ from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.frontend.text.yaml_tree import Tree
 from smachac.pysource.ros_names import Ros
 from smachac.robots import xacro_files
+from smachac.robots.encodings import EncodingError, decoded
 from smachac.robots.files import Packages, find_mesh, installed_packages
 
 PACKAGE = Path(__file__).parent.parent
@@ -53,12 +54,17 @@ def read_source(path: Path, report: Report) -> Source | None:
         report.append(unreadable_file(place, message, help, arguments=("name",)))
         return None
     try:
-        return Source(str(path), decoded(read_bytes(path)))
+        return Source(str(path), decoded(read_bytes(path), path.name))
     except TooBigError as error:
         help = "split it into smaller files"
         report.append(too_big(place, str(error), help, arguments=("bytes",)))
     except UnicodeDecodeError as error:
         report.append(_not_text(path, error))
+    except EncodingError as error:
+        place = Span(place.source, 0, 0)
+        help = "save the file as UTF-8, and declare `utf-8`"
+        arguments = ("encoding", error.declared)
+        report.append(unreadable_file(place, str(error), help, arguments=arguments))
     except (OSError, ValueError) as error:
         words = (getattr(error, "strerror", None) or str(error)).lower()
         near = None
@@ -151,13 +157,6 @@ def _script_inside(path: Path) -> str:
     scripts = [name for name in names if name.endswith((".yml", ".yaml"))]
     example = f", such as `{path / scripts[0]}`" if scripts else ""
     return f"name a script{example}; `smachac check` also accepts folders"
-
-
-def decoded(data: bytes) -> str:
-    """UTF-8 with or without a byte order mark, or UTF-16 with one (YAML 1.2.2, section 5.2)."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16")
-    return data.decode("utf-8-sig")
 
 
 class Disk:
@@ -421,7 +420,7 @@ def disk_library(
         own_template=lambda name: template(name, template_folders[: -len(BUILT_IN)]),
         code=lambda name: template(name, code_folders),
         code_names=lambda name: _names_in(name, code_folders),
-        definitions=lambda path: definitions(path, message_folders(), disk),
+        definitions=lambda path, report: definitions(path, message_folders(), disk, report),
         definition_names=lambda folder: definition_names(folder, message_folders()),
         folders_with=lambda files: _folders_with(files, main.parent),
         script_folders=lambda caller: searched(script_folders(caller)),
@@ -439,19 +438,20 @@ def disk_library(
     )
 
 
-def definitions(path: str, folders: Sequence[Path], disk: Disk) -> list[Source]:
-    """All files with the definition of a message, `package/msg/Name.msg`.
+def definitions(path: str, folders: Sequence[Path], disk: Disk, report: Report) -> list[Source]:
+    """All files with the definition of a message, `package/msg/Name.msg`; none if one of them
+    cannot be read.
 
     They are searched in packages of the user, which are in `folders` or are one of them; then in
     the packages that are installed (`installed_packages`).
     """
-    found: dict[str, Source] = {}
+    found: dict[str, Source | None] = {}
     for file in _definition_places(path, folders):
         with contextlib.suppress(OSError, ValueError):
-            source = disk.read(file, []) if disk.is_file(file) else None
-            if source is not None:
-                found.setdefault(os.path.realpath(file), source)
-    return list(found.values())
+            if disk.is_file(file):
+                found.setdefault(os.path.realpath(file), disk.read(file, report))
+    sources = [source for source in found.values() if source is not None]
+    return sources if len(sources) == len(found) else []
 
 
 def definition_names(path: str, folders: Sequence[Path]) -> list[str]:

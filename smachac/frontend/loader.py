@@ -35,7 +35,7 @@ class Library(UserCode):
     """Access to files by functions, so that resolving works without a disk.
 
     `script(name, caller)` returns the text of a sub-script that the source `caller` names;
-    `definitions(path)` all message definitions of ROS with a path, such as
+    `definitions(path, report)` all message definitions of ROS with a path, such as
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders; `definition_names(folder)` the
     names of the files in all folders with a path, such as `std_srvs/srv`; `folders_with(files)` the
     folders below that of the main script that have one of these files. The lists of folders and
@@ -48,7 +48,7 @@ class Library(UserCode):
     """
 
     script: Callable[[str, str], Source | None]
-    definitions: Callable[[str], Sequence[Source]] = lambda path: ()
+    definitions: Callable[[str, Report], Sequence[Source]] = lambda path, report: ()
     definition_names: Callable[[str], Sequence[str]] = lambda folder: ()
     folders_with: Callable[[Collection[str]], Sequence[str]] = lambda files: ()
     script_folders: Callable[[str], Sequence[str]] = lambda caller: ()
@@ -90,7 +90,9 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         own_template=own_template,
         code=lambda name: sources.get(name) or built_in.code(name),
         code_names=lambda folder: [*_inside(folder, sources), *built_in.code_names(folder)],
-        definitions=lambda path: [sources[path]] if path in sources else built_in.definitions(path),
+        definitions=lambda path, report: (
+            [sources[path]] if path in sources else built_in.definitions(path, report)
+        ),
         definition_names=lambda folder: [
             *_inside(folder, sources),
             *built_in.definition_names(folder),

@@ -10,7 +10,7 @@ from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
-from smachac.pysource.functions import access_of, alternatives, returns_of
+from smachac.pysource.functions import alternatives, returns_of
 from smachac.pysource.modules import Module, Names, OwnClass
 from smachac.pysource.source import PythonText
 
@@ -39,23 +39,16 @@ TOO_MANY_ARGUMENTS = FaultKind(
 MISSING_BASE_ARGUMENT = FaultKind(
     name="missing base argument",
     message="`__init__` of `{owner}` requires {more}, which this call does not pass",
-    help="write `{near}`",
+    help="its parameters are {near}",
     effect="the call raises a TypeError when the program makes the state",
     stops=True,
 )
-SHIFTED_ARGUMENTS = FaultKind(
-    name="shifted arguments",
+OTHER_LISTS = FaultKind(
+    name="other lists",
     message="the outcomes `{word}` are passed as `{more}` of `__init__` of `{owner}`, and"
     " `{file}` as `outcomes`",
-    help="write `{near}`",
+    help="pass them in the order of its parameters: {near}",
     effect="the state does not have the outcomes that it returns: the machine stops with an error",
-)
-EXCHANGED_ARGUMENTS = FaultKind(
-    name="exchanged arguments",
-    message="`{word}` and `{more}` have changed places in this call of `__init__` of `{owner}`",
-    help="write `{near}`",
-    effect="the state has other outcomes or keys than its code uses: the machine stops"
-    " with an error",
 )
 
 
@@ -88,9 +81,7 @@ def base_call_faults(own: OwnClass) -> Iterator[ClassFault]:
         if call is None:
             continue
         faults = [*_name_faults(call)] or [*_count_faults(call)]
-        if not faults and at == 0:
-            faults = [*_shifted(own, call)] or [*_exchanged(own, call)]
-        yield from faults
+        yield from faults or (_other_lists(own, call) if at == 0 else ())
 
 
 def arguments_to_base(own: OwnClass) -> Mapping[str, tuple[PythonText, ast.expr]] | None:
@@ -214,147 +205,41 @@ def _count_faults(call: _Call) -> Iterator[ClassFault]:
     missing = [name for name in due if name not in given]
     if missing:
         span = text.span(call.node.func)
-        own = {each.arg for each in call.maker.args.args}
-        left_out = _left_out(call)
-        near = _with(call, left_out) if left_out is not None else None
-        if near is None:
-            added = [f"{name}={name if name in own else '...'}" for name in missing]
-            near = f"{span.text}({', '.join([*_written(call), *added])})"
-        yield ClassFault(kind=MISSING_BASE_ARGUMENT, name=Word(span.text, span), near=near,
+        by_name = [*positional, *(each.arg for each in call.taken.kwonlyargs)]
+        yield ClassFault(kind=MISSING_BASE_ARGUMENT, name=Word(span.text, span),
+                         near=_in_order(by_name),
                          owner=call.owner, more=listed(missing))  # fmt: skip
 
 
-def _written(call: _Call) -> list[str]:
-    """The texts of the arguments of a call."""
-    text = call.module.text
-    values = [*call.node.args, *(each.value for each in call.node.keywords)]
-    names = [*([""] * len(call.node.args)), *(f"{each.arg}=" for each in call.node.keywords)]
-    return [f"{name}{' '.join(text.span(value).text.split())}"
-            for name, value in zip(names, values, strict=True)]  # fmt: skip
-
-
-def _left_out(call: _Call) -> int | None:
-    """The position of a parameter that the derived constructor has too and does not pass, and for
-    which the call passes a list."""
-    own = {each.arg for each in call.maker.args.args[1:]}
-    used = {each.id for each in ast.walk(call.node) if isinstance(each, ast.Name)}
-    used |= {each.arg or "" for each in call.node.keywords}
-    for at, (name, value) in enumerate(zip(call.positional, call.arguments, strict=False)):
-        if name in own - used and isinstance(value, ast.List) and at < len(call.positional) - 1:
-            return at
-    return None
-
-
-def _with(call: _Call, at: int) -> str:
-    """The call with the parameter at a position as one more argument."""
-    name = call.positional[at]
-    known = name in {each.arg for each in call.maker.args.args}
-    written = _written(call)
-    at += len(call.node.args) - len(call.arguments)  # behind `self`
-    head = call.module.text.span(call.node.func).text
-    return f"{head}({', '.join([*written[:at], name if known else '...', *written[at:]])})"
-
-
-def _shifted(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
-    """Lists that are one parameter too early: the outcomes that `execute` returns are passed as
-    another parameter than `outcomes`, which gets none of them."""
+def _other_lists(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
+    """The outcomes that `execute` returns, passed as another parameter than `outcomes`, which gets
+    none of them."""
     found = own.method("execute")
-    positional = call.positional
-    many = len(call.arguments) >= len(positional) and call.taken.vararg is None
-    if found is None or "outcomes" not in positional or many:
-        return
-    at = positional.index("outcomes") - 1
-    if at < 0 or len(call.arguments) < at + 2:
+    lists = {name: (value, texts)
+             for name, value in zip(call.positional, call.arguments, strict=False)
+             if (texts := _texts(value))}  # fmt: skip
+    if found is None or "outcomes" not in lists:
         return
     returned = {each.value for line in returns_of(found[1].body) if line.value is not None
                 for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
-    early, late = _texts(call.arguments[at]), _texts(call.arguments[at + 1])
-    if early is None or late is None or not early & returned or late & returned:
-        return
-    span = call.module.text.span(call.arguments[at])
-    yield ClassFault(
-        kind=SHIFTED_ARGUMENTS,
-        name=Word(" ".join(span.text.split()), span),
-        near=_with(call, at),
-        owner=call.owner,
-        more=positional[at],
-        file=" ".join(call.module.text.span(call.arguments[at + 1]).text.split()),
-    )
+    wrong, given = lists["outcomes"]
+    other = next((name for name, (_, texts) in lists.items() if texts & returned), None)
+    if other is not None and given.isdisjoint(returned):
+        span, text = call.module.text.span(lists[other][0]), call.module.text.span(wrong).text
+        yield ClassFault(
+            kind=OTHER_LISTS,
+            name=Word(" ".join(span.text.split()), span),
+            near=_in_order(call.positional),
+            owner=call.owner,
+            more=other,
+            file=" ".join(text.split()),
+        )
 
 
-def _texts(node: ast.expr) -> set[object] | None:
-    """The texts in a list; None for another expression."""
-    if not isinstance(node, ast.List | ast.Tuple):
-        return None
-    texts = [each.value for each in node.elts if isinstance(each, ast.Constant)]
-    return {*texts} if len(texts) == len(node.elts) else None
-
-
-# --- arguments that have changed places
-
-
-LISTS = ("outcomes", "input_keys", "output_keys")
-"""The parameters of `smach.State.__init__`, in their order."""
-
-
-def _exchanged(own: OwnClass, call: _Call) -> Iterator[ClassFault]:
-    """Two arguments that have changed places: the names in each list are used by `execute` as those
-    of the other one, or an argument has the name of the parameter that gets the outcomes."""
-    roles = _roles(call)
-    uses = _uses(own) if len(roles) > 1 or "outcomes" in roles.values() else None
-    if uses is None:
-        return
-    arguments = [*zip(call.positional, call.arguments, strict=False)]
-    for at, (name, value) in enumerate(arguments):
-        for other, (other_name, other_value) in enumerate(arguments):
-            some, more = _texts(value), _texts(other_value)
-            mine, theirs = roles.get(name), roles.get(other_name)
-            if more is None or mine is None:
-                continue
-            if isinstance(value, ast.Name):
-                found = value.id == other_name and mine == "outcomes" and theirs is None
-                found = found and bool(more & uses[mine])
-            elif some is not None and theirs is not None and at < other:
-                found = some.isdisjoint(uses[mine]) and more.isdisjoint(uses[theirs])
-                found = found and bool(some & uses[theirs]) and bool(more & uses[mine])
-            else:
-                continue
-            if found:
-                yield _exchange(call, *sorted([at, other]))
-                return
-
-
-def _exchange(call: _Call, first: int, second: int) -> ClassFault:
-    text, written = call.module.text, _written(call)
-    shift = len(call.node.args) - len(call.arguments)  # behind `self`
-    some, more = first + shift, second + shift
-    names = written[some], written[more]
-    written[some], written[more] = written[more], written[some]
-    return ClassFault(
-        kind=EXCHANGED_ARGUMENTS,
-        name=Word(names[0], text.span(call.arguments[first])),
-        near=f"{text.span(call.node.func).text}({', '.join(written)})",
-        owner=call.owner,
-        more=names[1],
-    )
-
-
-def _roles(call: _Call) -> dict[str, str]:
-    """The parameters that the constructor of the base class passes to `smach.State` as lists."""
-    found: dict[str, str] = {}
-    calls = [each for each in ast.walk(call.base) if isinstance(each, ast.Call)
-             and isinstance(each.func, ast.Attribute) and each.func.attr == "__init__"]  # fmt: skip
-    if len(calls) != 1:
-        return {}
-    (made,) = calls
-    through_super = isinstance(made.func, ast.Attribute) and isinstance(made.func.value, ast.Call)
-    given = [*zip(LISTS, made.args[0 if through_super else 1 :], strict=False)]
-    given += [(each.arg or "", each.value) for each in made.keywords]
-    for role, value in given:
-        passed = copied(value)
-        if isinstance(passed, ast.Name) and role in LISTS:
-            found[passed.id] = role
-    return found
+def _texts(node: ast.expr) -> set[object]:
+    """The texts in a list; none for another expression."""
+    items = node.elts if isinstance(node, ast.List | ast.Tuple) else ()
+    return {each.value for each in items if isinstance(each, ast.Constant)}
 
 
 def copied(node: ast.expr) -> ast.expr:
@@ -368,20 +253,3 @@ def copied(node: ast.expr) -> ast.expr:
         case ast.BoolOp(op=ast.Or(), values=[value, ast.List(elts=[]) | ast.Tuple(elts=[])]):
             return copied(value)
     return node
-
-
-def _uses(own: OwnClass) -> dict[str, set[object]] | None:
-    """The outcomes that `execute` returns, and the keys that it reads and writes itself."""
-    found = own.method("execute")
-    if found is None or len(found[1].args.args) != 2:
-        return None
-    userdata = found[1].args.args[1].arg
-    accesses = [access for each in ast.walk(found[1])
-                if (access := access_of(each, userdata)) is not None]  # fmt: skip
-    returned: set[object] = {each.value for line in returns_of(found[1].body) if line.value
-                for each in alternatives(line.value) if isinstance(each, ast.Constant)}  # fmt: skip
-    return {
-        "outcomes": returned,
-        "input_keys": {each.key for each in accesses if each.read},
-        "output_keys": {each.key for each in accesses if not each.read},
-    }

@@ -1,29 +1,21 @@
-"""Slips in what a class passes to calls and gets from them: a call in place of a function, results
-in another order, a wrong number of values in a text, a function in place of its module."""
+"""Slips in what a class passes to calls: a call in place of a function, a wrong number of arguments
+or of values in a text, a function in place of its module."""
 
 from __future__ import annotations
 
 import ast
 import re
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from inspect import isbuiltin, isclass, isfunction
+from typing import NamedTuple
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
-from smachac.pysource.class_members import enumeration_of
-from smachac.pysource.functions import is_plain, returns_of
 from smachac.pysource.library_names import MODULES, is_shadowed, module_of_library
-from smachac.pysource.modules import Module, OwnClass, of_other_objects
+from smachac.pysource.modules import Module, OwnClass, find_class, names_of, of_other_objects
 from smachac.pysource.own_objects import Objects
 from smachac.pysource.silent_results import called_function, is_silent
-from smachac.pysource.swapped_arguments import (
-    MethodCode,
-    called_code,
-    swapped_arguments,
-    takes_self,
-)
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import tried_code
 
@@ -36,7 +28,7 @@ EXTRA_ARGUMENT = FaultKind(
 LACKING_ARGUMENT = FaultKind(
     name="lacking argument",
     message="this call of `{word}` does not pass `{more}`",
-    help="write `{near}`",
+    help="its parameters are those of `{near}`",
     effect="the call raises TypeError when it runs: the machine stops",
 )
 UNKNOWN_KEYWORD = FaultKind(
@@ -51,14 +43,6 @@ CALLED_EARLY = FaultKind(
     message="`{word}` is called here: `{more}` gets its result, None, in place of the function",
     help="write `{near}`",
     effect="the function runs at once, and not later",
-    accepted=True,
-)
-OTHER_ORDER = FaultKind(
-    name="other order",
-    message="`{owner}` returns its results in another order: the code compares `{word}`"
-    " with values that only the {more} result has",
-    help="write `{near}`",
-    effect="the comparison has the same result in every run",
     accepted=True,
 )
 NUMBER_OF_VALUES = FaultKind(
@@ -93,6 +77,19 @@ _PLACE = re.compile(r"%(?:\((\w+)\))?[#0\- +]*(\*|\d+)?(?:\.(\*|\d+))?[hlL]?([di
 _FIELD = re.compile(r"\{\{|\}\}|\{([^{}]*)\}")
 
 
+class _MethodCode(NamedTuple):
+    """A method of a class of a state type or of a base class of it: the class with its base
+    classes, the module and the class of the method, its nodes that are checked, and the objects
+    that the classes make."""
+
+    own: OwnClass
+    module: Module
+    class_node: ast.ClassDef
+    method: ast.FunctionDef
+    nodes: Sequence[ast.AST]
+    objects: Objects
+
+
 def call_slips(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
     """The slips in the calls of a class and of its base classes."""
     objects = Objects(own, library)
@@ -104,13 +101,11 @@ def call_slips(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
             every = [each for each in ast.walk(method) if each not in others]
             tried = tried_code(every)
             every = [each for each in every if each not in tried]
-            code = MethodCode(own, module, node, method, every, objects)
+            code = _MethodCode(own, module, node, method, every, objects)
             found = [
                 *_called_early(code),
-                *_in_other_order(own, module, method, every, library),
                 *_wrong_numbers(module, every),
                 *_no_modules(module, method, every, library),
-                *swapped_arguments(code),
                 *_wrong_counts(code),
             ]
             yield from (each for each in found if not module.text.is_filled(each.name.span))
@@ -119,7 +114,7 @@ def call_slips(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
 # --- a call in place of a function
 
 
-def _called_early(code: MethodCode) -> Iterator[ClassFault]:
+def _called_early(code: _MethodCode) -> Iterator[ClassFault]:
     """The calls of functions without a result that are passed where the function is needed."""
     own, module, node, method, every, objects = code
     for each in every:
@@ -147,129 +142,59 @@ def _called_early(code: MethodCode) -> Iterator[ClassFault]:
             yield ClassFault(kind=CALLED_EARLY, name=Word(text, span), near=near, more=more)
 
 
-# --- results in another order
-
-
-def _in_other_order(
-    own: OwnClass,
-    module: Module,
-    method: ast.FunctionDef,
-    every: Sequence[ast.AST],
-    library: UserCode,
-) -> Iterator[ClassFault]:
-    """The names that get the results of a function in another order: one of them is compared with
-    values of a kind that only another result has."""
-    unpacked = [each for each in every if isinstance(each, ast.Assign)
-                and len(each.targets) == 1 and isinstance(each.targets[0], ast.Tuple)
-                and isinstance(each.value, ast.Call)]  # fmt: skip
-    if not unpacked:
-        return
-    names = [each for each in ast.walk(method) if isinstance(each, ast.Name)]
-    bound = Counter(each.id for each in names if not isinstance(each.ctx, ast.Load))
-    for each in unpacked:
-        target, call = each.targets[0], each.value
-        assert isinstance(target, ast.Tuple)
-        assert isinstance(call, ast.Call)
-        local = [one.id if isinstance(one, ast.Name) else "" for one in target.elts]
-        if not all(local) or any(bound[name] != 1 for name in local):
-            continue
-        found = called_function(own, module, method, call.func, library)
-        kinds = _kinds(*found, len(local), library) if found is not None else None
-        if kinds is None:
-            continue
-        for at, kind in enumerate(_compared_kinds(module, every, local, library)):
-            fits = [place for place, other in enumerate(kinds) if other == {kind}]
-            if kind is None or "" in kinds[at] or kind in kinds[at] or len(fits) != 1:
-                continue
-            right = list(local)
-            right[at], right[fits[0]] = right[fits[0]], right[at]
-            span = module.text.span(target)
-            rest = " ".join(module.text.span(call).text.split())
-            yield ClassFault(
-                kind=OTHER_ORDER,
-                name=Word(local[at], span),
-                near=f"{', '.join(right)} = {rest}",
-                owner=found[1].name if found is not None else "",
-                more=f"{_ORDINALS[fits[0]]}" if fits[0] < len(_ORDINALS) else "another",
-            )
-            break
-
-
-_ORDINALS = ("first", "second", "third", "fourth")
-
-
-def _kinds(
-    module: Module, function: ast.FunctionDef, number: int, library: UserCode
-) -> list[set[str]] | None:
-    """The kinds of the results of a function at each position, empty for one that is not known;
-    None if it returns anything but tuples of that length."""
-    returns = [*returns_of(function.body)] if is_plain(function) else []
-    values = [each.value for each in returns]
-    found: list[set[str]] = [set() for _ in range(number)]
-    for value in values:
-        if not isinstance(value, ast.Tuple) or len(value.elts) != number:
-            return None
-        for kinds, each in zip(found, value.elts, strict=True):
-            kinds.add(_kind(module, each, library))
-    return found if values else None
-
-
-def _compared_kinds(
-    module: Module, every: Sequence[ast.AST], local: Sequence[str], library: UserCode
-) -> list[str | None]:
-    """For each name the one kind of the values with which code compares it; None without one."""
-    found: dict[str, set[str]] = {}
-    for each in every:
-        match each:
-            case ast.Compare(
-                left=ast.Name(id=name),
-                ops=[ast.Is() | ast.IsNot() | ast.Eq() | ast.NotEq()],
-                comparators=[other],
-            ) if name in local:
-                found.setdefault(name, set()).add(_kind(module, other, library))
-    kinds = [[*found.get(name, ())] for name in local]
-    return [each[0] if len(each) == 1 and each[0] else None for each in kinds]
-
-
-def _kind(module: Module, node: ast.expr, library: UserCode) -> str:
-    """The kind of a value: an enumeration, or a type of Python. Empty if it is not known; None is
-    of no kind that can be compared."""
-    match node:
-        case ast.Constant(value=bool()):
-            return "bool"
-        case ast.Constant(value=str()) | ast.JoinedStr():
-            return "str"
-        case ast.Constant(value=int() | float()):
-            return "number"
-        case ast.List() | ast.ListComp():
-            return "list"
-        case ast.Dict() | ast.DictComp():
-            return "dict"
-        case ast.Attribute(value=ast.Name(id=name)) if name[0].isupper():
-            found = enumeration_of(module, name, library)
-            return f"enum {found.name}" if found is not None else ""
-    return ""
-
-
 # --- too few or too many arguments
 
 
-def _wrong_counts(code: MethodCode) -> Iterator[ClassFault]:
+def _called_code(code: _MethodCode, call: ast.Call) -> ast.FunctionDef | None:
+    """The function or method of the project that a call in a method of a class runs, also that of
+    an object, or the constructor; None for one with a decorator."""
+    own, module, node, method, _, objects = code
+    function = called_function(own, module, method, call.func, objects.library)
+    called = function[1] if function is not None else objects.method(module, node, call.func)
+    called = called or _constructor(module, call.func, objects.library)
+    if called is None or called.decorator_list:
+        return None
+    head = call.func.value if isinstance(call.func, ast.Attribute) else None
+    of_object = function is None or (isinstance(head, ast.Name) and head.id == "self")
+    first = [each.arg for each in (*called.args.posonlyargs, *called.args.args)][:1]
+    return called if of_object == (first == ["self"]) else None
+
+
+def _takes_self(call: ast.Call, function: ast.FunctionDef) -> bool:
+    """Whether the first parameter of a function is the object of the call."""
+    taken = [*function.args.posonlyargs, *function.args.args]
+    bound = isinstance(call.func, ast.Attribute) or function.name == "__init__"
+    return bound and [each.arg for each in taken[:1]] == ["self"]
+
+
+def _constructor(module: Module, called: ast.expr, library: UserCode) -> ast.FunctionDef | None:
+    """The constructor of the class of the project that an expression names."""
+    if not isinstance(called, ast.Name) or called.id not in module.names:
+        return None
+    found = find_class(module, called.id, library)
+    bound = names_of(found[1].body)[0].get("__init__", ()) if isinstance(found, tuple) else ()
+    match bound:
+        case (ast.FunctionDef() as maker,):
+            return maker
+    return None
+
+
+def _wrong_counts(code: _MethodCode) -> Iterator[ClassFault]:
     """The calls of functions and methods of the project that lack an argument, or pass one that the
     function does not have."""
-    module, method = code.module, code.method
+    module = code.module
     for call in code.nodes:
         if not isinstance(call, ast.Call) or any(each.arg is None for each in call.keywords):
             continue
         if any(isinstance(each, ast.Starred) for each in call.args):
             continue
-        called = called_code(code, call)
+        called = _called_code(code, call)
         if called is None:
             continue
         taken = called.args
         names = [each.arg for each in (*taken.posonlyargs, *taken.args)]
         due = names[: len(names) - len(taken.defaults)]
-        if takes_self(call, called):
+        if _takes_self(call, called):
             names, due = names[1:], due[1:]
         pairs = zip(taken.kwonlyargs, taken.kw_defaults, strict=True)
         due += [each.arg for each, default in pairs if default is None]
@@ -279,6 +204,7 @@ def _wrong_counts(code: MethodCode) -> Iterator[ClassFault]:
         head = " ".join(module.text.span(call.func).text.split())
         by_name = [each.arg for each in (*taken.args, *taken.kwonlyargs)]
         unknown = [each.arg for each in call.keywords if each.arg and each.arg not in by_name]
+        signature = f"{head}({', '.join([*names, *(each.arg for each in taken.kwonlyargs)])})"
         is_base = called.name == "__init__" and isinstance(call.func, ast.Attribute)
         if unknown and taken.kwarg is None and not is_base:
             free = [name for name in by_name if name not in passed and name != "self"]
@@ -291,32 +217,11 @@ def _wrong_counts(code: MethodCode) -> Iterator[ClassFault]:
             continue
         if len(call.args) > len(names) and taken.vararg is None:
             more = module.text.span(call.args[len(names)])
-            near = ", ".join([*names, *(each.arg for each in taken.kwonlyargs)])
             word = Word(" ".join(more.text.split()), more)
-            yield ClassFault(kind=EXTRA_ARGUMENT, name=word, near=f"{head}({near})", owner=head)
+            yield ClassFault(kind=EXTRA_ARGUMENT, name=word, near=signature, owner=head)
         elif missing and not is_base:
-            near, lacking = _completed(module, method, call, names, missing[0])
-            yield ClassFault(kind=LACKING_ARGUMENT, name=Word(head, span), more=lacking, near=near)
-
-
-def _completed(
-    module: Module, method: ast.FunctionDef, call: ast.Call, names: Sequence[str], missing: str
-) -> tuple[str, str]:
-    """The text of a call with one more argument, and its parameter: the one before an argument that
-    has the name of the next parameter, if there is one."""
-    head = " ".join(module.text.span(call.func).text.split())
-    given = [" ".join(module.text.span(each).text.split()) for each in call.args]
-    more = [f"{each.arg}={' '.join(module.text.span(each.value).text.split())}"
-            for each in call.keywords]  # fmt: skip
-    local = {each.id for each in ast.walk(method) if isinstance(each, ast.Name)}
-    local |= {each.arg for each in ast.walk(method.args) if isinstance(each, ast.arg)}
-    for at, (name, value) in enumerate(zip(names, call.args, strict=False)):
-        own = getattr(value, "attr", None) or getattr(value, "id", None)
-        if own in names[at + 1 : at + 2]:
-            given.insert(at, name if name in local else "...")
-            return f"{head}({', '.join([*given, *more])})", name
-    added = f"{missing}={missing if missing in local else '...'}"
-    return f"{head}({', '.join([*given, *more, added])})", missing
+            word = Word(head, span)
+            yield ClassFault(kind=LACKING_ARGUMENT, name=word, more=missing[0], near=signature)
 
 
 # --- values in a text

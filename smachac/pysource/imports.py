@@ -26,7 +26,6 @@ from smachac.pysource.modules import (
     source_module,
 )
 from smachac.pysource.other_modules import module_with
-from smachac.pysource.renamed_members import renamed_member
 from smachac.pysource.source import PythonText
 from smachac.pysource.user_code import UserCode
 
@@ -179,7 +178,7 @@ def _no_names(
     for word in one.names:
         if word.text not in known | words and not word.text.startswith("__"):
             other_module = module_with(word.text, file, library) or ""
-            near = guess(word.text) or renamed_member(word.text, other, user, library)
+            near = guess(word.text)
             lines = _lines_with(word.text, user) if user is not None and near else ()
             help = _name_elsewhere(word.text, other_module, near, lines)
             yield ClassFault(kind=NO_IMPORTED_NAME, name=word, near=near, file=file, help=help)

@@ -24,7 +24,6 @@ from smachac.pysource.modules import (
     source_module,
 )
 from smachac.pysource.own_objects import NO_MEMBER
-from smachac.pysource.renamed_members import renamed_member
 from smachac.pysource.user_code import UserCode
 
 FUNCTION_NOT_CALLED = FaultKind(
@@ -215,5 +214,5 @@ def _absent(
     public = [each for each in other.names if not each.startswith("_")]
     functions = [each for each in public if isinstance(other.names[each][-1], ast.FunctionDef)]
     more = f"its functions are {listed(functions)}" if functions else "define it in the module"
-    near = guesser(sorted(public))(name) or renamed_member(name, other, user.text, library)
+    near = guesser(sorted(public))(name)
     return near, file_of(other), more

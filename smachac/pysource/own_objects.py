@@ -101,7 +101,6 @@ class Objects:
             name: entries[0] for name, entries in own.assigned().items() if len(entries) == 1
         }
         self.classes: dict[str, tuple[Module, ast.ClassDef] | None] = {}
-        self.called: dict[ast.Call, ast.FunctionDef | None] = {}
         self.left_out: dict[ast.ClassDef, tuple[set[ast.AST], set[str]]] = {}
 
     def uses(

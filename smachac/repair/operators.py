@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice, pairwise
 from typing import NamedTuple
 
@@ -20,6 +22,7 @@ from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.diagnostics.spelling import slips, words_of
 from smachac.frontend import schema
 from smachac.frontend.text.fields import PRESET_FIELDS
+from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, parse
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import OF_SMACH
@@ -40,10 +43,15 @@ RENAME = "write another name"
 KNOWN_FIELDS = {*schema.VARIABLES, *schema.LONG, *schema.VALUE_FACTS, *PRESET_FIELDS}
 """The names of the fields of states, of states' other forms, of values and of keys."""
 
+SHORT_TEMPLATE = next(short for short, name in schema.LONG.items() if name == "template")
+
+LEAST_LIKE = 0.65
+"""The least part of equal letters of two names of which one can be the other one, misspelt."""
+
 LONGEST_NAME = 100
 """In characters: a comparison of two names takes quadratic time."""
 
-_NAME = re.compile(r"[A-Za-z_]\w{2,}")
+NAME = re.compile(r"[A-Za-z_]\w{2,}")
 
 
 class Candidate(NamedTuple):
@@ -59,9 +67,11 @@ class Candidate(NamedTuple):
         return (self.cost, [(edit.span.source.name, *edit.span[1:], edit.text) for edit in edits])
 
 
-def candidate(cost: float, operator: str, *edits: Edit) -> Candidate:
+def candidate(
+    cost: float, operator: str, *edits: Edit, certainty: Certainty = Certainty.LIKELY
+) -> Candidate:
     """The candidate of an operator."""
-    return Candidate(cost, Repair(edits=edits, certainty=Certainty.LIKELY, operator=operator))
+    return Candidate(cost, Repair(edits=edits, certainty=certainty, operator=operator))
 
 
 class Text(NamedTuple):
@@ -85,7 +95,7 @@ class Text(NamedTuple):
 
 def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Text:
     """A source, read for operators. `types` are the names of all state types."""
-    counts = Counter(_NAME.findall(source.text))
+    counts = Counter(NAME.findall(source.text))
     given = [*_given_names(machine)] if machine is not None else []
     own = _names_in(machine) if machine is not None else ()
     known = dict.fromkeys([*counts, *TYPE_WORDS, *types, *given, *own])
@@ -94,7 +104,9 @@ def text_of(source: Source, machine: Machine | None, types: Iterable[str]) -> Te
     for name in names:
         for slip in dict.fromkeys(slips(name)):
             by_slip.setdefault(slip, []).append(name)
-    return Text(source, parse(source, []), counts, counts + Counter(given), (*names,), by_slip)
+    return Text(
+        source, parse_mended(source, []), counts, counts + Counter(given), (*names,), by_slip
+    )
 
 
 def _given_names(machine: Machine) -> Iterator[str]:
@@ -122,12 +134,51 @@ MOST_PLACES = 4
 class Around(NamedTuple):
     """What operators know beside a finding: `read` returns what they read of a source, `others` are
     the names that the other findings are about, `types` the texts of interfaces by state type,
-    `interface` returns the user's interface of a state type."""
+    `interface` returns the user's interface of a state type, `vocabulary` are the names of the
+    project."""
 
     read: Callable[[Source], Text]
     others: Sequence[str]
     types: Mapping[str, str]
     interface: Callable[[str], Source | None]
+    vocabulary: Vocabulary
+
+
+class Vocabulary(NamedTuple):
+    """How often each name is in the texts of a project, scripts, interfaces and classes, and how
+    often each word of a name; `capitals` are the names of states and of types."""
+
+    names: Counter[str]
+    words: Counter[str]
+    capitals: frozenset[str]
+
+    def is_rarer(self, name: str, other: str) -> bool:
+        """Whether a name is more likely to be misspelt than another one: it is used less often, or
+        its words are that the other one does not have, or it has capital letters and is not the
+        name of a state or of a type. A name in no text is one of the language."""
+        words, others = {*name.split("_")}, {*other.split("_")}
+        is_part = words <= others or others <= words
+        has_capitals = name in self.capitals or other in self.capitals
+
+        def use(name: str, own: set[str]) -> tuple[int, int, bool]:
+            if not self.names[name]:
+                return (1, sys.maxsize, True)
+            rarest = sys.maxsize if is_part else min(self.words[word] for word in own)
+            return (self.names[name], rarest, name.islower() != has_capitals)
+
+        return use(name, words - others) < use(other, others - words)
+
+
+def vocabulary_of(
+    texts: Iterable[str], machine: Machine | None, types: Iterable[str]
+) -> Vocabulary:
+    """The names in the texts of a project. `types` are the names of all state types."""
+    names = Counter(name for text in texts for name in NAME.findall(text))
+    words: Counter[str] = Counter()
+    for name, count in names.items():
+        words.update(dict.fromkeys(name.split("_"), count))
+    states = (node.name for _, node in walk(machine.root)) if machine is not None else ()
+    return Vocabulary(names, words, frozenset([*types, *states]))
 
 
 def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
@@ -137,9 +188,12 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
     if not places or places[0] is not item.span:
         return []
     text = around.read(item.span.source)
-    found = [*_near_names(item, text)]
-    if not _is_field(item.span, text.tree):
+    found = [*_near_names(item, text, around.vocabulary)]
+    same = _same_keys(item.span, text.tree)
+    if same != 1 or item.span.text not in KNOWN_FIELDS:
         found += _mentioned_names(item, around.others)
+    if same > 1:  # which of them is wrong is not known
+        found = [_only_possible(made) for made in found]
     found += _unused_names(item, text)
     found += _other_forms(item, text)
     for span in dict.fromkeys(places[:MOST_PLACES]):
@@ -147,7 +201,7 @@ def candidates(item: Diagnostic, around: Around) -> list[Candidate]:
         path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
         interface = around.interface(_type_of(path))
         if interface is not None:
-            found += _names_of_interface(item, text, around.read(interface))
+            found += _names_of_interface(item, text, around.read(interface), around.vocabulary)
             found += _other_classes(_type_of(path), around.read(interface), around.types)
         found += _turned_pairs(path)
         found += _exchanged_values(path, item.span)
@@ -190,39 +244,49 @@ def _end(part: Tree | Entry) -> int:
     return part.value.span.end if isinstance(part, Entry) else part.span.end
 
 
-def _near_names(item: Diagnostic, text: Text) -> Iterator[Candidate]:
-    """A name at the place of the finding, or among its arguments, in place of a name that it is
-    like: at the place of the finding, and where a name that is like it is written only once."""
-    words = dict.fromkeys(_NAME.findall(item.span.text)[:MOST_NEAR])
+def _near_names(item: Diagnostic, text: Text, vocabulary: Vocabulary) -> Iterator[Candidate]:
+    """A name in place of one that it is like: at the place of the finding, and where a name is
+    written only once that the finding is about, or that is like one that it is about."""
+    words = dict.fromkeys(NAME.findall(item.span.text)[:MOST_NEAR])
     for word in words:
         for cost, name in _near(word, text):
             cost += text.uses[name] < text.uses[word]
             for span in _places(word, item.span):
                 yield candidate(cost, RENAME, Edit(span=span, text=name))
-    yield from _declared_names(item, text, 0.5)
+    yield from _declared_names(item, text, vocabulary, 0.5)
+    for word in _words_of(item):
+        if text.counts[word] == 1 and word not in item.span.text:
+            for cost, name in _near(word, text):
+                for span in _places(word, text.whole):
+                    yield candidate(cost + 0.5, RENAME, Edit(span=span, text=name))
 
 
-def _declared_names(item: Diagnostic, text: Text, more: float) -> Iterator[Candidate]:
+def _declared_names(
+    item: Diagnostic, text: Text, vocabulary: Vocabulary, more: float
+) -> Iterator[Candidate]:
     """A name that the finding is about in place of one that is like it, and that is in a text only
     once: there it is declared, or misspelt."""
     for word in _words_of(item):
         for cost, name in _near(word, text):
             if text.counts[name] == 1:
+                cost += 0.1 if vocabulary.is_rarer(name, word) else more
                 for span in _places(name, text.whole):
-                    yield candidate(cost + more, RENAME, Edit(span=span, text=word))
+                    yield candidate(cost, RENAME, Edit(span=span, text=word))
 
 
 def _words_of(item: Diagnostic) -> Iterable[str]:
     """The names at the place of a finding, and those that it is about."""
-    words = (*_NAME.findall(item.span.text)[:MOST_NEAR], *item.finding.arguments[:MOST_WORDS])
-    return dict.fromkeys(word for word in words if _NAME.fullmatch(word))
+    words = (*NAME.findall(item.span.text)[:MOST_NEAR], *item.finding.arguments[:MOST_WORDS])
+    return dict.fromkeys(word for word in words if NAME.fullmatch(word))
 
 
-def _names_of_interface(item: Diagnostic, text: Text, interface: Text) -> Iterator[Candidate]:
+def _names_of_interface(
+    item: Diagnostic, text: Text, interface: Text, vocabulary: Vocabulary
+) -> Iterator[Candidate]:
     """As `_declared_names`, in the interface of the state; and a name of the finding there, in
     place of which a name that it is like is meant. Not in `code`: without a class less is known;
     no name of a state, which is in upper case."""
-    found = [*_declared_names(item, interface, 0.6)]
+    found = [*_declared_names(item, interface, vocabulary, 0.6)]
     for word in _words_of(item):
         if interface.counts[word] == 1:
             for cost, name in _near(word, text):
@@ -283,24 +347,27 @@ def _mentioned_names(item: Diagnostic, others: Sequence[str]) -> Iterator[Candid
     """Another name that this or another finding is about, or that is at its other places, in place
     of the one at its place."""
     word = item.span.text
-    if not _NAME.fullmatch(word):
+    if not NAME.fullmatch(word):
         return
     near = [related.span.text for related in item.finding.related]
     own = (*item.finding.arguments[:MOST_WORDS], *near)
     for cost, names in ((1.6, own), (1.7, others)):
         for name in dict.fromkeys(names):
-            if name != word and _NAME.fullmatch(name):
+            if name != word and NAME.fullmatch(name):
                 yield candidate(cost, RENAME, Edit(span=item.span, text=name))
 
 
-def _is_field(span: Span, tree: Tree | None) -> bool:
-    """Whether a range is the name of a field that its mapping has once: that name is right."""
+def _same_keys(span: Span, tree: Tree | None) -> int:
+    """How many entries of a mapping have the name at a range; 0 if it is not that of an entry."""
     path = list(_path_to(tree, span.start, span.end)) if tree is not None else []
     for around, part in pairwise(path):
         if isinstance(around, Map) and isinstance(part, Entry) and part.key.span == span:
-            same = [entry for entry in around.entries if entry.key.value == part.key.value]
-            return part.key.value in KNOWN_FIELDS and len(same) == 1
-    return False
+            return sum(entry.key.value == part.key.value for entry in around.entries)
+    return 0
+
+
+def _only_possible(made: Candidate) -> Candidate:
+    return made._replace(repair=replace(made.repair, certainty=Certainty.POSSIBLE))
 
 
 def _places(word: str, span: Span) -> Iterator[Span]:
@@ -328,15 +395,29 @@ def _near(word: str, text: Text) -> list[tuple[float, str]]:
         if folded in name.casefold().split("_"):
             ranked[name] = 1.5
             continue
-        match = difflib.SequenceMatcher(None, folded, name.casefold())
-        if match.real_quick_ratio() > 0.6 and match.quick_ratio() > 0.6 and match.ratio() > 0.6:
-            ranked[name] = 2.0 - match.ratio()
+        likeness = _likeness(folded, name.casefold())
+        if likeness > LEAST_LIKE:
+            ranked[name] = 2.0 - likeness
     found = [
         (cost - 0.01 * min(text.counts[name], 9), name)
         for name, cost in ranked.items()
         if name != word and not are_unlike(word, name) and not _are_of_two_kinds(word, name)
     ]
     return sorted(found)[:MOST_NEAR]
+
+
+def are_alike(word: str, name: str) -> bool:
+    """Whether one of two names can be the other one, misspelt."""
+    return _likeness(word.casefold(), name.casefold()) > LEAST_LIKE
+
+
+def _likeness(word: str, name: str) -> float:
+    """The part of the letters of two names that they have in common; 0.0 if it is too small."""
+    if max(len(word), len(name)) > LONGEST_NAME:
+        return 0.0
+    match = difflib.SequenceMatcher(None, word, name)
+    is_near = match.real_quick_ratio() > LEAST_LIKE and match.quick_ratio() > LEAST_LIKE
+    return match.ratio() if is_near else 0.0
 
 
 def _are_of_two_kinds(word: str, name: str) -> bool:
@@ -392,15 +473,19 @@ def _state_in(path: list[Tree | Entry]) -> Map | None:
     """The fields of the innermost state that has a template."""
     for part in reversed(path):
         fields = part.value if isinstance(part, Entry) else part
-        if isinstance(fields, Map) and fields.get("template") is not None:
+        if isinstance(fields, Map) and _template_in(fields) is not None:
             return fields
     return None
+
+
+def _template_in(state: Map) -> Entry | None:
+    return state.get("template") or state.get(SHORT_TEMPLATE)
 
 
 def _type_of(path: list[Tree | Entry]) -> str:
     """The state type of the innermost state; empty if there is none."""
     state = _state_in(path)
-    entry = state.get("template") if state is not None else None
+    entry = _template_in(state) if state is not None else None
     return entry.value.span.text if entry is not None else ""
 
 
@@ -408,7 +493,7 @@ def _other_types(path: list[Tree | Entry], types: Mapping[str, str]) -> Iterator
     """The state types that have all fields of the innermost state, in place of its own one; for a
     container, the other kinds of containers."""
     state = _state_in(path)
-    entry = state.get("template") if state is not None else None
+    entry = _template_in(state) if state is not None else None
     if state is None or entry is None:
         return
     word = entry.value.span.text

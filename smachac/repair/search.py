@@ -1,7 +1,8 @@
 """The search for what was meant: repairs of rules and of operators, each tried by a new check.
 
 A repair is proven if the script with it has fewer findings, none that is new, and if no less of it
-is understood: a state of an unknown type silences rules and corrects nothing. Literature: Lerner
+is understood: a state of an unknown type silences rules and corrects nothing. If more of it is
+understood, new findings are allowed. Literature: Lerner
 et al., Searching for type-error messages, PLDI 2007; Chen and Erwig, Counter-factual typing for
 debugging type errors, POPL 2014.
 """
@@ -18,14 +19,23 @@ from typing import NamedTuple, TypeAlias
 from smachac.batch import Batch, analyse_alone
 from smachac.diagnostics.clusters import Cluster
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, identity
-from smachac.diagnostics.repair import edited_texts
+from smachac.diagnostics.repair import Certainty, Repair, edited_texts
 from smachac.diagnostics.source import Source
 from smachac.driver import Analysis, MachineCheck, analyse
 from smachac.frontend.loader import Library
 from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
-from smachac.repair.operators import Around, Candidate, candidates, text_of
+from smachac.repair.operators import (
+    NAME,
+    Around,
+    Candidate,
+    Vocabulary,
+    are_alike,
+    candidates,
+    text_of,
+    vocabulary_of,
+)
 
 MOST_CLUSTERS = 10
 """The most findings of a script for which a repair is searched."""
@@ -40,10 +50,14 @@ CHARACTERS = 20
 MOST_FINDINGS = 100
 """In a report of more findings nothing is searched."""
 
+MOST_REVEALING = 1.5
+"""Up to this cost, a repair after which more is understood can reveal other findings: the name that
+it writes is like the one that it replaces."""
+
 Again: TypeAlias = "Callable[[Mapping[Source, str]], Analysis]"
 """A function that analyses a script again after changes of its texts."""
 
-Mark: TypeAlias = "tuple[object, ...]"
+Mark: TypeAlias = "tuple[str, Severity, str, tuple[str, ...]]"
 """What stays of a finding when other text moves."""
 
 
@@ -128,17 +142,21 @@ def clusters(
     texts = {analysis.source, *(item.span.source for item in serious[:MOST_CLUSTERS])}
     # To read the texts for the operators takes about as long as one trial.
     trials = MOST_CHECKED // _size(texts, analysis.machine) - 1
+    vocabulary = vocabulary_of(_texts(analysis, texts, interface), analysis.machine, types)
     proven: list[Proof] = []
     for item in sorted(serious, key=_is_no_error)[:MOST_CLUSTERS]:
         if trials <= 0:
             break
         named = (other.finding.arguments for other in serious if other is not item)
-        around = Around(read, [*chain.from_iterable(named)], types, interface)
+        around = Around(read, [*chain.from_iterable(named)], types, interface, vocabulary)
         proposed = _proposals(item, around)
         proof = _proof(item, analysis, analysed, proposed[:trials])
         trials -= len(proposed)
         if proof is not None:
             proven.append(proof)
+    gone = {id(item) for proof in proven for item in _gone(proof, serious)}
+    left = [item for item in serious if id(item) not in gone]
+    proven = [_only_possible(proof) if _is_doubtful(proof, left) else proof for proof in proven]
     found: dict[int, Cluster] = {}
     covered: set[int] = set()
     for proof in sorted(proven, key=_rank):
@@ -149,6 +167,19 @@ def clusters(
             found[id(proof.item)] = Cluster(finding=proof.item, repair=repair, explained=others)
             covered.update(map(id, (proof.item, *others)))
     return [found[id(item)] for item in serious if id(item) in found]
+
+
+def _texts(
+    analysis: Analysis, texts: Iterable[Source], interface: Callable[[str], Source | None]
+) -> Iterable[str]:
+    """The texts of a project: scripts, the user's interfaces, and classes of Python."""
+    found: dict[Source | None, None] = dict.fromkeys(texts)
+    if analysis.machine is not None:
+        found.update(dict.fromkeys(node.span.source for _, node in walk(analysis.machine.root)))
+        found.update((interface(name), None) for name in analysis.machine.state_types)
+    if analysis.library is not None:
+        found.update(dict.fromkeys(source for _, source in analysis.library.modules))
+    return [source.text for source in found if source is not None]
 
 
 def _size(texts: Iterable[Source], machine: Machine | None) -> int:
@@ -182,14 +213,39 @@ class Proof(NamedTuple):
     left: Counter[Mark]
 
 
-def _rank(proof: Proof) -> tuple[int, bool, bool, bool]:
-    """What a report names first: the repair after which fewer findings are left, then the one of an
-    error, then one of a rule, then the one on the line of its finding."""
+def _is_doubtful(proof: Proof, left: Iterable[Diagnostic]) -> bool:
+    """Whether a repair may correct a consequence of a fault for which no repair is proven: `left`
+    are the findings that are left after all repairs. One of them is about a name of the finding or
+    of the edits, or it is an error, from which a warning can follow."""
+    edits, item = proof.candidate.repair.edits, proof.item
+    changed = (_names([edit.span.text]) ^ _names([edit.text]) for edit in edits)
+    names = _names(item.finding.arguments).union(*changed)
+    return any(
+        names & _names(other.finding.arguments) or _is_no_error(item) > _is_no_error(other)
+        for other in left
+    )
+
+
+def _names(texts: Iterable[str]) -> set[str]:
+    return {name for text in texts for name in NAME.findall(text)}
+
+
+def _only_possible(proof: Proof) -> Proof:
+    repair = replace(proof.candidate.repair, certainty=Certainty.POSSIBLE)
+    return proof._replace(candidate=proof.candidate._replace(repair=repair))
+
+
+def _rank(proof: Proof) -> tuple[int, bool, bool, bool, bool]:
+    """What a report names first: the repair after which fewer findings are left, then a likely one,
+    then the one of an error, then one of a rule, then the one on the line of its finding."""
     item = proof.item
     place = proof.candidate.repair.edits[0].span
     is_there = place.source is item.span.source and place.line == item.span.line
-    is_own = proof.candidate.repair in item.finding.all_repairs
-    return (proof.left.total(), _is_no_error(item), not is_own, not is_there)
+    is_own = any(
+        proof.candidate.repair.edits == repair.edits for repair in item.finding.all_repairs
+    )
+    is_possible = proof.candidate.repair.certainty is Certainty.POSSIBLE
+    return (proof.left.total(), is_possible, _is_no_error(item), not is_own, not is_there)
 
 
 def _is_no_error(item: Diagnostic) -> bool:
@@ -204,8 +260,10 @@ def _proof(
     before, marks = unknown(analysis), _marks(analysis.report)
     for candidate in proposed:
         after = analysed(edited_texts(candidate.repair.edits))
-        left = _marks(after.report)
-        if unknown(after) > before or left - marks or left[_mark(item)] >= marks[_mark(item)]:
+        left, still = _marks(after.report), unknown(after)
+        if still > before or left[_mark(item)] >= marks[_mark(item)]:
+            continue
+        if left - marks and (still == before or candidate.cost > MOST_REVEALING):
             continue
         if _leaves_its_type(item, candidate, analysis.machine, after.machine):
             continue
@@ -230,12 +288,23 @@ def _leaves_its_type(
 
 
 def _proposals(item: Diagnostic, around: Around) -> Sequence[Candidate]:
-    """The repairs of the finding, then those of the operators."""
-    own = enumerate(item.finding.all_repairs)
-    return [
-        *(Candidate(0.1 * number, repair) for number, repair in own),
-        *candidates(item, around),
-    ]
+    """The repairs of the finding, those of the operators, and those of the finding that are only
+    possible, the best first. What writes a rarer name is moved back."""
+    own = [Candidate(0.1 * at, repair) for at, repair in enumerate(item.finding.all_repairs)]
+    found = []
+    for cost, repair in (*own, *candidates(item, around)):
+        if _writes_rarer_name(repair, around.vocabulary):
+            repair = replace(repair, certainty=Certainty.POSSIBLE)
+        is_possible = repair.certainty is Certainty.POSSIBLE
+        found.append(Candidate(cost + 2 * is_possible, repair))
+    return sorted(found, key=lambda made: made.cost)
+
+
+def _writes_rarer_name(repair: Repair, vocabulary: Vocabulary) -> bool:
+    """Whether a repair replaces a name by one that is like it, and more likely to be misspelt."""
+    old, new = repair.edits[0].span.text, repair.edits[0].text
+    is_name = len(repair.edits) == 1 and old.isidentifier() and new.isidentifier()
+    return is_name and are_alike(old, new) and vocabulary.is_rarer(new, old)
 
 
 def unknown(analysis: Analysis) -> Unknown:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from smachac.diagnostics.clusters import Cluster
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, Severity
+from smachac.diagnostics.repair import Certainty
 from smachac.diagnostics.source import NOWHERE, Source, Span
 from smachac.report.repair_words import in_words
 from smachac.report.terminal import Line, columns, lay_out, linked, on_one_line, visible, wrapped
@@ -83,11 +84,16 @@ def with_cluster(item: Diagnostic, cluster: Cluster | None) -> Diagnostic:
     if cluster is None:
         return item
     words = in_words(cluster.repair, item.span)
-    own, repairs = item.help, [repair.edits for repair in item.finding.all_repairs]
-    if own and (cluster.repair.edits in repairs or words in own):
+    own, repairs = item.help, item.finding.all_repairs
+    # The help is about the first repair of the rule, if that is likely.
+    named = [each.edits for each in repairs[:1] if each.certainty is not Certainty.POSSIBLE]
+    if own and (cluster.repair.edits in named or words in own):
         help = own
+    elif own and not repairs:
+        is_possible = cluster.repair.certainty is Certainty.POSSIBLE
+        help = f"{own}\nor {words}" if is_possible else f"{words}\nor {own}"
     else:
-        help = f"{words}\nor {own}" if own and not repairs else words
+        help = words
     edited = cluster.repair.edits[0].span
     notes = [
         Related(span=NOWHERE, message=f"this also corrects {other.span}: {other.message}")

@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 
 from smachac.robots.core_schema import value_of
 from smachac.robots.description import Description, Station, read
+from smachac.robots.encodings import decoded
 from smachac.robots.fields import DataError
 
 BUILT_IN = ("panda", "baxter", "iiwa")
@@ -89,7 +90,7 @@ def _mapping(items: list[Any]) -> dict[Any, Any]:
 def read_file(path: Path) -> Any:
     """The data of a YAML file. Raises DataError and OSError."""
     try:
-        return plain(path.read_bytes().decode("utf-8"))
+        return plain(decoded(path.read_bytes(), path.name))
     except UnicodeDecodeError as error:
         raise DataError(f"not UTF-8: {error.reason}", (), "save the file as UTF-8") from None
 

@@ -46,6 +46,8 @@ class Files:
 
     def read(self, name: str) -> str:
         """The text of a file. Raises RefusedError and OSError."""
+        from smachac.robots.encodings import decoded
+
         path = Path(name).absolute()
         inside = path.resolve().is_relative_to(self.project.resolve())
         # Installed packages often consist of links to their sources.
@@ -60,7 +62,11 @@ class Files:
         if path.stat().st_size > _LONGEST_TEXT:
             message = f"the file `{name}` is too large"
             raise RefusedError(message, "name a smaller file", path.name)
-        text = path.read_bytes().decode("utf-8", "replace")
+        try:
+            text = decoded(path.read_bytes(), path.name)
+        except ValueError as error:  # also UnicodeDecodeError
+            help = "save it as UTF-8"
+            raise RefusedError(f"the file `{name}` cannot be read: {error}", help) from None
         self.read_texts[str(path)] = text
         return text
 
@@ -105,7 +111,7 @@ def expand(task: Mapping[str, Any]) -> dict[str, Any]:
                 xacro.filestack.pop()
         current["file"] = str(Path(name).absolute())
         parse(text)  # raises XmlError with the place, and refuses a document type
-        return parseString(text.encode("utf-8", "replace"))
+        return parseString(text)  # a text has no encoding: what it declares is not used
 
     def opened(name: str) -> Any:
         from io import StringIO

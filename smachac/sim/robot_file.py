@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from smachac.robots.encodings import EncodingError, decoded
 from smachac.robots.engine_text import engine_text
 from smachac.robots.files import Packages, find_mesh
 from smachac.robots.urdf import Urdf, read
@@ -91,9 +92,12 @@ def read_robot_file(
     if path.stat().st_size > 4 * MAX_CHARACTERS:
         raise LoadError(f"the file `{path}` is too large for a robot: {TOO_LARGE}")
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = decoded(path.read_bytes(), path.name)
     except UnicodeDecodeError as error:
-        raise LoadError(f"the file `{path}` is not UTF-8: {error.reason}") from None
+        reason = f"not {error.encoding.upper()}: {error.reason}"
+        raise LoadError(f"the file `{path}` is {reason}") from None
+    except EncodingError as error:
+        raise LoadError(f"the file `{path}` cannot be read: {error}") from None
     packages = packages or {}
     try:
         if path.name.lower().endswith(XACRO_SUFFIX):

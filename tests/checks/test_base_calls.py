@@ -56,21 +56,19 @@ def reported(call: str, base: str = BASE) -> list[tuple[str, str, str]]:
 
 
 LISTS = '["moved", "lost"], ["offset"]'
+ORDER = "pass them in the order of its parameters: `node`, `outcomes`, `input_keys`"
+PARAMETERS = "its parameters are `node`, `outcomes`, `input_keys`, `rate`"
 GOOD = f"super().__init__(node, {LISTS})"
 
 
 @pytest.mark.parametrize(
     ("call", "place", "help"),
     [
-        (f"super().__init__({LISTS})", '["moved", "lost"]', f"write `{GOOD}`"),
-        (f"super(Move, self).__init__({LISTS})", '["moved", "lost"]',
-         f"write `super(Move, self).__init__(node, {LISTS})`"),
-        (f"Drive.__init__(self, {LISTS})", '["moved", "lost"]',
-         f"write `Drive.__init__(self, node, {LISTS})`"),
-        ('super().__init__(["moved", "lost"])', "super().__init__",
-         'write `super().__init__(node, ["moved", "lost"])`'),
-        ("super().__init__(node)", "super().__init__",
-         "write `super().__init__(node, outcomes=...)`"),
+        (f"super().__init__({LISTS})", '["moved", "lost"]', ORDER),
+        (f"super(Move, self).__init__({LISTS})", '["moved", "lost"]', ORDER),
+        (f"Drive.__init__(self, {LISTS})", '["moved", "lost"]', ORDER),
+        ('super().__init__(["moved", "lost"])', "super().__init__", PARAMETERS),
+        ("super().__init__(node)", "super().__init__", PARAMETERS),
         ('super().__init__(node, outcomes=["moved", "lost"], inputs=["offset"])', "inputs",
          "did you mean `input_keys`?"),
         ('super().__init__(node, ["moved", "lost"], ["offset"], 5)', "5",
@@ -121,7 +119,8 @@ def test_lists_in_another_order_than_those_of_a_base_class(copy: str) -> None:
                         f"outcomes=list(outcomes), input_keys={copy}")  # fmt: skip
     assert [each for each in reported(GOOD, base) if each[0] == "SM609"] == []
     call = 'super().__init__(node, ["offset"], ["moved", "lost"])'
-    assert reported(call, base)[0] == ("SM609", '["offset"]', f"write `{GOOD}`")
+    help = ORDER.replace("input_keys", "inputs")
+    assert reported(call, base)[0] == ("SM609", '["moved", "lost"]', help)
 
 
 def test_a_list_that_is_no_list_of_outcomes() -> None:

@@ -155,12 +155,3 @@ def test_an_input_key_that_is_written_as_a_variable(keys: str, more: str) -> Non
     (found,) = [item for item in report if item.code == "SM003"]
     help = f"`topic` is an input key: write `userdata: {{topic: /alarm}}`{more}"
     assert (found.span.text, found.help) == ("topic", help)
-
-
-@pytest.mark.parametrize("name", ["topic", "alarm_topic", "alarm"])
-def test_userdata_that_a_misplaced_key_leaves_unread_is_no_second_finding(name: str) -> None:
-    text = PUBLISH.replace("KEYS", "input_keys: [msg, msg_type]")
-    text = text.replace("{msg: hello,", f"{{{name}: /bell, msg: hello,")
-    report = analyse(Source("main.yml", text), memory_library({}, BUILT_IN), []).report
-    codes = [each.code for each in report if each.code in ("SM003", "SM305")]
-    assert codes == (["SM305", "SM003"] if name == "alarm" else ["SM003"])

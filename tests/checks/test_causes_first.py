@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from smachac.diagnostics.diagnostic import Severity
-from tests.trust.judged_repairs import shown
+from tests.trust.judged_repairs import printed, shown
 from tests.trust.project_text import analysed
 
 FIND = "outcomes: {found: {}, nothing: {}, preempted: {}}\n"
@@ -548,7 +548,8 @@ states:
 )
 def test_a_slip_in_a_key_is_one_finding(old: str, new: str, expected: list[str]) -> None:
     interface = FIND + "input_keys: {kind: str}\n"
-    assert found(KEYS.replace(old, new, 1), Find=interface) == expected
+    files = {"main.yml": KEYS.replace(old, new, 1), "templates/Find.yml": interface}
+    assert [f"{code} {place}" for code, place, _ in printed(files)] == expected
 
 
 def test_branches_of_one_name_are_no_race() -> None:
@@ -573,13 +574,14 @@ states:
       input_keys: {kind: str}
       transitions: {done: done}
 """
-    report = analysed({"main.yml": script}).report
-    assert [(each.code, each.span.text) for each in report] == [("SM301", "kind")]
-    assert str(report[0].help).startswith(
-        "if `GRASP` must read `grip`, write `remapping: {kind: grip}`"
-    )
-    whole = script.replace("{kind: str}", "{kind: int}")  # the value does not fit
-    codes = {each.code for each in analysed({"main.yml": whole}).report}
+    interface = "input_keys: {kind: str}\noutcomes: [done]\n"
+    script = script.replace("ScriptedState", "Grasp").replace("      input_keys: {kind: str}\n", "")
+    script = script.replace("      outcomes: [done]\n", "")
+    ((code, place, help),) = printed({"main.yml": script, "templates/Grasp.yml": interface})
+    assert (code, place) == ("SM301", "GRASP")
+    assert help == "write `remapping: {kind: grip}` in `GRASP`"
+    other = interface.replace("str", "int")  # the value does not fit
+    codes = {code for code, *_ in printed({"main.yml": script, "templates/Grasp.yml": other})}
     assert codes == {"SM301", "SM305"}
 
 

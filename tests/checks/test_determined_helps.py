@@ -117,9 +117,6 @@ states:
 @pytest.mark.parametrize(
     ("old", "new", "found"),
     [
-        ("item: part, in: parts", "item: parts, in: part",
-         [("SM301", "parts",
-           "swap them: write `for_each: {item: part, in: parts, on: [placed]}`")]),
         ("on: [placed]", "on: [succeeded]",
          [("SM004", "succeeded", "write `placed` in place of `succeeded`")]),
     ],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.trust.judged_repairs import printed
 from tests.trust.project_text import analysed
 
 CELL = """
@@ -27,9 +28,12 @@ states:
 """
 
 
+def text_with(inputs: str, offset: str) -> str:
+    return CELL.replace("INPUTS", inputs).replace("OFFSET", offset)
+
+
 def found(inputs: str, offset: str) -> list[tuple[str, str, str, str | None]]:
-    text = CELL.replace("INPUTS", inputs).replace("OFFSET", offset)
-    report = analysed({"main.yml": text}).report
+    report = analysed({"main.yml": text_with(inputs, offset)}).report
     return [(each.code, each.severity.value, each.span.text, each.help) for each in report]
 
 
@@ -37,13 +41,14 @@ def found(inputs: str, offset: str) -> list[tuple[str, str, str, str | None]]:
     ("inputs", "offset", "help"),
     [
         ("spot, above", "abov", "did you mean `above`?"),
-        ("spot, above", "above_offset", "did you mean `above`?"),
         ("spot, above", "above_table", "did you mean `above`?"),
-        ("spot", "above", "write `input_keys: [spot, above]` in `PICK`"),
     ],
 )
 def test_an_optional_key_of_a_key_that_nothing_sets(inputs: str, offset: str, help: str) -> None:
-    assert found(inputs, offset) == [("SM302", "warning", offset, help)]
+    assert ("SM302", "warning", offset, help) in found(inputs, offset)
+    assert [item[:2] for item in printed({"main.yml": text_with(inputs, offset)})] == [
+        ("SM302", offset)
+    ]
 
 
 def test_a_value_in_place_of_a_key() -> None:

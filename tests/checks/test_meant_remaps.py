@@ -1,11 +1,11 @@
-"""SM302: the key that a remapping to an unset key means: one that nothing reads and whose type
-fits, never one of another type."""
+"""SM302: the keys that a remapping to an unset key can mean: of its type, those that nothing reads
+first."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import printed
 
 PICK = """\
 name: pick
@@ -30,15 +30,15 @@ TYPES = {
     "templates/Move.yml": "name: Move\ninput_keys: {positions: TYPE}\noutcomes: [ok]\n",
 }
 OFFSET = "hover_offset: [[0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]"
-WRITE = "write `positions: approach`, which `PLAN` sets"
+WRITE = "write `positions: approach`"
 
 
 def found(
     to: str, joints: str = "approach", preset: str = "x: 1", type_: str = '"list[float<rad>]"'
-) -> list[tuple[str, str, str | None]]:
+) -> list[tuple[str, str, str]]:
     text = PICK.replace("JOINTS", joints).replace("TO}", f"{to}}}").replace("PRESET", preset)
     types = {name: each.replace("TYPE", type_) for name, each in TYPES.items()}
-    every = reported({"main.yml": text, **types})
+    every = printed({"main.yml": text, **types})
     return [each for each in every if each[:2] != ("SM305", "x")]
 
 
@@ -55,7 +55,9 @@ def found(
 )
 def test_a_result_that_nothing_reads(to: str, joints: str, preset: str, help: str) -> None:
     every = [each for each in found(to, joints, preset) if each[1] != "hover_offset"]
-    assert every == [("SM302", to, help)]
+    ((code, place, text),) = every
+    assert (code, place) == ("SM302", to)
+    assert text.startswith(help)
 
 
 def test_a_preset_that_nothing_reads() -> None:
@@ -66,18 +68,15 @@ def test_a_preset_that_nothing_reads() -> None:
     types = {
         "templates/Move.yml": TYPES["templates/Move.yml"].replace("TYPE", '"list[float<rad>]"')
     }
-    assert reported({"main.yml": text, **types}) == [("SM302", "start", "write `positions: home`")]
+    ((code, place, help),) = printed({"main.yml": text, **types})
+    assert (code, place) == ("SM302", "start")
+    assert help.startswith("write `positions: home`")
 
 
 def test_a_key_of_another_type_is_not_meant() -> None:
     """`pick_pose` is a pose, and no number."""
     ((code, word, help),) = found("pick", type_="float")
     assert (code, word) == ("SM302", "pick")
-    assert "pick_pose" not in (help or "")
-    assert found("pick", type_="Pose") == [("SM302", "pick", "did you mean `pick_pose`?")]
-
-
-def test_a_number_needs_a_word_in_common() -> None:
-    preset = "speed_limit: 0.5\n  x: 1"
-    every = found("max_force", preset=preset, type_="float")
-    assert all("speed_limit" not in (each[2] or "") for each in every if each[0] == "SM302")
+    assert "pick_pose" not in help
+    ((_, _, help),) = found("pick", type_="Pose")
+    assert help.startswith("write `positions: pick_pose`")

@@ -418,4 +418,5 @@ states:
     found = [(each.code, each.help) for each in analysed({"main.yml": text}).report
              if each.severity.value != "info"]  # fmt: skip
     help = "`positions` is an input key: write `remapping: {positions: home}`"
-    assert found == [("SM003", help)]
+    assert ("SM003", help) in found
+    assert all(code != "SM301" for code, _ in found)

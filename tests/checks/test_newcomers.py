@@ -117,7 +117,7 @@ def findings(files: dict[str, str] | str) -> list[tuple[str, str, str]]:
 
 
 def test_the_list_of_a_loop_in_place_of_its_item() -> None:
-    assert findings(LOOP) == [("SM304", "26 poses", "write `pose: current`")]
+    assert ("SM304", "26 poses", "write `pose: current`") in findings(LOOP)
     undeclared = LOOP.replace("[current, poses]", "[poses]")
     help = "write `pose: current`, and add `current` to the `input_keys` of `MOVE`"
     assert findings(undeclared) == [("SM304", "26 poses", help)]

@@ -13,6 +13,7 @@ from smachac.driver import CODES
 from smachac.frontend.config import Project, read_project
 from tests.checks.test_first_scripts import reported
 from tests.repair.test_moved_fields import CHOOSE, JOIN
+from tests.trust.judged_repairs import printed
 
 Row = tuple[str, str, str | None]
 
@@ -133,7 +134,7 @@ MOVE = """\
     tags: [[[limb]]]
     outcomes: [moved]
 """
-MISSING = "add `limb: ...` to the `params` of `SHOW`, or of a container around it"
+MISSING = "add `limb: ...` to the `params` of `SHOW`, of a container around it, or of the script"
 
 
 @pytest.mark.parametrize(
@@ -142,9 +143,8 @@ MISSING = "add `limb: ...` to the `params` of `SHOW`, or of a container around i
         ("{limb: right, speed: 0.3}", []),
         ("{speed: 0.3}", [("SM015", "script: move_arm", MISSING)]),
         ("{arm: left, speed: 0.3}",
-         [("SM015", "arm", "write `limb: left` in place of `arm: left`")]),
-        ("{arm: [left], speed: 0.3}", [("SM015", "arm", "write `limb:` in place of `arm:`")]),
-        ("{lim: left, speed: 0.3}", [("SM015", "lim", "did you mean `limb`? Write `limb: left`")]),
+         [("SM015", "arm", "write `limb:` in place of `arm:`, or add it")]),
+        ("{lim: left, speed: 0.3}", [("SM015", "lim", "did you mean `limb`?")]),
     ],
 )  # fmt: skip
 def test_a_param_that_a_call_does_not_give(params: str, found: list[Row]) -> None:
@@ -186,12 +186,10 @@ NO_WAY = "`EACH` has no other way to end with `tray_empty`"
         ("exhausted_outcome: empty",
          [("SM104", "empty", f"write `exhausted_outcome: tray_empty`: {NO_WAY}")]),
         ("tags: []", [("SM104", "EACH", f"write `exhausted_outcome: tray_empty`: {NO_WAY}")]),
-        ("final_outcome_map: {exhausted: empty}",
-         [("SM104", "EACH", f"write `final_outcome_map: {{exhausted: tray_empty}}`: {NO_WAY}")]),
     ],
 )  # fmt: skip
 def test_the_outcome_after_the_last_item(fields: str, found: list[Row]) -> None:
     assert [
-        each for each in reported({"main.yml": TRAY.replace("FIELDS", fields)})
+        each for each in printed({"main.yml": TRAY.replace("FIELDS", fields)})
         if each[0] not in ("SM208", "SM209")
     ] == found  # fmt: skip

@@ -7,6 +7,7 @@ import pytest
 
 from tests.checks.test_first_scripts import reported
 from tests.repair.slips import slip
+from tests.trust.judged_repairs import printed
 from tests.trust.project_text import analysed
 
 Row = tuple[str, str, str | None]
@@ -29,8 +30,6 @@ states:
     ("fields", "found"),
     [
         ("item: wp, in: waypoints", []),
-        ("item: waypoints, in: wp",
-         [("SM301", "waypoints", "swap them: write `for_each: {item: wp, in: waypoints}`")]),
     ],
 )  # fmt: skip
 def test_a_loop_over_a_key(fields: str, found: list[Row]) -> None:
@@ -107,9 +106,7 @@ states:
 )
 def test_a_key_of_a_state_that_is_led_past(old: str, new: str, expected: list[str]) -> None:
     """The key is set once the transition leads to the state."""
-    found = [
-        f"{code} {word}" for code, word, _ in reported({"main.yml": LINE_UP.replace(old, new)})
-    ]
+    found = [f"{code} {word}" for code, word, _ in printed({"main.yml": LINE_UP.replace(old, new)})]
     assert found == expected
 
 
@@ -185,7 +182,6 @@ states:
     ("items", "label", "found"),
     [
         ("tray", "part", []),
-        ("part", "tray", [("SM301", "tray", "swap them: write `it_label: part` and `it: tray`")]),
     ],
 )
 def test_an_iterator_over_a_key(items: str, label: str, found: list[Row]) -> None:

@@ -8,6 +8,7 @@ from smachac.diagnostics.source import Source
 from smachac.driver import analyse
 from smachac.frontend.loader import memory_library
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import printed
 from tests.trust.project_text import BUILT_IN
 
 SCALE = """\
@@ -182,11 +183,8 @@ outcomes: {full: {}}
 
 
 def test_an_entry_that_a_remapping_lacks() -> None:
-    found = reported({"main.yml": POUR, "templates/Pour.yml": POUR_TYPE})
-    ((code, _, help),) = [each for each in found if each[0] == "SM301"]
-    assert str(help).startswith(
-        "if `POUR` must read `level`, add `fill: level` to the `remapping` of `POUR`; otherwise"
-    ), code
+    found = printed({"main.yml": POUR, "templates/Pour.yml": POUR_TYPE})
+    assert found == [("SM301", "POUR", "add `fill: level` to the `remapping` of `POUR`")]
 
 
 VACUUM = """\

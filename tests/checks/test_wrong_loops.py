@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import printed
 from tests.trust.project_text import analysed
 
 SCRIPT = """
@@ -48,12 +49,13 @@ def test_a_right_loop() -> None:
         ("for_each: {item: wp, in: 3}", "SM004", "3",
          "a loop of 3 turns has the items `[0, 1, 2]`"),
         ("claims: []", "SM301", "wp",
-         "if `VISIT` must run for each item of `waypoints`, write `for_each: {item: wp, in:"
-         " waypoints}` in `VISIT`; otherwise give `wp` an initial value in `rounds`"),
+         "write `for_each: {item: wp, in: waypoints}` in `VISIT`, or set `wp` on every path before"
+         " `VISIT`, or give it an initial value in `rounds`: `userdata: {wp: ...}`"),
     ],
 )  # fmt: skip
 def test_a_wrong_loop_is_one_finding(field: str, code: str, place: str, help: str) -> None:
-    assert found(field) == [(code, place, help)]
+    assert (code, place, help) in found(field)
+    assert len(printed({"main.yml": SCRIPT.replace("FIELD", field)})) == 1
 
 
 def test_a_number_of_tries_in_quotes() -> None:
@@ -87,7 +89,7 @@ states:
 @pytest.mark.parametrize(
     ("old", "new", "codes"),
     [
-        ("", "", ["SM303"]),
+        ("", "", ["SM306", "SM303"]),
         ("input_keys: [hole]\n      tr", "input_keys: [holes]\n      tr", []),
         ("input_keys: [hole]\n      tr", "input_keys: [holes, hole]\n      tr", ["SM306"]),
     ],
@@ -97,8 +99,3 @@ def test_a_loop_in_a_body_with_the_item_as_input(old: str, new: str, codes: list
     report = analysed({"main.yml": NESTED.replace(old, new)}).report
     found = [each for each in report if each.code in ("SM303", "SM306")]
     assert [each.code for each in found] == codes
-    if codes == ["SM303"]:
-        assert found[0].help == (
-            "write `holes` in place of `hole` in the `input_keys` of `ALL`: the `for_each` of"
-            " `SCREW` sets `hole`; or move the `for_each` to `ALL`"
-        )

@@ -270,7 +270,7 @@ def test_a_watch_sees_definitions_that_come_later(tmp_path: Path) -> None:
 
     disk = Disk()
     library = disk_library(write(tmp_path, "main.yml", ""), [], disk=disk)
-    assert library.definitions("cell_msgs/srv/Grasp.srv") == []
+    assert library.definitions("cell_msgs/srv/Grasp.srv", []) == []
     assert os.path.realpath(tmp_path / "cell_msgs/srv/Grasp.srv") in disk.searched_files()
 
 

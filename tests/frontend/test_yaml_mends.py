@@ -43,6 +43,10 @@ def mended(text: str) -> tuple[object, Report]:
         ('c: {python: "a:B}\nd: e', 13, 'a `"` is missing after `a:B`', '`python: "a:B"`'),
         ('t: "Base\nu: {a: "x"}', 7, 'a `"` is missing at the end', '`t: "Base"`'),
         ("t: 'Base\nd: e\nu: {a: 'x y'}", 7, "a `'` is missing at the end", "`t: 'Base'`"),
+        ("s:\n  - GO\n      t: 5\n", 7, "a `:` is missing after this key", "`- GO:`"),
+        ("s:\n  - A:\n      t\n        a: b\n", 16, "a `:` is missing after this key", "`t:`"),
+        ("n: 1\nstates \n  - A:\n      t: 1\n", 5, "a `:` is missing after this", "`states:`"),
+        ("o: {a: {}, b: }}", 14, "a `{` is missing before `}`", "`b: {}`"),
         ('t: a\nb: "true', 8, 'this `"` is one too many', "`b: true`"),
     ],
 )

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from smachac.diagnostics.diagnostic import Diagnostic, Severity
-from smachac.diagnostics.repair import Repair, edited_texts
+from smachac.diagnostics.repair import Certainty, Repair, edited_texts
 from smachac.driver import Analysis
 from smachac.repair.search import again, clusters
 from smachac.report.text import with_cluster
@@ -77,11 +77,16 @@ def names_all(item: Diagnostic, lost: tuple[str, ...]) -> bool:
     return all(piece in words for piece in lost)
 
 
-def judged(files: Files, kind: str, seed: str) -> JudgedRepair | None:
-    """One mutant of a project, judged; None if the mutation does not fit its file."""
+def mutated(files: Files, kind: str, seed: str) -> tuple[str, TextMutant | None]:
+    """A file of a project and its mutant, which is None if the mutation does not fit the file."""
     draw = random.Random(seed)
     file = draw.choice(scripts(files))
-    mutant = ALL_MUTATIONS[kind](files[file], draw)
+    return file, ALL_MUTATIONS[kind](files[file], draw)
+
+
+def judged(files: Files, kind: str, seed: str) -> JudgedRepair | None:
+    """One mutant of a project, judged; None if the mutation does not fit its file."""
+    file, mutant = mutated(files, kind, seed)
     if mutant is None:
         return None
     changed = {**files, file: mutant.text}
@@ -93,7 +98,8 @@ def scripts(files: Files) -> list[str]:
 
 
 def shown(analysis: Analysis) -> tuple[tuple[Diagnostic, ...], Repair | None]:
-    """The errors and warnings of a project as they are printed, and the first repair."""
+    """The errors and warnings of a project as they are printed, and the first repair, if it is more
+    than possible."""
     found = clusters(analysis, analysis.report, again(analysis))
     hidden = {id(item) for cluster in found for item in cluster.explained}
     roots = {id(cluster.finding): cluster for cluster in found}
@@ -102,7 +108,9 @@ def shown(analysis: Analysis) -> tuple[tuple[Diagnostic, ...], Repair | None]:
         for item in analysis.report
         if item.severity is not Severity.INFO and id(item) not in hidden
     ]
-    return (*items,), found[0].repair if found else None
+    first = found[0].repair if found else None
+    is_likely = first is not None and first.certainty is not Certainty.POSSIBLE
+    return (*items,), first if is_likely else None
 
 
 def printed(files: Files) -> list[tuple[str, str, str]]:

@@ -115,9 +115,9 @@ def unusable_class(context: Context) -> Iterator[Finding]:
     modules that are not imported, methods of `self` that no class defines, methods without `()`,
     `is` with a text or a number, `==` in place of `=`, and keys that are not in a list; outcomes
     that `execute` makes and does not return, names without a value after an `except`, attributes
-    that nothing sets, and methods that a plain class of the project lacks, calls with too few or
-    too many arguments, or with arguments that have changed places, also through an object or in a
-    template. Where a name can be defined elsewhere, nothing is reported.
+    that nothing sets, methods that a plain class of the project lacks, and calls with too few
+    or too many arguments, also through an object or in a template. Where a name can be defined
+    elsewhere, nothing is reported.
 
     Wrong:
         name: sm

@@ -19,7 +19,7 @@ from smachac.analysis.context import Context
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.code_places import attribute_place, node_place, python_tree
 from smachac.ir.code_slips import CONSTANTS
@@ -128,12 +128,12 @@ def undefined_name(context: Context) -> Iterator[Finding]:
     classes = [item for item in found if isinstance(item, Word)]
     attributes_used = [item for item in found if isinstance(item, _Attribute)]
     known = _known(machine, library) if used or classes else None
+    own = _own_sources(machine, library) if used else []
     for use in used:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
             if use.name.id not in imported and not _lacks_parameter(use, types):
-                fix = _import_fix(use, machine, library) or _fix(use, imported)
-                fix = fix or _own_fix(use, machine, library)
+                fix = _import_fix(use, own, library) or _fix(use, imported) or _own_fix(use, own)
                 yield _fixed(use.span, use.name.id, fix) if fix else _unknown_name(use, machine)
     yield from _missing_attributes(machine, library, attributes_used)
     for word in classes:
@@ -193,8 +193,7 @@ def _missing_attributes(
     """The attributes of modules of Python's library that these do not have."""
     if not found:
         return
-    sources = template_sources(machine, library)
-    texts = [source.text for file, source in sources if library.own_template(file) is not None]
+    texts = [source.text for source in _own_sources(machine, library)]
     for code, module, node, meant in found:
         if only_imported(module, texts) and not is_shadowed(module, library):
             help = "correct the name"
@@ -360,7 +359,13 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
     return NameFix(f"did you mean `{near}`?") if near is not None else None
 
 
-def _import_fix(use: _Use, machine: Machine, library: UserCode) -> NameFix | None:
+def _own_sources(machine: Machine, library: UserCode) -> list[Source]:
+    """The templates of the user that a machine needs."""
+    sources = template_sources(machine, library)
+    return [source for file, source in sources if library.own_template(file) is not None]
+
+
+def _import_fix(use: _Use, own: Sequence[Source], library: UserCode) -> NameFix | None:
     """The cure of a name that a module of the project defines from which a template of the user
     imports other names."""
     name = use.name.id
@@ -368,23 +373,22 @@ def _import_fix(use: _Use, machine: Machine, library: UserCode) -> NameFix | Non
         return None
     from smachac.pysource.modules import Module, load_module
 
-    for file, source in template_sources(machine, library):
-        for line in _FROM.finditer(source.text) if library.own_template(file) is not None else ():
+    for source in own:
+        for line in _FROM.finditer(source.text):
             module = load_module(line[1], library)
             if isinstance(module, Module) and not module.dynamic and name in module.names:
                 return NameFix(f"write `{line[0].strip()}, {name}` in `{source.name}`")
     return None
 
 
-def _own_fix(use: _Use, machine: Machine, library: UserCode) -> NameFix | None:
+def _own_fix(use: _Use, own: Sequence[Source]) -> NameFix | None:
     """The cure of a name that is one slip away from one that the user's templates define or
     import."""
     names: set[str] = set()
-    for file, source in template_sources(machine, library):
-        if library.own_template(file) is not None:
-            names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
-            names.update(word for line in _IMPORTED.findall(source.text)
-                         for word in _WORDS.findall(line))  # fmt: skip
+    for source in own:
+        names.update(word for pair in _DEFINED.findall(source.text) for word in pair if word)
+        names.update(word for line in _IMPORTED.findall(source.text)
+                     for word in _WORDS.findall(line))  # fmt: skip
     near = guesser(sorted(names)).sure(use.name.id)
     if near is None:
         return None

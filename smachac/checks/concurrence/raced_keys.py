@@ -1,29 +1,11 @@
-"""Keys that a branch of a concurrence writes for another branch (SM405)."""
+"""Keys of branches of concurrences."""
 
 from __future__ import annotations
 
 from smachac.analysis.accesses import callback_names
-from smachac.analysis.context import Context
-from smachac.analysis.raced_outputs import raced_output
 from smachac.ir.leaf import functions
-from smachac.ir.nodes import Concurrence, Leaf, Node
-from smachac.ir.traversal import outputs_to, remapping
-
-
-def raced_keys(context: Context) -> set[tuple[str, str]]:
-    """The keys that are unset because a branch of a concurrence writes the key of another branch
-    (SM405), each with the path of the container that has it."""
-    found = set[tuple[str, str]]()
-    for path, container in context.containers:
-        raced = None
-        if isinstance(container, Concurrence):
-            raced = raced_output(path, container, context.accesses)
-        if raced is not None and not any(
-            is_never_set(child, raced.key) for child in container.children
-        ):
-            outer = remapping(container)[raced.meant]
-            found.add((path.rpartition("/")[0], outer))
-    return found
+from smachac.ir.nodes import Leaf, Node
+from smachac.ir.traversal import outputs_to
 
 
 def is_never_set(writer: Node, key: str) -> bool:

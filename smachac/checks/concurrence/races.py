@@ -12,9 +12,11 @@ from smachac.analysis.raced_outputs import RacedOutput, raced_output
 from smachac.analysis.resource_claims import Held, prefixes
 from smachac.analysis.type_lattice import present
 from smachac.checks.concurrence.raced_keys import is_never_set, own_key
+from smachac.checks.edits import likely, with_remapping
 from smachac.checks.help_text import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import both, either
 from smachac.ir.nodes import Concurrence, Leaf, Machine, Node, Variable
@@ -127,11 +129,15 @@ def _race(
     own, span = own_key(here[0], key), here[0].span
     help = f"write `remapping: {{{own}: {key}_2}}` at `{here[0].name}`, for a key of its own, or"
     help += " run one branch after the other"
+    edits: tuple[Edit, ...] = ()
     if raced is not None:
         written = [each for each in here[0].remaps if each.to == key]
         span = written[0].to_span if written and written[0].to_span.source is span.source else span
         help = f"write `{own}: {raced.meant}` in the `remapping` of `{here[0].name}`: nothing sets"
         help += f" `{raced.meant}`, which is an output of `{container.name}`"
+        edits = (Edit(span=span, text=raced.meant),)
+        if span == here[0].span:
+            edits = with_remapping(here[0], own, raced.meant)
     names = (*sorted(child.name for child, _ in writing), *sorted(one.name for one, _ in reading))
     return Finding(
         span=span,
@@ -145,6 +151,7 @@ def _race(
             *calls(here[0], span),
         ),
         node=f"{path}/{here[0].name}",
+        repairs=likely(edits, "remap the output"),
     )
 
 

@@ -14,9 +14,9 @@ from smachac.analysis.control_flow import (
     Linear,
     MeantTarget,
     children_names,
+    correction,
     is_catch_all,
     is_open,
-    meant_targets,
     missing_default,
     places_of,
     strays,
@@ -27,15 +27,14 @@ from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.names.other_outcomes import continuing_outcome, other_outcome
 from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.rule import rule
-from smachac.checks.userdata.meant_keys import meant_keys
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Repair
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, respelt, words_of
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, words_of
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
-from smachac.ir.outcome_names import OF_SMACH, PREEMPTED
+from smachac.ir.outcome_names import OF_SMACH
 from smachac.ir.traversal import outcome_names
 
 EXCEPTIONS = "error"
@@ -133,7 +132,11 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: stacked}
     """
-    lost = [each for path, container in context.misnamed for each in _lost(path, container)]
+    lost = [
+        fault
+        for path, container in context.misnamed
+        for fault in _lost(path, container, context.of_container(correction, path, container).meant)
+    ]
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
         paths.setdefault(node.name, context.plain_paths.get(path, path))
@@ -148,20 +151,15 @@ def unknown_target(context: Context) -> Iterator[Finding]:
             yield from _idle_transitions(context, path, container)
 
 
-def _lost(path: str, container: Linear) -> Iterator[_Lost]:
-    guess: Guesser | None = None
-    near: Mapping[str, MeantTarget] = {}
+def _lost(path: str, container: Linear, near: Mapping[str, MeantTarget]) -> Iterator[_Lost]:
     targets = _Targets(container)
     copied = copied_name(container)
     names, exits = children_names(container), frozenset(outcome_names(container))
     lost = ((child, step) for child in container.children for step in strays([child], names, exits))
     for child, step in lost:
-        if guess is None:
-            guess, near = places_of(container), meant_targets(container)
         if not _was_reported(step) and step.target != copied:  # SM106
             meant = near.get(step.target)
-            name, paired = (meant.name, meant.paired) if meant is not None else (None, False)
-            sure = guess.sure(step.target) if meant is not None else None
+            name, paired, sure = meant if meant is not None else (None, False, None)
             yield _Lost(path, container, targets, child, step, name, sure, paired)
 
 
@@ -378,12 +376,7 @@ def unknown_outcome(context: Context) -> Iterator[Finding]:
               transitions: {done: picked, slipped: lost}
     """
     misnamed = frozenset([path for path, _ in context.misnamed])
-    found = context.at_containers(_unknown_outcomes, misnamed)
-    loops: set[str] = set()
-    if any(each.span.text == PREEMPTED for each in found):
-        # The states in which `for_each` is probably missing, which SM301 reports.
-        loops = {each.state for each in meant_keys(context).values() if each.looped}
-    yield from (each for each in found if each.span.text != PREEMPTED or each.node not in loops)
+    yield from context.at_containers(_unknown_outcomes, misnamed)
 
 
 def _unknown_outcomes(

@@ -17,7 +17,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.graph import edges, reachable
 from smachac.ir.nodes import Node, Sequence, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails
-from smachac.ir.traversal import outcome_names, outer_outputs
+from smachac.ir.traversal import outcome_names
 
 
 class Hidden(NamedTuple):
@@ -66,35 +66,6 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
                 past = _led_out(container, one, group, seen)
             way_out = _way_out(container, one, seen) if past is None else None
             yield Hidden(path, container, group, past, way_out, led_twice if alone else None)
-
-
-def keys_of_hidden_states(context: Context) -> dict[tuple[str, str], frozenset[str]]:
-    """The keys that states set past which the state before them leads (SM201), each with the path
-    of its container; and the states that are entered without that transition."""
-    found: dict[tuple[str, str], frozenset[str]] = {}
-    for each in hidden_groups(context):
-        if isinstance(each, Finding) or each.past is None or not each.past.next:
-            continue
-        entered = _entered_without(each.container, each.past.step)
-        for child in each.group:
-            found |= {(each.path, key): entered for key in outer_outputs(child)}
-    return found
-
-
-def _entered_without(container: Linear, step: Transition) -> frozenset[str]:
-    """The states of a container that can be entered without a transition."""
-    ahead: dict[str, list[str]] = {}
-    for child in container.children:
-        targets = [each.target for each in child.transitions if each is not step]
-        ahead.setdefault(child.name, []).extend(targets)
-    seen: set[str] = set()
-    todo = [container.initial]
-    while todo:
-        name = todo.pop()
-        if name in ahead and name not in seen:
-            seen.add(name)
-            todo += ahead[name]
-    return frozenset(seen)
 
 
 def _first_hidden(

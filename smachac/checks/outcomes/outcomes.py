@@ -13,11 +13,13 @@ from smachac.analysis.control_flow import (
     unknown_outcomes,
 )
 from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules, transposed_rules
+from smachac.checks.edits import likely, with_field
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.condition_outcomes import meant_default
 from smachac.checks.outcomes.iterator_endings import MeantEnding, endings, meant_ending
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
 from smachac.diagnostics.wording import both
 from smachac.ir import nodes
@@ -359,6 +361,12 @@ def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
             *calls(container, result.span),
         ),
         node=f"{path}/{name}",
+        repairs=likely(
+            (Edit(span=result.span, text=meant.name),)
+            if written and not mapped
+            else with_field(container.span, f"{field}: {value}"),
+            "name the last outcome",
+        ),
     )
 
 

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import Linear, is_open
+from smachac.analysis.control_flow import Linear, children_names, is_open, unhandled_in
+from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.hidden_conditions import hidden_conditions
 from smachac.checks.outcomes.hidden_states import LedPast, LedTwice, hidden_groups
-from smachac.checks.outcomes.iterator_endings import endings, meant_ending
-from smachac.checks.outcomes.misled_failures import linear_outcomes, misled_failures
+from smachac.checks.outcomes.iterator_endings import endings
 from smachac.checks.outcomes.needed_variables import outcomes_without_variable
 from smachac.checks.rule import rule
 from smachac.checks.timing.iterator_stops import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.spelling import guesser, written_name
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
@@ -22,6 +23,7 @@ from smachac.ir.graph import edges, stopped_endings
 from smachac.ir.nodes import (
     Concurrence,
     Container,
+    Leaf,
     Node,
     Outcome,
     Sequence,
@@ -136,6 +138,7 @@ def _passed(path: str, container: Linear, group: list[Node], past: LedPast) -> F
             *calls(child, child.span),
         ),
         node=f"{path}/{child.name}",
+        repairs=likely([Edit(span=step.target_span, text=child.name)], "lead to the state"),
     )
 
 
@@ -252,23 +255,15 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
         yield from outcomes_without_variable(path, container, types)
     linear = iter(context.corrected)
     again = {found.stop.path for found in context.stop_paths.again}
-    moved: set[tuple[str, str]] | None = None
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
         possible = _possible_outcomes(context, path, whole)
         # Where SM209 is reported, a state does not lead `preempted` out of the container.
         stops = path in again or ends_preempted(container)
         known = {container.catches, PREEMPTED if stops else ""}
-        misnamed = meant_ending(container) if isinstance(container, nodes.Iterator) else None
-        if misnamed is not None:
-            known.add(misnamed.meant.name)  # SM104
         for outcome in container.outcomes:
             if possible is not None and outcome.name not in possible | known:
-                if moved is None:
-                    misled = misled_failures(context).items()
-                    moved = {(place, each.meant.name) for (place, _), each in misled}
-                if (path, outcome.name) not in moved:  # SM301
-                    yield _impossible(path, container, outcome)
+                yield _impossible(path, container, outcome)
 
 
 def _possible_outcomes(context: Context, path: str, container: Container) -> frozenset[str] | None:
@@ -278,12 +273,32 @@ def _possible_outcomes(context: Context, path: str, container: Container) -> fro
         return None
     match container:
         case StateMachine() | Sequence():
-            return linear_outcomes(context, path, container)
+            if context.of_container(unhandled_in, path, container):
+                return None
+            return context.of_container(_linear_outcomes, path, container)
         case Concurrence():
             return context.of_container(_concurrence_outcomes, path, container)
         case nodes.Iterator():
             return context.of_container(_iterator_outcomes, path, container)
     return None
+
+
+def _linear_outcomes(container: Linear) -> frozenset[str] | None:
+    """The outcomes with which a state machine or sequence can end, if its states have a transition
+    for each outcome; None if a transition leads nowhere."""
+    names = children_names(container)
+    exits = frozenset(outcome_names(container))
+    found = {step.target for child in container.children for step in child.transitions}
+    if not found <= names | exits:
+        return None
+    handled = [
+        frozenset(step.outcome for step in child.transitions)
+        for child in container.children
+        if isinstance(child, Leaf) and child.open
+    ]
+    if handled:
+        found |= exits.difference(frozenset.intersection(*handled))
+    return frozenset(found)
 
 
 def _concurrence_outcomes(container: Concurrence) -> frozenset[str] | None:

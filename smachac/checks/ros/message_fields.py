@@ -13,7 +13,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.message_code import MOST_CODE, leaf_definitions, message_code, nested_messages
 from smachac.analysis.type_inference import TypeFlow
 from smachac.analysis.type_lattice import fits, present
-from smachac.checks.edits import listing
+from smachac.checks.edits import likely, listing, with_input, with_remapping
 from smachac.checks.help_text import calls, did_you_mean
 from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
 from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, remapped_field, type_key_meant
@@ -302,7 +302,11 @@ def _untyped_mappings(context: Context, path: str, leaf: Leaf) -> Iterator[Findi
                     if meant != TYPE_KEY:
                         help += f" and `{TYPE_KEY}: {meant}` to its `remapping`"
                 message = "gets a mapping as its message, but no type: it lacks the key"
-                yield at(flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,))
+                found = at(flow, f"`{leaf.name}` {message} `{TYPE_KEY}`", help, (leaf.name,))
+                edits = with_input(leaf, TYPE_KEY) if meant is not None else ()
+                if edits and meant is not None and meant != TYPE_KEY:
+                    edits += with_remapping(leaf, TYPE_KEY, meant)
+                yield replace(found, repairs=likely(edits, "read the type"))
 
 
 def _wrong_messages(

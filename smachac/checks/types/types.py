@@ -10,6 +10,7 @@ from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash
 from smachac.analysis.type_lattice import misfit, present, widened
 from smachac.checks.classes.class_value_types import wrong_loops, wrong_writes
+from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule
 from smachac.checks.type_words import in_words
@@ -18,6 +19,7 @@ from smachac.checks.types.number_help import number_meant
 from smachac.checks.types.type_origins import cell_owner, written
 from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -114,6 +116,9 @@ def _lists_for_items(context: Context) -> Iterator[Finding]:
             effect=f"`{cell_owner(cell)[1:-1]}` gets the whole list in place of {named_item(cell)}",
             related=calls(each.node, each.span),
             node=each.path,
+            repairs=likely([Edit(span=each.span, text=each.item)], "read the item")
+            if each.span.text == each.items and not each.lacking
+            else (),
         )
 
 

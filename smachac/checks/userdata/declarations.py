@@ -17,7 +17,7 @@ from smachac.analysis.accesses import (
 from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
-from smachac.analysis.error_recovery import undeclared_reads, unknown_remaps
+from smachac.analysis.error_recovery import undeclared_reads
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.function_slots import function_reads
 from smachac.analysis.type_lattice import misfit
@@ -25,26 +25,16 @@ from smachac.analysis.unset_reads import container_name
 from smachac.analysis.uses import place_of
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes.condition_outcomes import meant_default, unknown_endings
-from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, type_key_meant
 from smachac.checks.rule import rule
-from smachac.checks.userdata.candidate_keys import meant_by_remaps, outer_value
-from smachac.checks.userdata.empty_remaps import meant_by_empty_remaps
-from smachac.checks.userdata.meant_keys import (
-    loop_in_a_body,
-    meant_keys,
-    misnamed_finding,
-    misnamed_keys,
-    sees_everything,
-    used_in,
-)
-from smachac.checks.userdata.swapped_loops import swapped_loop
 from smachac.checks.userdata.unsent_keys import unsent_keys
 from smachac.checks.userdata.unwritten_keys import (
+    Unwritten,
     read_unwritten,
     unreceived_finding,
     unwritten_finding,
     unwritten_keys,
 )
+from smachac.checks.userdata.used_keys import sees_everything, used_in
 from smachac.checks.userdata.word_loops import words_as_lists
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
@@ -98,68 +88,29 @@ def dead_key(context: Context) -> Iterator[Finding]:
               transitions: {succeeded: held}
     """
     flow = context.corrected_flow
-    reported = _reported_elsewhere(context)
-    unset: dict[str, set[str]] = {}
-    for each in context.missing_keys("nowhere", "remapped"):
-        unset.setdefault(each.scope.path, set()).add(each.key)
-    for empty in context.empty_remaps:
-        unset.setdefault(empty.scope.path, set()).add(empty.remap.to)
     in_functions = function_reads(context)
-    all_misnamed = misnamed_keys(context)
-    misnamed = {each.word.span: each for each in all_misnamed.values()}
-    inner = {(path.rpartition("/")[0], key) for path, key in all_misnamed}
+    # A state outside or inside the container needs the key, but does not get it.
+    needed = {(lost.keeper.path, lost.written.outer) for lost in context.lost_outputs}
+    needed |= {(missing.other, missing.key) for missing in context.missing_keys("outside")}
     for scope in flow.scopes.values():
         container = scope.container
         if context.of_container(sees_everything, scope.path, scope) or container.sugar:
             continue
         read = context.of_container(used_in, scope.path, scope)
-        remapped = _names_in_unknown_remaps(container)
-        misplaced = _misplaced_keys(container)
-        near_unset = guesser(sorted(unset.get(scope.path, ())))
-        type_keys = _type_keys(container)
         explained = 0
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
-            if key in read or (scope.path, key) in reported:
+            if key in read or key in in_functions.get(scope.path, ()):
                 continue
-            if key in in_functions.get(scope.path, ()):
-                continue  # SM310
-            if (scope.path, key) in inner:
-                continue  # SM306: an input of a container inside is misspelt
-            wrong = misnamed.get(span)
-            if wrong is not None:
-                if wrong.declared:
-                    yield misnamed_finding(wrong, scope.path, container_name(scope, span))
-                continue  # otherwise SM301
+            if (scope.path, key) in needed:
+                continue
             explained += 1
-            is_searched = explained <= MOST_EXPLAINED
-            near = near_unset.names[:MOST_EXPLAINED] if is_searched else []
-            if near_unset.sure(key) or any(guesser([key])(name) for name in near):
-                continue  # SM301 or SM302 is about the same slip
-            if key in remapped:
-                continue  # SM302
-            if key in type_keys:
-                continue  # SM515
-            if not misplaced.isdisjoint([key.rpartition("_")[2], key]):
-                continue  # SM003 is about the same value
-            if not is_searched:
-                yield _unread_key(scope, key, node, span, None, is_searched=False)
-                continue
+            finding = _unread_key(scope, key, node, span, is_searched=explained <= MOST_EXPLAINED)
             # The userdata of the machine can be read after the run.
-            back = _turned_preset(scope, key, read) if node is container else None
-            finding = _unread_key(scope, key, node, span, back)
             is_result = container is flow.machine.root and node is not container
             yield replace(finding, severity=Severity.INFO) if is_result else finding
         for child, remap, meant in context.of_container(_misnamed_outputs, scope.path, scope):
-            if remap.to in read or (scope.path, remap.to) in reported:
-                continue
-            yield _lost_result(scope, child, remap, meant)
-
-
-def _type_keys(container: Container) -> Collection[str | None]:
-    """The keys that probably hold the type of a message that a state reads without its type."""
-    if not any(map(lacks_type_key, container.children)):
-        return ()
-    return (TYPE_KEY, type_key_meant(container))
+            if remap.to not in read:
+                yield _lost_result(scope, child, remap, meant)
 
 
 def _unread_key(
@@ -167,19 +118,17 @@ def _unread_key(
     key: str,
     node: Node,
     span: Span,
-    back: str | None,
     *,
-    is_searched: bool = True,
+    is_searched: bool,
 ) -> Finding:
-    """SM305 for a key of a container that a node sets. `back`: the key that is meant, if name and
-    value have changed places; `is_searched`: a state that can read the key is searched."""
+    """SM305 for a key of a container that a node sets. `is_searched`: a state that can read the key
+    is searched."""
     where = container_name(scope, span)
     return Finding(
         span=span,
         message=f"`{key}` is set, but nothing in {where} reads it",
         arguments=(key,),
         help=(_reader_help(scope, key, node) if is_searched else None)
-        or (f"write `{back}: {key}`: the name of the key comes first" if back else None)
         or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
         f" it, or to the `output_keys` of {where}",
         related=calls(node, span),
@@ -199,32 +148,6 @@ def _lost_result(scope: UserdataScope, child: Node, remap: Remap, meant: str) ->
         related=calls(child, remap.span),
         node=f"{scope.path}/{child.name}",
     )
-
-
-def _reported_elsewhere(context: Context) -> set[tuple[str, str]]:
-    """The keys about which another finding is, each with the path of its container."""
-    found = {(each.keeper.path, each.written.outer) for each in context.lost_outputs}  # SM307
-    found |= {(each.other, each.key) for each in context.missing_keys("outside")}
-    found |= {(each.other, each.remap.to) for each in context.empty_remaps}  # SM302
-    found |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
-    found |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
-    scopes = context.corrected_flow.scopes
-    unset = (outer_value(each, scopes) for each in context.missing_keys("unset"))
-    found |= {place for place in unset if place is not None}  # SM301
-    found |= _swapped_lists(context)
-    return found
-
-
-def _swapped_lists(context: Context) -> set[tuple[str, str]]:
-    """The lists of loops whose items and item have changed places, with their containers."""
-    loops = [(each, swapped_loop(each)) for each in context.missing_keys("nowhere", "remapped")]
-    return {(each.scope.path, loop.item_key) for each, loop in loops if loop is not None}
-
-
-def _misplaced_keys(container: Container) -> set[str]:
-    """The input keys that states of a container have as variables (SM003)."""
-    leaves = [child for child in container.children if isinstance(child, Leaf)]
-    return {key for leaf in leaves for key in leaf.misplaced_keys}
 
 
 def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
@@ -251,20 +174,6 @@ def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
         f"`{state}` can read it as `{name}`: write `remapping: {{{name}: {key}}}` in `{state}`,"
         f" or remove `{key}`"
     )
-
-
-def _turned_preset(scope: UserdataScope, key: str, known: Collection[str]) -> str | None:
-    """The key of a container that is the value of a preset which nothing reads, and has no value
-    itself: name and value have changed places."""
-    values = {preset.key: preset.value.data for preset in scope.container.userdata}
-    value = values.get(key)
-    return value if isinstance(value, str) and value in known and value not in values else None
-
-
-def _names_in_unknown_remaps(container: Container) -> set[str | None]:
-    """The names in remappings of states that are none of their keys, and those that are meant."""
-    unknown = (each for child in container.children for each in unknown_remaps(child))
-    return {name for each in unknown for name in (each.remap.key, each.meant)}
 
 
 def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ...]:
@@ -367,18 +276,11 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
               transitions: {done: held}
     """
     flow = context.corrected_flow
-    missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
-    kept = {(each.other, each.key) for each in context.missing_keys("outside")}
-    kept |= _swapped_lists(context)
-    loops = [(each.scope.path, loop_in_a_body(each)) for each in context.missing_keys("outside")]
-    kept |= {(path, loop.item_key) for path, loop in loops if loop is not None}  # SM303
-    kept |= {(path, meant.word.text) for path, meant in meant_keys(context).items()}  # SM301
-    kept |= {place for each in context.item_reads for place in each.declared}
-    misnamed = {each.word.span: each for each in misnamed_keys(context).values()}
-    kept |= meant_by_empty_remaps(context) | meant_by_remaps(context)  # SM302
-    misspelt = {id(each.misspelt) for each in context.lost_outputs if each.misspelt}  # SM307
+    needed = {(missing.other, missing.key) for missing in context.missing_keys("outside")}
     yield from context.at_containers(_unused_in)
-    yield from _unwritten_outputs(context)
+    unwritten = context.of_machine(unwritten_keys)
+    read = context.of_machine(read_unwritten)
+    yield from _unwritten_outputs(context, unwritten, read)
     yield from unsent_keys(context)
     for scope in flow.scopes.values():
         container = scope.container
@@ -388,29 +290,23 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
             continue
         used = context.of_container(used_in, scope.path, scope)
         for key in container.inputs:
-            if key.name in used or (scope.path, key.name) in kept:
-                continue
-            wrong = misnamed.get(key.span)
-            if wrong is not None and wrong.declared:
-                yield misnamed_finding(wrong, scope.path, container_name(scope, key.span))
-                continue
-            yield _unused(scope.path, container, key, "input")
+            if key.name not in used and (scope.path, key.name) not in needed:
+                yield _unused(scope.path, container, key, "input")
         set_ = scope.uses.provided
-        outer = scope.path.rpartition("/")[0]
         for key in container.outputs:
-            if key.name in set_ or id(key) in misspelt:
-                continue
-            if (outer, scope.outputs[key.name]) not in missing:
+            if key.name not in set_:
                 own = {each.name for each in container.outputs}
                 meant = guesser(sorted(set_ - own)).sure(key.name)
-                yield _unused(scope.path, container, key, "output", meant)
+                finding = _unused(scope.path, container, key, "output", meant)
+                is_read = (scope.path, key.name) in read
+                yield replace(finding, severity=Severity.ERROR) if is_read else finding
     yield from _unused_by_the_script(context)
 
 
-def _unwritten_outputs(context: Context) -> Iterator[Finding]:
-    """The output keys that built-in states never write."""
-    unwritten = unwritten_keys(context)
-    read = read_unwritten(context, unwritten) if unwritten else {}
+def _unwritten_outputs(
+    context: Context, unwritten: Iterable[Unwritten], read: Collection[tuple[str, str]]
+) -> Iterator[Finding]:
+    """The output keys that built-in states never write. `read`: those that are read and unset."""
     for path, found in groupby(unwritten, key=lambda each: each.path):
         every = [each for each in found if each.slots]
         if every:

@@ -13,7 +13,7 @@ from smachac.analysis.type_lattice import NONE, mapping, present
 from smachac.checks.help_text import other_place
 from smachac.checks.types.value_places import place_of_fault
 from smachac.checks.userdata.candidate_keys import may_be, unread_output
-from smachac.checks.userdata.meant_keys import sees_everything
+from smachac.checks.userdata.used_keys import sees_everything
 from smachac.diagnostics.diagnostic import Finding
 from smachac.ir.leaf import functions
 from smachac.ir.nodes import Container, Leaf, Preset

@@ -7,23 +7,22 @@ import ast
 from collections.abc import Iterator
 
 from smachac.analysis.def_use import written_on
-from smachac.analysis.definite_assignment import DataFlow
+from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
-from smachac.checks.edits import with_remapping
+from smachac.checks.edits import likely, listing, with_field, with_input, with_remapping
 from smachac.checks.help_text import added_remapping, calls, other_place
 from smachac.checks.userdata.candidate_keys import may_be, unread_output
 from smachac.checks.userdata.initial_presets import counts, initial_value
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.repair import Certainty, Repair
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.spelling import guesser, words_of
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Container, Node
 from smachac.ir.traversal import outcome_names, outer_inputs
-from smachac.ir.types import ANY
+from smachac.ir.types import ANY, Type
 
 MOST_RELATED = 3
 """Limit on the related places of one kind in a finding."""
@@ -80,6 +79,18 @@ def unset_read(
         elif fitting:
             help = ", or ".join(added_remapping(reader.node, reader.key, key) for key in fitting)
         related += _item_place(scope.container, reader.node)
+    repairs = [
+        repair
+        for key in fitting
+        for repair in likely(with_remapping(reader.node, reader.key, key), "remap a key")
+    ]
+    if _has_outer_value(flow, missing):
+        help = f"{listing([scope.container], 'input_keys', missing.key)}, or {help}"
+        repairs += likely(with_input(scope.container, missing.key), "take the key in")
+    for items in _unread_lists(scope) if missing.cause == "nowhere" and not fitting else ():
+        field = f"for_each: {{item: {missing.key}, in: {items}}}"
+        help = f"write `{field}` in `{reader.node.name}`, or {help}"
+        repairs += likely(with_field(reader.node.span, field), "run for each item")
     return Finding(
         span=reader.span,
         message=f"{reader.words}, {why}",
@@ -94,12 +105,27 @@ def unset_read(
         path=witness.path if len(witness.path) > 1 else (),
         severity=None if witness.always else Severity.WARNING,
         node=reader.path,
-        repairs=tuple(
-            Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="remap a key")
-            for key in fitting
-            if (edits := with_remapping(reader.node, reader.key, key))
-        ),
+        repairs=tuple(repairs),
     )
+
+
+def _has_outer_value(flow: DataFlow, missing: Missing) -> bool:
+    """Whether a key is an output of its container, and the container around has a value for it."""
+    scope, outer = missing.scope, missing.scope.outputs.get(missing.key)
+    if missing.key in scope.inputs:
+        return False
+    around = flow.scopes.get(scope.path.rpartition("/")[0])
+    while around is not None and around.container.sugar:
+        outer = around.outputs.get(outer or "")
+        around = flow.scopes.get(around.path.rpartition("/")[0])
+    return around is not None and outer in around.held
+
+
+def _unread_lists(scope: UserdataScope) -> list[str]:
+    """The presets of a container that are lists and that nothing reads."""
+    lists = [preset.key for preset in scope.container.userdata
+             if isinstance(preset.value.data, tuple) and preset.value.data]  # fmt: skip
+    return [key for key in lists if key not in scope.uses.read and key not in scope.outputs]
 
 
 MOST_PROPOSED = 3
@@ -107,26 +133,36 @@ MOST_PROPOSED = 3
 
 
 def _fitting_keys(missing: Missing, witness: Witness, types: Types) -> list[str]:
-    """The keys that a state can read in place of a key of its interface which nothing sets: those
-    that are known to have its type, or else those that nothing reads and that can have it. The
-    search itself proposes near names."""
-    scope, reader = missing.scope, witness.reader
+    """The keys that a state can read in place of a key of its interface which nothing sets."""
+    reader = witness.reader
     declared = next((key for key in reader.node.inputs if key.name == missing.key), None)
     if declared is None or declared.span.source is reader.node.span.source:
         return []
-    near, own = guesser([missing.key]), outer_inputs(reader.node)
     wanted = types.inputs.get((reader.path, reader.key), ANY)
     if witness.inner is not None and is_open(wanted):
         wanted = types.inputs.get((witness.inner.path, witness.inner.key), ANY)
-    known, unread = [], []
+    return fitting_keys(types, missing, reader.node, wanted)
+
+
+def fitting_keys(types: Types, missing: Missing, node: Node, wanted: Type) -> list[str]:
+    """The keys that a state can read in place of one that nothing sets: those that are known to
+    have the wanted type, those that nothing reads first, or else those that nothing reads and that
+    can have it. A near name that nothing reads is a slip in its declaration, which the search
+    itself corrects."""
+    scope, near, own = missing.scope, guesser([missing.key]), outer_inputs(node)
+    known: list[str] = []
+    unread: list[str] = []
+    both: list[str] = []
     for key in sorted(scope.uses.provided.difference(own)):
-        if not may_be(types, scope, key, wanted):
+        is_read = key in scope.uses.read or key in scope.outputs
+        if not may_be(types, scope, key, wanted) or (not is_read and near(key) is not None):
             continue
         if not is_open(wanted) and not is_open(types.keys.get((scope.path, key), ANY)):
-            known.append(key)
-        elif key not in scope.uses.read and key not in scope.outputs and near(key) is None:
+            (known if is_read else both).append(key)
+        elif not is_read:
             unread.append(key)
-    found = known or unread
+    words = words_of(node.name)
+    found = sorted(both or known or unread, key=lambda key: not words & words_of(key))
     return found if len(found) <= MOST_PROPOSED else []
 
 

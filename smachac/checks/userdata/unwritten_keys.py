@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.analysis.accesses import callback_names, received_part, unreceived_outputs
@@ -93,23 +93,25 @@ def _names(type_: StateType) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for name in every if name != "*"))
 
 
-def read_unwritten(
-    context: Context, unwritten: Iterable[Unwritten]
-) -> Mapping[tuple[str, str], tuple[str, str]]:
-    """Such keys that a state reads but nothing else sets: by the path and the key of the state that
-    never writes them, the path and the key of the container."""
-    flow = context.corrected_flow
+def read_unwritten(context: Context) -> Mapping[tuple[str, str], tuple[str, str]]:
+    """Such keys, and outputs of containers that nothing in them sets, that a state reads but
+    nothing else sets: by the path and the key of the state that never writes them, the path and the
+    key of the container."""
+    scopes = context.corrected_flow.scopes
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
+    never = {(each.path, each.key.name): remapping(each.leaf)[each.key.name]
+             for each in context.of_machine(unwritten_keys) if each.leaf.built_in}  # fmt: skip
+    for path, scope in scopes.items() if missing else ():
+        never |= {(path, key): outer for key, outer in scope.outputs.items()
+                  if key not in scope.uses.provided}  # fmt: skip
     found: dict[tuple[str, str], tuple[str, str]] = {}
-    certain = [each for each in unwritten if each.leaf.built_in]
-    never = {(each.path, each.key.name) for each in certain}
-    for path, leaf, key, _, _ in certain:
-        outer = path.rpartition("/")[0], remapping(leaf)[key.name]
-        if outer not in missing or outer[0] not in flow.scopes:
+    for (path, key), name in never.items():
+        outer = path.rpartition("/")[0], name
+        if outer not in missing or outer[0] not in scopes:
             continue
-        writers = flow.scopes[outer[0]].uses.writers(outer[1])
+        writers = scopes[outer[0]].uses.writers(name)
         if all((use.path, use.key) in never for use in writers):
-            found[path, key.name] = outer
+            found[path, key] = outer
     return found
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import PurePath
 
@@ -11,34 +10,20 @@ from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
-from smachac.analysis.unset_reads import Missing, Searches, Witness, container_name, reader_at
-from smachac.checks.concurrence.raced_keys import raced_keys
-from smachac.checks.edits import listing, with_input, with_output
-from smachac.checks.help_text import added_remapping, calls, did_you_mean, other_place
-from smachac.checks.outcomes.hidden_states import keys_of_hidden_states
-from smachac.checks.outcomes.misled_failures import Misled, misled_failures
+from smachac.analysis.unset_reads import Missing, Searches, container_name, provided_keys, reader_at
+from smachac.checks.edits import likely, listing, with_input, with_output
+from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.ros.message_keys import remapped_fields
 from smachac.checks.rule import rule
-from smachac.checks.userdata.candidate_keys import (
-    MOST_FITTING,
-    keys_of,
-    keys_of_type,
-    may_be,
-    meant_by_remap,
-    outer_value,
-    unread_output,
-)
-from smachac.checks.userdata.empty_remaps import empty_remap_findings
 from smachac.checks.userdata.initial_presets import missing_together, together_finding
-from smachac.checks.userdata.meant_keys import MeantKey, loop_in_a_body, meant_keys, misnamed_keys
-from smachac.checks.userdata.swapped_loops import swapped_loop
-from smachac.checks.userdata.unset_read_findings import unset_read
-from smachac.checks.userdata.unwritten_keys import read_unwritten, unwritten_keys
+from smachac.checks.userdata.unset_read_findings import fitting_keys, unset_read
+from smachac.checks.userdata.unwritten_keys import read_unwritten
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import NOWHERE, Span, Word
-from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, written_name
+from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt
 from smachac.diagnostics.wording import both, either, listed
+from smachac.frontend.text.unquoted import is_name
 from smachac.ir import nodes
 from smachac.ir.message_types import Definitions
 from smachac.ir.nodes import Container, Key, Node
@@ -103,147 +88,28 @@ def read_before_write(context: Context) -> Iterator[Finding]:
     """
     flow = context.corrected_flow
     searches = Searches(flow)
-    presets, misled = meant_keys(context), misled_failures(context)
-    misnamed = misnamed_keys(context)
-    causes = _with_their_own_cause(context)
+    # What a state declares as an output and never sets is a fault of that state, and so is what
+    # its code sets without a declaration.
+    unwritten = set(context.of_machine(read_unwritten).values())
+    dropped = cache(lambda path: _dropped(flow.scopes[path].container))
+    causes = [
+        missing
+        for missing in context.missing_keys("unset", "nowhere")
+        if (missing.scope.path, missing.key) not in unwritten
+        and not (missing.cause == "nowhere" and missing.key in dropped(missing.scope.path))
+    ]
     for lacking in missing_together(causes):
-        if lacking[0].scope.path in presets:
-            continue
         yield together_finding(context, lacking)
-        together = {id(each) for each in lacking}
-        causes = [each for each in causes if id(each) not in together]
+        together = {id(missing) for missing in lacking}
+        causes = [missing for missing in causes if id(missing) not in together]
     for number, missing in enumerate(causes):
         is_searched = number < MOST_EXPLAINED
-        swapped = swapped_loop(missing) if is_searched else None
-        if swapped is not None:
-            yield _swapped(missing, swapped)
-            continue
-        wrong = misnamed.get((missing.scope.path, missing.key))
-        meant = presets.get(missing.scope.path)
         for witness in searches.witnesses(missing):
             node = witness.reader.node
             misplaced = node.misplaced_keys if isinstance(node, nodes.Leaf) else ()
             if witness.reader.key in misplaced and not witness.also:
-                continue  # SM003 reports the cause
-            finding = unset_read(flow, missing, witness, context.types, is_searched=is_searched)
-            if wrong is not None:
-                help = f"did you mean `{wrong.word.text}`?"
-                finding = _with_unread(finding, help, wrong.word)
-            elif meant is not None and meant.missing is missing:
-                finding = _with_meant_key(finding, witness, meant)
-            elif missing.cause != "nowhere":
-                finding = _with_outer_key(finding, missing, flow.scopes)
-                finding = _with_end(finding, missing, witness, misled)
-            yield finding
-
-
-def _with_their_own_cause(context: Context) -> list[Missing]:
-    """The keys that nothing sets, or not on every path, without those whose cause another rule
-    reports: SM308, SM306, SM305, SM405, or SM201."""
-    misnamed = misnamed_keys(context)
-    unwritten = set(read_unwritten(context, unwritten_keys(context)).values()) | raced_keys(context)
-    found: list[Missing] = []
-    hidden: dict[tuple[str, str], frozenset[str]] | None = None
-    dropped = cache(lambda path: _dropped(context.corrected_flow.scopes[path].container))
-    for missing in context.missing_keys("unset", "nowhere"):
-        place = missing.scope.path, missing.key
-        if missing.cause == "unset" and hidden is None:
-            hidden = keys_of_hidden_states(context)
-        if hidden and place in hidden and hidden[place].isdisjoint(map(str, missing.vertices)):
-            continue  # SM201
-        wrong = misnamed.get(place)
-        if missing.cause == "nowhere" and missing.key in dropped(missing.scope.path):
-            continue  # SM308
-        if place not in unwritten and (wrong is None or not wrong.declared):
-            found.append(missing)
-    return found
-
-
-def _with_outer_key(
-    finding: Finding, missing: Missing, scopes: Mapping[str, UserdataScope]
-) -> Finding:
-    """The finding on an output of a container that is read before it is set, where the container
-    around it has a value for it: the key is probably meant as an input too."""
-    place = outer_value(missing, scopes)
-    if place is None:
-        return finding
-    help = listing([missing.scope.container], "input_keys", missing.key)
-    owner = scopes[place[0]].container.name
-    return replace(finding, help=f"{help}: `{owner}` has a value for it")
-
-
-def _with_end(
-    finding: Finding,
-    missing: Missing,
-    witness: Witness,
-    misled: Mapping[tuple[str, str], Misled],
-) -> Finding:
-    """The finding on a key that is unset after a failure, where an outcome of the container, to
-    which nothing leads, is probably meant as the target of its transition."""
-    found = misled.get((missing.scope.path, missing.key))
-    if found is None or found.step.target != witness.reader.node.name:
-        return finding
-    meant, step = found.meant, found.step
-    return replace(
-        finding,
-        help=f"write `{written_name(step.outcome)}: {meant.name}`, to which nothing leads",
-        related=(
-            *other_place(step.target_span, f"`{step.outcome}` leads to `{step.target}`"),
-            *other_place(meant.span, f"nothing leads to the outcome `{meant.name}`"),
-            *finding.related,
-        ),
-    )
-
-
-def _with_meant_key(finding: Finding, witness: Witness, meant: MeantKey) -> Finding:
-    """The finding on a key that nothing sets, where a loop over a preset, or a remapping from a
-    preset or input is missing."""
-    name, key, other = witness.reader.node.name, meant.missing.key, meant.word.text
-    if meant.iterated and isinstance(witness.reader.node, nodes.Iterator):
-        field = "in" if witness.reader.node.sugar else "it"
-        help = f"write `{field}: {other}`, or rename `{other}` to `{key}`"
-        return _with_unread(finding, help, meant.word)
-    purpose = f"must read `{other}`"
-    cure = added_remapping(witness.reader.node, key, other)
-    if meant.looped:
-        purpose = f"must run for each item of `{other}`"
-        cure = f"write `for_each: {{item: {key}, in: {other}}}` in `{name}`"
-    if not meant.looped and guesser([key]).sure(other) is not None:
-        return _with_unread(finding, f"rename `{other}` to `{key}`, or {cure}", meant.word)
-    help = f"if `{name}` {purpose}, {cure}; otherwise give `{key}` an initial value in"
-    help += f" {container_name(meant.missing.scope, finding.span)}"
-    return _with_unread(finding, help, meant.word)
-
-
-def _with_unread(finding: Finding, help: str, word: Word) -> Finding:
-    """A finding with another help and the place of a key that nothing reads, once."""
-    related = other_place(word.span, f"nothing reads `{word.text}`")
-    others = (each for each in finding.related if each not in related)
-    return replace(finding, help=help, related=(*related, *others))
-
-
-def _swapped(missing: Missing, loop: nodes.Iterator) -> Finding:
-    """The finding on a loop whose items and item have changed places."""
-    items, item = missing.key, loop.item_key
-    names = ("item", "in") if loop.sugar else ("it_label", "it")
-    right = f"{names[0]}: {items}, {names[1]}: {item}"
-    if loop.sugar:
-        on = f", on: [{', '.join(loop.loop_outcomes)}]" if loop.loop_spans else ""
-        help = f"`for_each: {{{right}{on}}}`"
-    else:
-        help = f"`{right}`".replace(", ", "` and `")
-    return Finding(
-        span=loop.item_span,
-        message=f"`{names[0]}` and `{names[1]}` of `{loop.name}` are swapped: the states in it read"
-        f" the item as `{items}`, and the list is in `{item}`",
-        arguments=(items,),
-        help=f"swap them: write {help}",
-        effect=f"the loop cannot begin: nothing sets `{items}` before it",
-        related=(*other_place(loop.items_span, "the item"), *calls(loop, loop.item_span)),
-        node=missing.scope.path
-        if loop is missing.scope.container
-        else f"{missing.scope.path}/{loop.name}",
-    )
+                continue  # the state has its value, at a wrong place
+            yield unset_read(flow, missing, witness, context.types, is_searched=is_searched)
 
 
 def _dropped(container: Container) -> frozenset[str]:
@@ -264,8 +130,9 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     SMACH ignores such an entry without a message: the state uses the key of its own name, which has
     another value than intended, or is not set at all.
 
-    Exactly: in `remapping: {a: b}`, `a` is not a key of the state, or nothing in the container
-    sets `b`. A warning if `a` is an optional key: the state works without it.
+    Exactly: in `remapping: {a: b}`, `a` is not a key of the state, or it is a key that the state
+    needs and nothing in the container sets `b`. A warning if it is an optional key and `b` is
+    misspelt.
 
     Wrong:
         name: sm
@@ -296,7 +163,8 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     yield from context.at_containers(_unknown_remaps, context.machine.definitions)
     for missing in context.missing_keys("remapped"):
         yield from _remapped(context.types, missing)
-    yield from empty_remap_findings(context)
+    for scope in context.corrected_flow.scopes.values():
+        yield from _empty_remaps(scope)
 
 
 def _ignored(node: Node, meant: str | None, outer: str) -> str:
@@ -387,39 +255,55 @@ def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[
 def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
     """The remaps to a key that nothing sets."""
     scope, key = missing.scope, missing.key
-    around, guess = scope.container.name, guesser(sorted(keys_of(scope)))
     for child in scope.container.children:
         for remap in child.remaps:
             if remap.to != key or child.name not in missing.vertices:
                 continue
-            meant = meant_by_remap(types, scope, child, remap, guess)
-            unread = unread_output(scope, key) if meant is None else None
             wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
-            fits = unread is not None and may_be(types, scope, unread.key, wanted)
-            help = unread.help if unread is not None and fits else None
-            related: tuple[Related, ...] = ()
-            if meant is not None:
-                help = did_you_mean(meant.key)
-            if meant is not None and meant.place is not None:
-                help = f"write `{remap.key}: {meant.key}`"
-                help += f", which `{meant.setter}` sets" if meant.setter else ""
-                related = other_place(meant.place, f"nothing reads `{meant.key}`")
-            own = {each.to for each in child.remaps}
-            fitting = [each for each in keys_of_type(types, scope, wanted) if each not in own] \
-                if help is None else []  # fmt: skip
-            if 0 < len(fitting) <= MOST_FITTING:
-                help = f"write {either(f'{remap.key}: {each}' for each in fitting)}, which"
-                help += f" {'has' if len(fitting) == 1 else 'have'} its type, or set `{key}` before"
+            fitting = fitting_keys(types, missing, child, wanted)
+            choices = [f"{remap.key}: {each}" for each in fitting]
+            help = f"write {either(choices)}, or " if choices else ""
             yield Finding(
                 span=remap.to_span,
                 message=f"`{remap.key}` of `{child.name}` is remapped to `{key}`, which nothing in"
                 f" {container_name(scope, remap.span)} sets",
                 arguments=(remap.key, key),
-                help=help
-                or f"set `{key}` before this state, or give it an initial value in `{around}`:"
-                f" `userdata: {{{key}: ...}}`",
+                help=help + f"set `{key}` before this state, or give it an initial value in"
+                f" `{scope.container.name}`: `userdata: {{{key}: ...}}`",
                 effect=UNSET,
-                related=(*related, *calls(child, remap.span)),
+                related=calls(child, remap.span),
+                node=f"{scope.path}/{child.name}",
+                repairs=tuple(
+                    repair
+                    for each in fitting
+                    for repair in likely([Edit(span=remap.to_span, text=each)], "remap a key")
+                ),
+            )
+
+
+def _empty_remaps(scope: UserdataScope) -> Iterator[Finding]:
+    """The remaps of optional keys to a misspelt key, or to what is no name: a script can leave an
+    optional key unset on purpose, as with `no_offset`."""
+    for child in scope.container.children:
+        optional = {key.name for key in child.inputs if key.type.name == "optional"}
+        for remap in child.remaps if optional else ():
+            if remap.key not in optional or scope.uses.provided.issuperset([remap.to]):
+                continue
+            provided = provided_keys(scope)
+            meant = None if provided.has(remap.to) else guesser(sorted(provided.keys))(remap.to)
+            if provided.has(remap.to) or (meant is None and is_name(remap.to)):
+                continue
+            yield Finding(
+                span=remap.to_span,
+                message=f"`{remap.key}` of `{child.name}` is remapped to `{remap.to}`, which"
+                f" nothing in {container_name(scope, remap.span)} sets",
+                arguments=(remap.key, remap.to),
+                help=did_you_mean(meant)
+                or f"a remapping takes the name of a key: set `{remap.key}` in the `userdata` of"
+                f" `{scope.container.name}`, and remove this entry",
+                effect=f"`{child.name}` works without `{remap.key}`",
+                related=calls(child, remap.span),
+                severity=Severity.WARNING,
                 node=f"{scope.path}/{child.name}",
             )
 
@@ -472,11 +356,8 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
               transitions: {done: held}
     """
     flow = context.corrected_flow
-    misnamed = misnamed_keys(context)
     for missing in context.missing_keys("outside"):
         scope, key = missing.scope, missing.key
-        if (scope.path, key) in misnamed and misnamed[scope.path, key].declared:
-            continue  # SM306 reports the cause
         reader = reader_at(scope, missing.vertices[0], key)
         holder = flow.scopes[missing.other].container
         between = _between(flow, scope.path, missing.other)
@@ -484,11 +365,6 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
         held = name_in_script(holder)
         why = f"which is a key of `{held}` but not an input of {listed(between)}"
         help = _input_help(flow, scope.path, missing.other, key)
-        loop = loop_in_a_body(missing)
-        if loop is not None:
-            help = f"write `{key}` in place of `{loop.item_key}` in the `input_keys` of"
-            help += f" {listed(between)}: the `for_each` of `{loop.name}` sets `{loop.item_key}`;"
-            help += f" or move the `for_each` to {listed(between)}"
         if isinstance(holder, nodes.Iterator) and holder.item_key == key:
             why = f"which the loop `{held}` provides, but which is not an input of"
             why += " its state" if list(between) == [held] else f" {listed(between)}"

@@ -18,6 +18,7 @@ from smachac.diagnostics.diagnostic import (
     did_you_mean_file,
     problem,
 )
+from smachac.diagnostics.repair import Certainty, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, guesser_of, respelt
 from smachac.diagnostics.wording import both, either, listed
@@ -311,15 +312,15 @@ def unresolved_look_up(word: Word, scope: Iterable[str], turned: str | None = No
     )
 
 
-def param_before_definition(item: Diagnostic, defined: Span) -> Diagnostic:
+def param_before_definition(word: Word, defined: Span) -> Diagnostic:
     """SM015 for a look-up in a param that names a later param of the same mapping."""
-    name, *_ = item.finding.arguments
-    help = f"move `{name}` before this param: a param can use only those above it"
-    if defined.source is not item.span.source:  # a call of the sub-script defines it
-        help = f"add `{name}: ...` above this param, as the default value that a call replaces"
+    help = f"move `{word.text}` before this param: a param can use only those above it"
+    if defined.source is not word.span.source:  # a call of the sub-script defines it
+        help = f"add `{word.text}: ...` above this param, as the default value that a call replaces"
+    item = unresolved_look_up(word, ())
     changed = replace(
         item.finding,
-        message=f"the param `{name}` is used before it is defined",
+        message=f"the param `{word.text}` is used before it is defined",
         help=help,
         related=(Related(span=defined, message="defined here"),),
     )
@@ -327,97 +328,52 @@ def param_before_definition(item: Diagnostic, defined: Span) -> Diagnostic:
 
 
 def look_up_of_call(
-    item: Diagnostic, script: Word, state: str, given: Sequence[Word], known: Iterable[str], *,
-    alone: bool, settled: bool,
-) -> Diagnostic:  # fmt: skip
+    word: Word,
+    script: Word,
+    state: str,
+    idle: Sequence[Word],
+    turned: str | None,
+    places: Sequence[Word],
+) -> Diagnostic:
     """SM015 for a look-up in a sub-script, at its call: `script` is its name and the place of the
-    call by `state`; `given` are the params of the call that no look-up reads, `known` those in
-    scope of the call. `alone`: no other param is missing. `settled`: the finding is at a call
-    inside that gives other params, so it stays there if this call has no other name for it."""
-    found = item.finding
-    name, *_ = found.arguments
-    meant = guesser(each.text for each in given)(name)
-    place = found.related[0].span if found.related else found.span
-    related = (Related(span=place, message=f"it reads `{name}` here"),)
-    effect = f"`{name}` has no value in `{script.text}`, so no program is generated"
-    idle = {each.text for each in given}
-    is_misspelt = guesser(each for each in known if each not in idle)(name) is not None
-    if meant is None and alone and len(given) == 1 and not is_misspelt:
-        return replace(
-            item,
-            finding=Finding(
-                span=given[0].span,
-                message=f"the sub-script `{script.text}` has the param `{name}`, not"
-                f" `{given[0].text}`",
-                arguments=(given[0].text,),
-                help=_renamed_param(given[0], name),
-                effect=effect,
-                related=related,
-            ),
-        )
-    if meant is not None:
-        wrong = next(each for each in given if each.text == meant)
-        moved = Finding(
-            span=wrong.span,
-            message=f"the sub-script `{script.text}` does not read the param `{wrong.text}`",
-            arguments=(wrong.text,),
-            help=f"did you mean `{name}`?{_with_value(wrong, name)}",
-            effect=effect,
-            related=related,
-            edits=respelt(wrong, name),
-        )
-        return replace(item, finding=moved)
-    if settled or is_misspelt:
-        return item
-    return replace(
-        item,
-        finding=Finding(
-            span=script.span,
-            message=f"the sub-script `{script.text}` reads the param `{name}`, which `{state}` does"
-            " not give",
-            arguments=(name, state, script.text),
-            help=f"add `{name}: ...` to the `params` of `{state}`, or of a container around it",
-            effect=effect,
-            related=related,
+    call by `state`, `idle` are the params of the call that the sub-script does not read, `turned`
+    is the one that has the name of the param as its value, `places` are its look-ups."""
+    name = word.text
+    near = turned or guesser(each.text for each in idle)(name)
+    wrong = next((each for each in idle if each.text == near), idle[0] if len(idle) == 1 else None)
+    help = f"add `{name}: ...` to the `params` of `{state}`, of a container around it,"
+    help += " or of the script"
+    if wrong is not None and turned:
+        help = f"write `{name}: {turned}`: the name of the param comes first"
+    elif wrong is not None:
+        other = f"write `{name}:` in place of `{wrong.text}:`, or add it"
+        help = f"did you mean `{name}`?" if near else other
+    renamed = [
+        (respelt(each, name), [edit for one in places for edit in respelt(one, each.text)])
+        for each in idle[:MOST_GIVEN]
+    ]
+    item = unresolved_look_up(word, ())
+    finding = Finding(
+        span=script.span if wrong is None else wrong.span,
+        message=f"the sub-script `{script.text}` reads the param `{name}`, which `{state}` does not"
+        " give",
+        arguments=(name, script.text),
+        help=help,
+        effect=f"`{name}` has no value in `{script.text}`, so no program is generated",
+        related=(Related(span=word.span, message=f"it reads `{name}` here"),),
+        edits=respelt(wrong, name) if wrong is not None and near and not turned else (),
+        repairs=tuple(
+            Repair(edits=(*edits,), certainty=Certainty.LIKELY, operator="write another name")
+            for pair in renamed
+            for edits in pair
+            if edits
         ),
     )
+    return replace(item, finding=finding)
 
 
-def look_up_of_all_calls(found: Finding, place: Span, given: str, calls: Sequence[Span]) -> Finding:
-    """SM015 at a look-up in a sub-script, several of whose calls give a param of another name."""
-    shown = calls[:2]
-    return replace(
-        found,
-        span=place,
-        message=f"this sub-script reads the param `{place.text}`, but its calls give `{given}`",
-        arguments=(place.text, given),
-        help=f"write `{given}` in place of `{place.text}` here, or rename the param in each call",
-        related=tuple(Related(span=each, message=f"`{given}` is given here") for each in shown),
-        edits=(),
-    )
-
-
-def param_of_no_call(found: Finding, states: Sequence[str], has_params: bool) -> Finding:
-    """SM015 at the first of several calls of sub-scripts that do not give a param: the script can
-    give it to all. `has_params`: the script has `params`."""
-    name, _, script = found.arguments
-    help = f"add `{name}: ...` to the `params` of the script"
-    return replace(
-        found,
-        message=f"the sub-script `{script}` reads the param `{name}`, which {both(states)} do not"
-        " give",
-        help=help if has_params else f"add `params: {{{name}: ...}}` to the script",
-    )
-
-
-def _renamed_param(wrong: Word, name: str) -> str:
-    """The help for a param of a call that has another name in the sub-script."""
-    value = short_value(wrong)
-    if value == name:
-        return f"write `{name}: {wrong.text}`: the name of the param comes first"
-    if value is None:
-        return f"write `{name}:` in place of `{wrong.text}:`"
-    return f"write `{name}: {value}` in place of `{wrong.text}: {value}`"
+MOST_GIVEN = 3
+"""The most params of a call for which repairs are proposed."""
 
 
 def short_value(key: Word) -> str | None:
@@ -426,14 +382,7 @@ def short_value(key: Word) -> str | None:
     return found[1] if found is not None else None
 
 
-def _with_value(wrong: Word, name: str) -> str:
-    """The end of a help that names the right param of a call, with its value, if that is short."""
-    value = _SHORT_VALUE.match(wrong.span.source.text, wrong.span.end)
-    return f" Write `{name}: {value[1]}`" if value is not None else ""
-
-
 _SHORT_VALUE = re.compile(r":[ ]+([\w.+-]+)[ ]*(?=[,}\n#]|$)")
-"""The value after a key of YAML, if it is one word or number."""
 
 
 @problem(

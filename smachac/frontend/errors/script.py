@@ -21,7 +21,7 @@ from smachac.diagnostics.diagnostic import (
     problem,
 )
 from smachac.diagnostics.meanings import by_words
-from smachac.diagnostics.repair import Edit, Repair
+from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser_of, respelt
 from smachac.diagnostics.wording import listed, possible
@@ -175,6 +175,7 @@ def unknown_variable(
     certain: str | None = None,
     required: str | None = None,
     fitting: Collection[str] = (),
+    proposed: Iterable[str] = (),
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -238,6 +239,11 @@ def unknown_variable(
         arguments=(word.text, owner.name),
         help=foreign or _variable_help(word.text, sure, names, own) or variables,
         edits=respelt(word, sure),
+        repairs=tuple(
+            Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="write another name")
+            for name in (() if sure else proposed)
+            if (edits := respelt(word, name))
+        ),
         severity=severity,
         effect=effect,
     )

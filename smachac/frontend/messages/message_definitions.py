@@ -111,7 +111,14 @@ def find_definitions(
             return common
     for name in names:
         path = f"{word.package}/{kind}/{name}.{kind}"
-        sources = library.definitions(path)
+        unread: Report = []
+        sources = library.definitions(path, unread)
+        if report is not None:
+            effect = f"the fields of `{word}` are not checked, and ROS does not build its package"
+            for problem in unread:
+                finding = replace(problem.finding, severity=Severity.WARNING, effect=effect)
+                problem = replace(problem, severity=Severity.WARNING, finding=finding)
+                report += [problem] if problem not in report else []
         if sources:
             own = TypeName(word.package, name)
             read = [read_definition(each, own, kind, report) for each in sources]
@@ -362,6 +369,10 @@ def _definition(source: Source, name: TypeName, kind: DefinitionKind) -> Definit
     if len(source.text) > LONGEST:
         help = "write a shorter definition"
         raise _BadDefinitionError(Span(source, 0, 0), f"the `.{kind}` file is too long", help)
+    if source.text.startswith("\ufeff"):
+        help = "save the file as UTF-8 without a byte order mark: ROS does not accept it"
+        message = "the file begins with a byte order mark"
+        raise _BadDefinitionError(Span(source, 0, 1), message, help)
     parts: list[list[tuple[str, Span]]] = [[]]
     for line, span in _lines(source):
         if line == "---":

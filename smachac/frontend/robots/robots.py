@@ -253,9 +253,12 @@ class _Reader:
 
     def body_file(self, body: Body, word: Word, scene: Source, tree: Tree) -> None:
         """Check the URDF or SDF file of a body; a mistake is reported."""
+        before = len(self.report)
         source = self.library.script(body.path, scene.name)
         if source is None and self.library.robot(body.path) is not None:
             return  # shipped with PyBullet
+        if len(self.report) > before:
+            return  # it cannot be read
         if source is None:
             place = ("bodies", body.name, "path")
             help = "give its path relative to the folder of the scene or of the script"
@@ -351,12 +354,14 @@ class _Reader:
         Where the description has the limits of all joints, they hold, and the URDF file need not be
         there.
         """
-        text = None
+        text, before = None, len(self.report)
         if word.text not in BUILT_IN or not data.has_limits:
             text = self.library.script(data.urdf, source.name) or self.library.robot(data.urdf)
         moved: dict[str, Joint] = {}
         frames = data.frames
         try:
+            if len(self.report) > before:
+                return None  # it cannot be read
             if text is None and not data.has_limits:
                 help = package_help(data.urdf) or "put it beside this file"
                 raise DataError(f"the file `{data.urdf}` was not found", ("urdf",), help)
@@ -401,12 +406,15 @@ class _Reader:
         """Several robots as one: the joints and limbs of all."""
         found: list[tuple[Part, Robot]] = []
         for part in data.parts:
+            before = len(self.report)
             text = (
                 self.library.script(part.robot, source.name)
                 if part.robot.lower().endswith(DESCRIPTIONS)
                 else self.library.robot(f"{part.robot}.yml")
             )
             span = span_at(tree, part.place)
+            if text is None and len(self.report) > before:
+                return None  # it cannot be read
             if text is None:
                 message = f"there is no robot `{part.robot}`"
                 help = guess(part.robot, BUILT_IN)

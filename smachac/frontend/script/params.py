@@ -6,12 +6,17 @@ They may be at any depth of a value. A quoted word is data: `['params', x]` is a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from types import MappingProxyType
+from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Report
-from smachac.diagnostics.source import Word
-from smachac.diagnostics.spelling import guesser_of, respelt
-from smachac.frontend.errors.references import param_before_definition, unresolved_look_up
+from smachac.diagnostics.diagnostic import Diagnostic, Report
+from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.spelling import guesser, guesser_of, respelt
+from smachac.frontend.errors.references import (
+    look_up_of_call,
+    param_before_definition,
+    unresolved_look_up,
+)
 from smachac.frontend.errors.script import too_big, wrong_shape
 from smachac.frontend.text.values import as_value
 from smachac.frontend.text.yaml_tree import (
@@ -26,8 +31,25 @@ from smachac.frontend.text.yaml_tree import (
 )
 from smachac.ir.nodes import FixedParam, Param, StateType
 
-Scope = Mapping[str, Tree]
-"""The params in scope of a state."""
+
+class Call(NamedTuple):
+    """A call of a sub-script: the state that calls, the name of the sub-script with the place of
+    the call, the tree of the sub-script, the params that the call gives, and the call around it."""
+
+    state: str
+    script: Word
+    tree: Tree
+    given: tuple[Word, ...]
+    outer: Call | None
+
+
+class Scope(dict[str, Tree]):
+    """The params in scope of a state. `call` is that of the sub-script around it, `later` are the
+    places of the params of the same mapping that are defined below the one which is read."""
+
+    call: Call | None = None
+    later: Mapping[str, Span] = MappingProxyType({})
+
 
 MAX_TEXT = 100_000
 """The longest result of a string construct, in characters."""
@@ -104,19 +126,6 @@ def look_up_meant(tree: Tree, scope: Scope, report: Report) -> Tree | None:
     return None
 
 
-def _with_meant_look_ups(tree: Seq, scope: Scope, report: Report) -> Seq:
-    """A list with the misspelt `params` of the look-ups in it corrected, which are reported."""
-    items = list(tree.items)
-    for at, item in enumerate(items):
-        if not isinstance(item, Seq) or len(item.items) != 2:
-            continue
-        if look_up_meant(item, scope, report) is not None:
-            word = item.items[0]
-            assert isinstance(word, Scalar)
-            items[at] = Seq((replace(word, value="params"), item.items[1]), item.span)
-    return tree if items == list(tree.items) else Seq(tuple(items), tree.span)
-
-
 def look_ups(tree: Tree) -> Iterator[Word]:
     """The names of params in the look-ups of a value, at any depth."""
     todo: list[Tree] = [tree]
@@ -150,8 +159,9 @@ def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) ->
     word = look_up_word(tree)
     if word is not None:
         return _found(word, scope, report)
-    if scope:
-        tree = _with_meant_look_ups(tree, scope, report)
+    meant = look_up_meant(tree, scope, report) if scope else None
+    if meant is not None:
+        return meant
     items = tuple(fill_in(item, scope, report) for item in tree.items)
     if not names and any(look_up_word(item) is not None for item in tree.items):
         joined = _joined(items, tree, report)
@@ -165,9 +175,29 @@ def fill_in(tree: Tree, scope: Scope, report: Report, *, names: bool = False) ->
 def _found(word: Word, scope: Scope, report: Report) -> Tree:
     value = scope.get(word.text)
     if value is None:
-        report.append(unresolved_look_up(word, scope, _turned_param(word.text, scope)))
+        report.append(_unresolved(word, scope))
         return known_wrong(word.span)
     return value
+
+
+def _unresolved(word: Word, scope: Scope) -> Diagnostic:
+    """SM015: at the call that does not give the param, if the look-up is in a sub-script and no
+    other param in scope has nearly this name."""
+    if word.text in scope.later:
+        return param_before_definition(word, scope.later[word.text])
+    call, turned = scope.call, _turned_param(word.text, scope)
+    while call is not None and call.tree.span.source is not word.span.source:
+        call = call.outer
+    if call is None:
+        return unresolved_look_up(word, scope, turned)
+    places = [*look_ups(call.tree)]
+    read = {place.text for place in places}
+    idle = [each for each in call.given if each.text not in read]
+    known = scope.keys() - {each.text for each in idle}
+    if turned in known or guesser(sorted(known))(word.text) is not None:
+        return unresolved_look_up(word, scope, turned)
+    places = [place for place in places if place.text == word.text]
+    return look_up_of_call(word, call.script, call.state, idle, turned, places)
 
 
 def _turned_param(name: str, scope: Scope) -> str | None:
@@ -217,12 +247,13 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
     """The params of a state: its own ones hide outer ones; later ones may use earlier ones."""
     if not isinstance(own, Map):
         return scope
-    inner = dict(scope)
-    for at, entry in enumerate(own.entries):
-        before = len(report)
+    inner = Scope(scope)
+    inner.call = scope.call
+    later = {str(entry.key.value): entry.key.span for entry in own.entries}
+    inner.later = later
+    for entry in own.entries:
+        del later[str(entry.key.value)]
         value = fill_in(entry.value, inner, report)
-        if len(report) > before:
-            _mark_later(own.entries[at + 1 :], report, before)
         if value is not entry.value and _size_beyond(value, MAX_NODES):
             message = f"the look-ups in this param give it more than {MAX_NODES:,} values"
             help = "use smaller params"
@@ -230,16 +261,6 @@ def child_scope(scope: Scope, own: Tree | None, report: Report) -> Scope:
             value = known_wrong(entry.value.span)
         inner[str(entry.key.value)] = value
     return inner
-
-
-def _mark_later(entries: tuple[Entry, ...], report: Report, begin: int) -> None:
-    """Words the failed look-ups of a param that name one of the later params, `entries`."""
-    places = {str(entry.key.value): entry.key.span for entry in entries}
-    for at in range(begin, len(report)):
-        item = report[at]
-        name = item.finding.arguments[0] if item.kind is unresolved_look_up.code else ""
-        if name in places:
-            report[at] = param_before_definition(item, places[name])
 
 
 def _size_beyond(tree: Tree, limit: int) -> bool:

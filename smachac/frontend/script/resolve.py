@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import PurePath
 from typing import Literal
 
-from smachac.diagnostics.diagnostic import Diagnostic, Report, has_errors
+from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, has_errors
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser_of
 from smachac.frontend import schema
@@ -20,8 +20,10 @@ from smachac.frontend.errors.references import (
     bad_sub_script,
     recursive_include,
     script_not_found,
+    template_not_found,
+    unresolved_look_up,
 )
-from smachac.frontend.errors.script import too_big, wrong_shape
+from smachac.frontend.errors.script import Owner, too_big, unknown_variable, wrong_shape
 from smachac.frontend.loader import SUFFIXES, Library
 from smachac.frontend.messages.message_definitions import (
     definitions_of,
@@ -35,6 +37,7 @@ from smachac.frontend.script.params import (
     MAX_FILLED,
     MAX_FILLED_BY_STATE,
     MAX_LEVELS,
+    Call,
     Scope,
     child_scope,
     fill_in,
@@ -43,6 +46,7 @@ from smachac.frontend.script.params import (
     is_too_deep,
     look_up_meant,
     look_up_word,
+    look_ups,
     params_of,
     size_up_to,
 )
@@ -62,10 +66,7 @@ from smachac.frontend.script.state_fields import (
 )
 from smachac.frontend.script.sub_scripts import (
     SUB_SCRIPT_HELP,
-    one_for_each_param,
     overridden,
-    params_at_call,
-    params_beside_call,
     sub_script_state,
 )
 from smachac.frontend.script.unknown_templates import (
@@ -73,7 +74,6 @@ from smachac.frontend.script.unknown_templates import (
     meant_template,
     missing_template,
     missing_template_help,
-    one_for_each_template,
     unknown_template,
     with_meant_call,
 )
@@ -125,7 +125,7 @@ class _Environment:
     """
 
     source: Source
-    scope: Scope = field(default_factory=dict, compare=False)
+    scope: Scope = field(default_factory=Scope, compare=False)
     calls: tuple[tuple[str, Span], ...] = ()
     depth: int = 0
     inner: Word | None = None
@@ -199,11 +199,11 @@ class _Resolver:
         self.calls: dict[Span, KeptCall] = {}
         self.others: dict[str, StateType | None] = {}  # types that the script need not use
         self.unknown: set[str] = set()  # the templates that were not found
+        self.unread: set[str] = set()  # the sub-scripts and templates whose fault is reported
         self.count = self.looked_up = self.keys = 0
         self.most_keys: tuple[Preset, ...] = ()
         self.uses = Uses()
         self.fixed_params: list[FixedParam] = []
-        self.settled: set[Span] = set()  # the calls that give params, but not one that is read
 
     def script(self, source: Source, tree: Map) -> Script:
         """The script of a tree: its outermost state machine, with the robot and the types."""
@@ -216,8 +216,7 @@ class _Resolver:
             self.aliases = read_aliases(entries["types"].value, self.report)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
-        if self.report:
-            self.report[:] = one_for_each_template(one_for_each_param(self.report, entries))
+        self.report[:] = one_for_each_name(self.report)
         # A `robot` of a wrong shape was reported; the default robot must not replace it.
         is_wrong = base.robot is None and "robot" in entries
         robot = None if is_wrong else self._robot(base, source)
@@ -507,8 +506,6 @@ class _Resolver:
         the call."""
         begin = self.uses.mark(self.report)
         own = with_meant_call(name, own, self.report)
-        called: list[tuple[Word, tuple[Entry, ...]]] = []
-        beside: dict[str, Span] = {}
         while "script" in own:
             entry = own.pop("script")
             params = own["params"].value if "params" in own else None
@@ -521,40 +518,54 @@ class _Resolver:
                 transitions = own.get("transitions")
                 pairs = pairs_of(transitions.value) if transitions is not None else ()
                 return unknown_state(name, pairs, around.via)
-            source, inner, entries = found
+            tree, inner, entries = found
+            source = tree.span.source
             call = Span(around.source, entry.key.span.start, entry.value.span.end)
             calls = (*around.calls, (source.name, call))
             around = replace(around, source=source, calls=calls, inner=inner)
             fields = expanded(entries, self.report)
             self.uses.replaced(fields, own)
-            called.append((Word(word.text, call), _entries_of(params)))
-            others = [key for key in own if key not in schema.VARIABLES]
-            beside |= {key: own[key].key.span for key in others}
+            given = tuple(Word(str(each.key.value), each.key.span) for each in _entries_of(params))
+            scope = Scope(around.scope)
+            scope.call = Call(name.text, Word(word.text, call), tree, given, around.scope.call)
+            around = replace(around, scope=scope)
             own = overridden(fields, own)
-        state = self.state(name, own, around, begin=begin)
-        looked_up, _, before = begin
-        if called and len(self.report) > before:
-            used = self.uses.looked_up[looked_up:]
-            findings = params_beside_call(self.report[before:], beside, used)
-            params = own["params"].value if "params" in own else None
-            known = [*around.scope, *(str(each.key.value) for each in _entries_of(params))]
-            for script, given in called:
-                findings = params_at_call(
-                    findings, name.text, script, given, known, used, self.settled, self.uses.trees
-                )
-            self.report[before:] = findings
-        return state
+        if around.inner is not None:
+            own = self.with_params_beside(own, around)
+        return self.state(name, own, around, begin=begin)
 
-    def not_found(self, item: Diagnostic) -> None:
-        """Reports a file that was not found, except as a consequence: its folder may be in settings
-        that could not be read, which are reported."""
-        if self.library.settings_read or not has_errors(self.report):
+    def with_params_beside(self, own: dict[str, Entry], around: _Environment) -> dict[str, Entry]:
+        """The fields of a called sub-script, with those that are params of it inside `params`: they
+        were written beside it, which is reported (SM003)."""
+        beside = [key for key, entry in own.items() if entry.key.span.source is not around.source
+                  and key not in schema.VARIABLES and key not in around.scope]  # fmt: skip
+        params = _entries_of(own["params"].value if "params" in own else None)
+        known = {each.key.value for each in params}
+        values = [entry.value for entry in own.values()] if beside else []
+        read = {word.text for value in values for word in look_ups(value)}
+        found = {key: own[key] for key in beside if key in read and key not in known}
+        if not found:
+            return own
+        for entry in found.values():
+            word = Word(str(entry.key.value), entry.key.span)
+            help = f"`{word.text}` is a param of the sub-script: write it inside `params:`"
+            self.report.append(unknown_variable(word, Owner("state", "a state"), (), certain=help))
+        span = next(iter(found.values())).key.span
+        name = own["params"].key if "params" in own else Scalar("params", True, *span)
+        own = {key: entry for key, entry in own.items() if key not in found}
+        return own | {"params": Entry(name, Map((*params, *found.values()), span))}
+
+    def not_found(self, name: str, item: Diagnostic) -> None:
+        """Reports a file that was not found, except as a consequence: it is there, but could not be
+        read, or its folder may be in settings that could not be read, which are reported."""
+        settings_read = self.library.settings_read or not has_errors(self.report)
+        if settings_read and name not in self.unread:
             self.report.append(item)
 
     def sub_script(
         self, word: Word, around: _Environment
-    ) -> tuple[Source, Word, tuple[Entry, ...]] | None:
-        """The source of a sub-script, the name of its state, and that state's fields."""
+    ) -> tuple[Tree, Word, tuple[Entry, ...]] | None:
+        """The tree of a sub-script, the name of its state, and that state's fields."""
         caller = around.source.name
         source = self.text(word.text, caller)
         if source is None:
@@ -562,7 +573,8 @@ class _Resolver:
             known = self.library.script_names(caller)
             other = self.library.folder_with(word.text, SUFFIXES[1:], searched)
             template = word.text in self.known_templates()[1]
-            self.not_found(script_not_found(word, searched, known, other, template=template))
+            missing = script_not_found(word, searched, known, other, template=template)
+            self.not_found(word.text, missing)
             return None
         self.texts[word.text, caller] = source
         if (word.text, caller) not in self.parsed:
@@ -584,12 +596,15 @@ class _Resolver:
             return None
         self.uses.trees[source] = tree
         state = sub_script_state(tree, word, self.report)
-        return None if state is None else (source, *state)
+        return None if state is None else (tree, *state)
 
     def text(self, name: str, caller: str) -> Source | None:
         """The text of a sub-script, from the library at its first use."""
         if (name, caller) not in self.found_texts:
+            before = len(self.report)
             self.found_texts[name, caller] = self.library.script(name, caller)
+            if len(self.report) > before:
+                self.unread.add(name)
         return self.found_texts[name, caller]
 
     def known_templates(self) -> tuple[Sequence[str], Sequence[str]]:
@@ -602,7 +617,10 @@ class _Resolver:
         """The state type of that name, read from the library at its first use."""
         if name not in self.found_types:
             find = self.kept.state_type if self.kept is not None else find_state_type
+            before = len(self.report)
             self.found_types[name] = find(name, self.library, self.report)
+            if len(self.report) > before:
+                self.unread.add(name)
         self.types[name] = self.found_types[name]
         return self.types[name]
 
@@ -653,7 +671,7 @@ class _Resolver:
             self.unknown.add(word.text)
             called = [] if role else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
-            self.not_found(unknown_template(word, read, found_in, self.other_type))
+            self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
             meant = schema.CONTAINERS.get(near or "")
             if meant is not None:
                 return schema.CONTAINER_TYPES[meant], meant
@@ -661,6 +679,30 @@ class _Resolver:
         # Some meta blocks of SMACHA name the kind `container` for a state.
         is_container = found.kind == "container" and not found.prints_itself
         return found, role or ("StateMachine" if is_container else nested)
+
+
+MOST_PLACES = 5
+"""The most further places that a finding shows."""
+
+
+def one_for_each_name(found: Report) -> Report:
+    """The findings, with one for all look-ups of a param, and for all states of a template, that
+    fail for the same reason: at the first place, with the others."""
+    kinds = (template_not_found.code, unresolved_look_up.code)
+    groups: dict[tuple[object, ...], list[Diagnostic]] = {}
+    for item in found:
+        key: tuple[object, ...] = (id(item),)
+        if item.kind in kinds:
+            is_look_up = item.kind is kinds[1] and len(item.finding.arguments) == 1
+            key = (item.kind, item.finding.arguments[0], is_look_up and item.span.source)
+        groups.setdefault(key, []).append(item)
+    kept: Report = []
+    for first, *others in groups.values():
+        places = dict.fromkeys(each.span for each in others if each.span != first.span)
+        more = [Related(span=span, message="the same here") for span in places][:MOST_PLACES]
+        finding = replace(first.finding, related=(*first.finding.related, *more))
+        kept.append(replace(first, finding=finding) if more else first)
+    return kept
 
 
 def _entries_of(tree: Tree | None) -> tuple[Entry, ...]:

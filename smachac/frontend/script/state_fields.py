@@ -15,7 +15,6 @@ from smachac.diagnostics.spelling import (
     MOST_EXPLAINED,
     guesser_of,
     is_plain,
-    words_of,
     written_name,
 )
 from smachac.diagnostics.wording import listed
@@ -246,11 +245,8 @@ def _known_fields(
             if type_.used is not None and key not in type_.used:
                 words = [*schema.names_for(owner), *type_.used]
                 word = Word(str(entry.key.value), entry.key.span)
-                lacking = _lacking_variable(word.text, entries, type_)
-                owned = f"`{type_.name}`" if lacking is None else f"state type `{type_.name}`"
-                template = Owner(type_.name, owned)
-                report.append(unknown_variable(word, template, words, anything=lacking is None,
-                                               meant=lacking))  # fmt: skip
+                template = Owner(type_.name, f"`{type_.name}`")
+                report.append(unknown_variable(word, template, words, anything=True))
         else:
             known = schema.names_for(owner)
             word = Word(str(entry.key.value), entry.key.span)
@@ -378,18 +374,6 @@ def _outcomes(entries: Entries, type_: StateType) -> set[str]:
     """The names of the outcomes that a state has."""
     given = as_outcomes(entries["outcomes"].value, []) if "outcomes" in entries else ()
     return {each.name for each in (*type_.outcomes, *given)}
-
-
-def _lacking_variable(name: str, entries: Entries, type_: StateType) -> str | None:
-    """The variable of a meta block that a state does not set and that is probably meant by the
-    unknown `name`: the variable that shares a word with `name`, or the only one. None otherwise."""
-    lacking = [
-        each.name
-        for each in type_.variables.values()
-        if each.default is None and each.name not in entries and each.name in (type_.used or ())
-    ]
-    near = [each for each in lacking if words_of(each) & words_of(name)] or lacking
-    return near[0] if len(near) == 1 else None
 
 
 def _check_required(

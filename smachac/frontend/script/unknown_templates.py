@@ -4,7 +4,6 @@ and one finding for all states that name the same template."""
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
@@ -26,9 +25,6 @@ MOST_TYPES = 200
 
 MOST_MEANT = 3
 """If more types than these have the names that a state uses, none is proposed."""
-
-MOST_PLACES = 5
-"""The other states that are shown beside the first that names an unknown template."""
 
 
 def types_with_the_names(
@@ -155,25 +151,12 @@ def missing_template_help(
     script = next((each for each in scripts if each.casefold() == name.casefold()), None)
     if script is not None:
         return f"add `script: {script}`, or `template: TYPE` if it is no call of that sub-script"
-    kind, field = _only_kind(entries)
-    if kind:
-        return f"add `template: {kind}`: only a {kind} has `{field}`"
     types, used = types_with_the_names(entries, "", names, find)
     if not types:
         return None
     several = len(types) > 1
     has = "these types have" if several else "this type has"
     return f"add {either(f'template: {each}' for each in types)}: {has} {listed(used)}"
-
-
-def _only_kind(entries: Iterable[str]) -> tuple[str, str]:
-    """The only kind of container that has the fields of a state which no other state has, with the
-    first of these fields; empty without one."""
-    rows = {key: row for key in entries if (row := schema.VARIABLES.get(key)) is not None}
-    own = {key: row.owners & schema.CONTAINERS.keys() for key, row in rows.items()
-           if row.owners and not row.owners & {"state", "base"}}  # fmt: skip
-    kinds = set.intersection(*map(set, own.values())) if own else set()
-    return (kinds.pop(), next(iter(own))) if len(kinds) == 1 else ("", "")
 
 
 def missing_template(
@@ -194,27 +177,3 @@ def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:
     keys = {each.name for each in (*type_.input_keys, *type_.output_keys)}
     outcomes = {each.name for each in type_.outcomes} | {"error", "timeout"}
     return keys.union(type_.variables).issuperset(used) and outcomes.issuperset(ends)
-
-
-def one_for_each_template(found: Sequence[Diagnostic]) -> Report:
-    """The findings, with one for each template that was not found, at the first state that names
-    it."""
-    places: dict[str, list[Diagnostic]] = {}
-    for item in found:
-        if item.kind is template_not_found.code:
-            places.setdefault(item.finding.arguments[0], []).append(item)
-    kept: Report = []
-    for item in found:
-        if item.kind is not template_not_found.code:
-            kept.append(item)
-            continue
-        first, *others = places[item.finding.arguments[0]]
-        if item is first:
-            # The calls of one sub-script lead to one place.
-            others = list({each.span: each for each in others if each.span != item.span}.values())
-            shown = (
-                Related(span=each.span, message="the same here") for each in others[:MOST_PLACES]
-            )
-            finding = replace(item.finding, related=(*item.finding.related, *shown))
-            kept.append(replace(item, finding=finding) if others else item)
-    return kept

@@ -126,6 +126,9 @@ def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | No
     costs: list[float] = []
     seen: set[_Lines] = set()
     for index in [*doubts.stops, *(() if stops else doubts.places)]:
+        colon = _lost_colon(text, index) if stops else None
+        if colon is not None and _holds(colon.apply(text), _lines(text, colon.at), stops):
+            return colon, True
         lines = _lines(text, index)
         if stops and lost_of_block_text(text, index) is not None:
             continue
@@ -143,6 +146,15 @@ def _mend(text: str, doubts: Doubts, tried: set[int]) -> tuple[_Mend, bool] | No
         elif not stops:
             break
     return (best[1], costs.count(best[0]) == 1) if best is not None else None
+
+
+_KEY_ALONE = re.compile(r"( *)(?:- +)*[A-Za-z_][\w-]* *\n(?=\1 +(?:- +)*[\w-]+:(?: |\n))")
+
+
+def _lost_colon(text: str, index: int) -> _Mend | None:
+    """The colon of a key that is alone on the line of an index, with entries below it."""
+    found = _KEY_ALONE.match(text, text.rfind("\n", 0, index) + 1)
+    return _Mend(len(found[0].rstrip()) + found.start(), "", ":") if found is not None else None
 
 
 def _holds(text: str, lines: _Lines, stops: bool) -> bool:
@@ -254,6 +266,9 @@ def _with_sign(part: str, missing: str, much: str) -> Iterator[_Mend]:
     """The repairs that write a sign where a value begins or ends, or remove one."""
     if missing not in "]}":
         for found in _START.finditer(part):
+            yield _Mend(found.end(), "", missing)
+    if missing in "[{":
+        for found in re.finditer(rf": (?=\{much})", part):  # of `{}` or `[]`
             yield _Mend(found.end(), "", missing)
     if missing not in "[{":
         for found in _END.finditer(part):
@@ -388,7 +403,7 @@ def _finding(
     end = at + len(mend.removed)
     edit = Edit(span=Span(source, before.back(at), before.back(end)), text=sign)
     repair = Repair(edits=(edit,), certainty=Certainty.LIKELY, operator="write a sign")
-    left, right = _word_before(text, at), _word_after(text, end)
+    left, right, piece = _word_before(text, at), _word_after(text, end), _piece(repaired, mend)
     effect = None if stops else _OTHER_MEANING
     if sign == f"[{mend.removed}]":
         effect = "YAML reads the values after the first one as fields without a value"
@@ -405,6 +420,9 @@ def _finding(
         message, at = SPACE_MISSING, at - len(left) - 1
     elif sign in "[{" or (sign in "\"'" and _starts(text, at)):
         message, end = f"a `{sign}` is missing before `{right}`", at + len(right)
+    elif sign == ":" and not text[at : _line_end(text, at)].strip():
+        message, at = "a `:` is missing after this key", at - len(left)
+        piece = repaired[repaired.rfind("\n", 0, mend.at) + 1 : mend.at + 1].strip()
     elif not text[at : _line_end(text, at)].strip():
         message, at = f"a `{sign}` is missing at the end of this line", at - 1
     else:
@@ -413,7 +431,7 @@ def _finding(
     return yaml_syntax(
         span,
         message,
-        f"write `{_piece(repaired, mend)}`",
+        f"write `{piece}`",
         arguments=("sign", sign, str(mend.at)),
         effect=effect,
         repairs=(repair,),

@@ -30,7 +30,6 @@ from smachac.frontend.types.interface_code import (
     python_code,
 )
 from smachac.frontend.types.interface_fields import interface_fields
-from smachac.frontend.types.interface_slips import with_lost_outputs
 from smachac.frontend.types.type_annotations import as_record, read_type
 from smachac.frontend.types.type_classes import (
     ALL_GIVEN,
@@ -38,6 +37,7 @@ from smachac.frontend.types.type_classes import (
     facts_without_interface,
     prints_itself,
 )
+from smachac.frontend.types.undeclared_outputs import with_lost_outputs
 from smachac.frontend.types.value_facts import (
     check_fields,
     described,
@@ -112,7 +112,7 @@ def _read_interface(
         help = "write it with fields such as `outcomes:`"
         report.append(wrong_shape(span, message, help, arguments=("interface", name)))
         return StateType(name=name, open=True)
-    fields = interface_fields(name, tree, library, report)
+    fields = interface_fields(tree, report)
     unclear = tree.get("io_keys") is not None  # reported; which keys are inputs is not known
     if "name" in fields:
         _check_own_name(fields["name"], name, report)
