@@ -20,13 +20,14 @@ from smachac.ir.nodes import Leaf, Machine, StateMachine, StateType
 from smachac.ir.traversal import inputs_from, outer_outputs, remapping, walk
 from smachac.pysource.import_cycles import circular_imports
 from smachac.pysource.smacha_templates import call_faults, guard_faults
-from smachac.pysource.template_bodies import TemplateBody, body_faults, template_bodies
+from smachac.pysource.template_bodies import body_faults, template_bodies
 from smachac.pysource.user_code import (
     CodeFacts,
     Declared,
     ProjectCode,
     StateClass,
     StateFault,
+    TemplateBody,
     UserCode,
     languages,
     user_types,

@@ -8,20 +8,19 @@ import builtins
 import keyword
 import re
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.ir.leaf import variable
-from smachac.ir.nodes import Leaf, Machine, StateType
+from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.pysource.base_calls import TOO_MANY_ARGUMENTS
 from smachac.pysource.class_names import UNDEFINED_NAME
 from smachac.pysource.modules import template_module
 from smachac.pysource.source import PythonText
-from smachac.pysource.user_code import StateFault, UserCode
+from smachac.pysource.user_code import StateFault, TemplateBody, UserCode
 
 ARGUMENT_ORDER = FaultKind(
     name="argument order",
@@ -64,21 +63,6 @@ _CLASS_NAME = r"\{\{-?\s*class_name\s*-?\}\}"
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
-class TemplateBody(NamedTuple):
-    """The block `body` of a template of the user, with the first state of its type; `block[1]` is
-    the text in the block."""
-
-    template: Source
-    block: re.Match[str]
-    type: StateType
-    leaf: Leaf
-
-    def call(self, name: str) -> re.Match[str] | None:
-        """The start of the first call of a class in the block; its places are those in the text of
-        the block."""
-        return _callee(name, self.leaf).search(self.block[1])
-
-
 def template_bodies(machine: Machine, library: UserCode) -> Iterator[TemplateBody]:
     """The blocks `body` of the user's templates, at the first state of each type."""
     done = set[str]()
@@ -91,7 +75,8 @@ def template_bodies(machine: Machine, library: UserCode) -> Iterator[TemplateBod
         template = library.own_template(file) if file and ":" not in file else None
         block = _BODY.search(template.text) if template is not None else None
         if type_ is not None and template is not None and block is not None:
-            yield TemplateBody(template, block, type_, leaf)
+            call = _callee(leaf.type, leaf).search(block[1])
+            yield TemplateBody(template, block, call, type_, leaf)
 
 
 def body_faults(
@@ -99,7 +84,7 @@ def body_faults(
 ) -> Iterator[StateFault]:
     """The faults of the line that makes the state, in the blocks `body` of a machine."""
     names = _names(machine, library) if bodies else set()
-    for template, block, _, leaf in bodies:
+    for template, block, _, _, leaf in bodies:
         fault = _call_fault(template, block, leaf, names)
         if fault is not None:
             used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")

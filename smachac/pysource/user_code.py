@@ -3,8 +3,9 @@ disk; the interface that a class declares; and a fault in the code of a state ty
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import Source, Span, Word
@@ -13,9 +14,6 @@ from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
 from smachac.pysource.ros_names import DEFAULT_ROS, Ros
 from smachac.records import dataclass, field
-
-if TYPE_CHECKING:
-    from smachac.pysource.template_bodies import TemplateBody
 
 Words: TypeAlias = "tuple[Word, ...]"
 
@@ -112,6 +110,18 @@ class StateClass(NamedTuple):
         """The place of the first state."""
         text = f"`{self.leaf.name}` is of the type `{self.type.name}`"
         return Related(span=self.leaf.span, message=text)
+
+
+class TemplateBody(NamedTuple):
+    """The block `body` of a template of the user, with the first state of its type. `block[1]` is
+    the text in the block, `call` the start of a call in it of the class with the name of the
+    type."""
+
+    template: Source
+    block: re.Match[str]
+    call: re.Match[str] | None
+    type: StateType
+    leaf: Leaf
 
 
 class CodeFacts(NamedTuple):

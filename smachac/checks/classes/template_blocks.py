@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
 from smachac.checks.rule import Rule
@@ -14,9 +13,7 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
 from smachac.pysource.jinja_tags import tags
-
-if TYPE_CHECKING:
-    from smachac.pysource.template_bodies import TemplateBody
+from smachac.pysource.user_code import TemplateBody
 
 _TEST = re.compile(
     r"\{%[-+]?\s*if\s+(\w+)\s+is\s+defined\s*[-+]?%\}(.*?)\{%[-+]?\s*endif\b", re.DOTALL
@@ -43,7 +40,7 @@ def _not_printed(of: TemplateBody) -> Iterator[Finding]:
     # Code that another template prints can use the names of this one.
     hidden = any(re.search(r"\bsuper\b|\bself\b|\*\*", code) for code in in_body)
     hidden = hidden or any(re.search(r"\binclude\b|with context", code) for code in printed)
-    call = of.call(leaf.type)
+    call = of.call
     if call is None or hidden:
         return
     words = {word for code in (*printed, inside) for word in _WORD.findall(code)}
