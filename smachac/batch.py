@@ -15,6 +15,7 @@ from pathlib import Path
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.source import Source, Word
 from smachac.driver import CODES, Analysis, MachineCheck, Previous, analyse, read_machine
+from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors.suppressions import unused_allowances
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.loader import Library
@@ -22,8 +23,11 @@ from smachac.frontend.text.suppressions import Suppression
 from smachac.frontend.text.yaml_tree import Seq
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outer_inputs, outer_outputs
-from smachac.python_machines import SUFFIX, PythonProject
 from smachac.records import dataclass, field
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from smachac.python_machines import PythonProject
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,11 +102,11 @@ def check_scripts(
                 analyses[str(path)] = analyse_alone(source, library, report, last)
         uses[str(path)] = disk.searched_files()
 
-    python = PythonProject(disk)
+    python = _python_project(paths, disk)
     for path in paths:
         disk.searched.clear()
         report: Report = []
-        if path.suffix == SUFFIX:
+        if python is not None and path.suffix == PYTHON_SUFFIX:
             file = python.read(path, everything=everything)
             analyses[str(path)] = Analysis(
                 script=str(path), source=file.source, report=file.report, coverage=file.coverage
@@ -132,6 +136,16 @@ def check_scripts(
         uses={name: uses[name] for name in names},
         analyses={name: analyses[name] for name in names},
     )
+
+
+def _python_project(paths: Sequence[Path], disk: Disk) -> PythonProject | None:
+    """The reader of Python files, if there is one among the paths: its modules are imported then
+    alone."""
+    if all(path.suffix != PYTHON_SUFFIX for path in paths):
+        return None
+    from smachac.python_machines import PythonProject
+
+    return PythonProject(disk)
 
 
 def _report_unused_allowances(analyses: Mapping[str, Analysis], reports: dict[str, Report]) -> None:

@@ -44,6 +44,10 @@ from smachac.targets import BuildContext, Files, Target, errors, load_target
 from smachac.targets.hiding_files import hiding_files
 from smachac.targets.runtime_files import runtime_files
 
+TYPE_CHECKING = False  # annotations only: a check of scripts reads no machines in Python
+if TYPE_CHECKING:
+    from smachac.pysource.coverage import Coverage
+
 Folders: TypeAlias = "Sequence[str | PathLike[str]]"
 
 _PROBLEMS = (
@@ -83,7 +87,8 @@ class Analysis:
     be read; `checked` is the same machine if the report has no error. `library` is None if there is
     no text. `given` holds the suppressions of all texts of the script, `unused` those in
     sub-scripts that suppressed nothing. `alone`: the text is a sub-script that was analysed without
-    a caller. `coverage`: how much of the machines of a Python file is known, if not all is.
+    a caller. `coverage`: how much of the machines of a Python file is known; None for a script, and
+    for a file that cannot be read.
     """
 
     script: str = ""
@@ -95,7 +100,7 @@ class Analysis:
     given: tuple[Suppression, ...] = ()
     unused: tuple[Suppression, ...] = ()
     alone: bool = False
-    coverage: str = ""
+    coverage: Coverage | None = None
 
 
 @dataclass(slots=True)
@@ -361,6 +366,20 @@ def code_faults(machine: Machine, target: Target, library: Library) -> Report:
         target=target.name,
     )
     return check_machine(machine, CODE_RULES, Context(machine, project=project))
+
+
+def draw(
+    machine: Machine,
+    target: Target,
+    library: Library,
+    options: Mapping[str, str] | None = None,
+    findings: Sequence[Diagnostic] = (),
+) -> Files:
+    """The picture of a machine that may have errors. `target` is one of pictures; `findings` are
+    those of the machine. Raises OptionError."""
+    context = BuildContext(library=library, options=options or {}, findings=findings)
+    with deep_recursion():
+        return target.emit(Checked(machine), context, [])
 
 
 def merged(report: Report, built: Report) -> Report:

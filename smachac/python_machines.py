@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from smachac.checks import check_machine
+from smachac.checks import RULES, check_machine
 from smachac.diagnostics.diagnostic import Diagnostic, Report, Severity, grouped, in_order
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.driver import CODES
+from smachac.driver import CODES, Analysis
+from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors import python_machines as errors
 from smachac.frontend.files import Disk, disk_library
 from smachac.frontend.text.suppressions import suppress
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
+from smachac.pysource.coverage import Coverage, coverage_of, unknown_states
 from smachac.pysource.machines.class_facts import ClassReader
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
@@ -35,6 +39,8 @@ CANNOT_WORK = frozenset({
 """The codes of rules that are reported of Python files: with such a fault a machine cannot work.
 Only errors of these are, because a warning can be about a path that is impossible."""
 
+_RULES = frozenset(rule.code.code for rule in RULES)
+
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
 one can have other transitions."""
@@ -42,35 +48,19 @@ one can have other transitions."""
 MOST_FILES = 20_000
 """The most Python files of a repository that are searched for modules."""
 
-SUFFIX = ".py"
-
 _SKIPPED = ("__pycache__", "node_modules", "build", "install", "devel", "log")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PythonFile:
-    """The machines of a Python file, and the findings about them."""
+    """The machines of a Python file, the findings about them, and how much of them is known; None
+    if the file cannot be read."""
 
     path: Path
     source: Source | None
-    graphs: tuple[Graph, ...]
+    graphs: tuple[Graph, ...] = ()
     report: Report
-
-    @property
-    def coverage(self) -> str:
-        """How much of its machines is known, in words; empty if all is."""
-        states = sum(graph.coverage.states for graph in self.graphs)
-        unknown = [each for graph in self.graphs for each in graph.coverage.unknown]
-        places = dict.fromkeys(span for span, _ in unknown)
-        if not places:
-            return ""
-        shown = dict(reversed([(span, reason) for span, reason in unknown]))
-        listed = "; ".join(
-            f"{span.source.name}:{span.line}: {reason}" for span, reason in [*shown.items()][:3]
-        )
-        more = f" and {len(shown) - 3} more" if len(shown) > 3 else ""
-        exact = max(states - len(places), 0)
-        return f"{exact} of {states} states exact; {len(places)} unknown ({listed}{more})"
+    coverage: Coverage | None = None
 
 
 class PythonProject:
@@ -87,11 +77,11 @@ class PythonProject:
         source = self.disk.read(path, report)
         library = disk_library(path, report, disk=self.disk, codes=CODES)
         if source is None:
-            return PythonFile(path=path, source=None, graphs=(), report=report)
+            return PythonFile(path=path, source=None, report=report)
         if module_text(source) is None:
             report.append(_unreadable(source))
             found = grouped(apply_severities(in_order(report), library.policy))
-            return PythonFile(path=path, source=source, graphs=(), report=found)
+            return PythonFile(path=path, source=source, report=found)
         repository, evaluator, reader = self._repository(path)
         del evaluator.faults[:]
 
@@ -104,19 +94,22 @@ class PythonProject:
             findings = [item for graph in whole for item in check_machine(graph.machine)]
             findings = _in_file(findings, str(path))
             variants: list[Graph] = []
-            if any(item.code in IN_ALL for item in findings):
+            if any(item.code in IN_ALL and (everything or _cannot_work(item)) for item in findings):
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
                 findings += [item for graph in variants for item in check_machine(graph.machine)
                              if item.code in IN_ALL and item.span.source.name == str(path)]  # fmt: skip
-        if not everything:
-            findings = [item for item in findings
-                        if item.code in CANNOT_WORK and item.severity is Severity.ERROR]  # fmt: skip
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
         report += _of_uses(evaluator.faults, whole)
+        self.disk.searched.update(repository.files_of(str(path)))
         rest, _, _ = suppress(report, source, (source,), CODES)
-        found = grouped(apply_severities(in_order(rest), library.policy))
-        return PythonFile(path=path, source=source, graphs=tuple(whole), report=found)
+        if not everything:  # afterwards, as a comment can be about any finding
+            rest = [item for item in rest if _cannot_work(item)]
+        found = grouped(apply_severities(in_order(map(_without_edits, rest)), library.policy))
+        coverage = coverage_of(whole)
+        return PythonFile(
+            path=path, source=source, graphs=tuple(whole), report=found, coverage=coverage
+        )
 
     def _repository(self, path: Path) -> tuple[Repository, Evaluator, ClassReader]:
         root = repository_of(path)
@@ -157,7 +150,7 @@ def python_files(folder: Path) -> Iterator[Path]:
         folders[:] = [name for name in sorted(folders)
                       if not name.startswith(".") and name not in _SKIPPED]  # fmt: skip
         for name in sorted(names):
-            if name.endswith(SUFFIX) and count < MOST_FILES:
+            if name.endswith(PYTHON_SUFFIX) and count < MOST_FILES:
                 count += 1
                 yield Path(top, name)
 
@@ -194,6 +187,17 @@ def _unreadable(source: Source) -> Diagnostic:
     return errors.unreadable_module(word.span, message, help)
 
 
+def _cannot_work(item: Diagnostic) -> bool:
+    """Whether a finding is reported by default: not those of rules about what can work."""
+    of_rule = item.code in _RULES
+    return not of_rule or (item.code in CANNOT_WORK and item.severity is Severity.ERROR)
+
+
+def _without_edits(item: Diagnostic) -> Diagnostic:
+    """A finding without repairs: those of the rules write YAML, and Python files are not edited."""
+    return replace(item, finding=replace(item.finding, edits=(), repairs=()))
+
+
 def _in_file(findings: Report, file: str) -> Report:
     """The findings, without those of IN_ALL in other files: other machines can have instances of
     the same code."""
@@ -228,12 +232,47 @@ def _of_uses(faults: Sequence[UseFault], found: Sequence[Graph]) -> Iterator[Dia
                 yield errors.repeated_key(Word(name, fault.span), fault.other)
 
 
-def machines_by_name(file: PythonFile) -> Mapping[str, Machine]:
-    """The machines of a file by the names of their roots; later ones of a name have a number."""
-    named: dict[str, Machine] = {}
+def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:
+    """Each machine of a file with its findings, by the names of the machines; later ones of a name
+    have a number. `checked` is empty: no program can be generated."""
+    named: dict[str, Analysis] = {}
     for graph in file.graphs:
-        name, number = graph.machine.root.name, 2
+        own = graph.machine.root.name
+        name, number = own, 2
         while name in named:
-            name, number = f"{graph.machine.root.name}_{number}", number + 1
-        named[name] = graph.machine
+            name, number = f"{own}_{number}", number + 1
+        named[name] = Analysis(
+            script=str(file.path), source=file.source, machine=_drawn(graph, name),
+            report=_renamed(_of_machine(file.report, graph.machine), own, name),
+        )  # fmt: skip
     return named
+
+
+def _drawn(graph: Graph, name: str) -> Machine:
+    """A machine with a name, and with what pictures show of it: the digest of its files, and the
+    states that are not known exactly."""
+    machine = graph.machine
+    machine = replace(machine, root=replace(machine.root, name=name))
+    unknown = unknown_states(graph._replace(machine=machine))
+    digest = hashlib.sha256()
+    for source in dict.fromkeys(node.span.source for _, node in walk(machine.root)):
+        digest.update(source.text.encode("utf-8", "surrogatepass"))
+        digest.update(b"\0")
+    return replace(machine, base="", digest=digest.hexdigest(), unknown=unknown)
+
+
+def _of_machine(report: Report, machine: Machine) -> Report:
+    """The findings of a file that are about one of its machines, or about none."""
+    with deep_recursion():
+        own = {(item.code, item.span) for item in check_machine(machine)}
+    return [item for item in report if item.finding.node is None or (item.code, item.span) in own]
+
+
+def _renamed(report: Report, old: str, new: str) -> Report:
+    """Findings about a machine that has another name, in the paths of its states."""
+    return [
+        replace(item, finding=replace(item.finding, node=new + item.finding.node[len(old) :]))
+        if item.finding.node is not None and old != new
+        else item
+        for item in report
+    ]

@@ -13,6 +13,12 @@ SCRIPTS = "scripts, folders or patterns (default: the current folder)"
 FORMAT = "format of the report"
 
 
+def machine_name(parser: argparse.ArgumentParser) -> None:
+    """`--machine`."""
+    parser.add_argument("--machine", metavar="NAME", help="the machine of a Python file with"
+                        " several")  # fmt: skip
+
+
 def as_path(text: str) -> pathlib.Path:
     """A path; pathlib is imported when the first one is given."""
     from pathlib import Path

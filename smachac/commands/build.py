@@ -11,17 +11,20 @@ from smachac.commands.arguments import (
     SCRIPT,
     as_path,
     colour,
+    machine_name,
     memory_limit,
     search_folders,
     time_limit,
 )
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
+from smachac.commands.python_files import MachineError, is_python, python_analyses
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
-    from smachac.targets import Files
+    from smachac.targets import Files, Target
 
 EXAMPLES = """\
 examples:
@@ -31,6 +34,7 @@ examples:
   smachac build main.yml --target html -o out        write a page for a browser
   smachac build main.yml --target dot --option depth=1    set an option of the target
   smachac build main.yml --target python --check     fail if the file is not up to date (CI)
+  smachac build machine.py --target html -o out      the pages of the machines in a Python file
 
 exit codes: 0 success, 1 the script has errors or a file is in the way or not up to date,
 2 wrong usage, 70 a bug in smachac
@@ -50,6 +54,7 @@ def build_arguments(parser: argparse.ArgumentParser) -> None:
                         help="write nothing; exit with 1 if a file is not up to date")  # fmt: skip
     parser.add_argument("--force", action="store_true",
                         help="overwrite files that smachac did not generate")  # fmt: skip
+    machine_name(parser)
     search_folders(parser)
     memory_limit(parser)
     time_limit(parser)
@@ -66,6 +71,12 @@ def build_command(arguments: Namespace) -> int:
     target = load_target(arguments.target)
     if target is None:
         return usage(f"there is no target `{arguments.target}`", arguments.target, target_names())
+    if is_python(arguments.script) and not target.is_picture:
+        return usage(f"target `{target.name}` makes a program, and {arguments.script} is one: the"
+                     " targets of Python files are pictures, such as dot, mermaid and html"
+                     )  # fmt: skip
+    if arguments.machine is not None and not is_python(arguments.script):
+        return usage("--machine is for Python files")
     options: dict[str, str] = {}
     for text in arguments.option:
         name, equals, value = text.partition("=")
@@ -82,9 +93,13 @@ def build_command(arguments: Namespace) -> int:
         options[name] = text
     try:
         with limited_memory(arguments.memory_limit), limited_time(arguments.time_limit):
+            if is_python(arguments.script):
+                return _put_pictures(target, options, arguments)
             analysis = analyse_script(arguments.script, arguments.scripts, arguments.templates)
             levels = _levels(arguments.script, arguments.output)
             files, report = compile_files(analysis, target, options, levels)
+    except MachineError as error:
+        return usage(str(error), error.word, error.known)
     except OptionError as error:
         return usage(f"--option {error}")
     except CpuTimeError as error:
@@ -92,6 +107,30 @@ def build_command(arguments: Namespace) -> int:
         return FINDINGS
     print_report(without_notes(report), arguments, sys.stderr)
     return _put(files, arguments) if files else FINDINGS
+
+
+def _put_pictures(target: Target, options: Mapping[str, str], arguments: Namespace) -> int:
+    """Put the pictures of the machines in a Python file, also of those with errors; the exit code.
+    Raises MachineError and OptionError."""
+    from smachac.diagnostics.diagnostic import has_errors, in_order
+    from smachac.driver import CODES, draw, without_class_errors
+    from smachac.frontend.files import Disk, disk_library
+
+    disk = Disk()
+    analyses = python_analyses(arguments.script, disk, arguments)
+    printed = str(arguments.output) == "-"
+    if printed and len(analyses) > 1:
+        raise MachineError("-o - prints one machine: use --machine NAME", "", tuple(analyses))
+    library = disk_library(arguments.script, [], disk=disk, codes=CODES)
+    files: Files = {}
+    for analysis in analyses.values():
+        if analysis.machine is not None:
+            files |= draw(analysis.machine, target, library, options, analysis.report)
+    every = in_order(item for analysis in analyses.values() for item in analysis.report)
+    report = without_class_errors(every)
+    print_report(without_notes(report), arguments, sys.stderr)
+    code = _put(files, arguments) if files else FINDINGS
+    return FINDINGS if has_errors(report) else code
 
 
 def _text_of(name: str) -> str | None:

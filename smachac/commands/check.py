@@ -23,16 +23,18 @@ from smachac.commands.streams import print_failure
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
-    from typing import TextIO
+    from typing import Any, TextIO
 
     from smachac.batch import Batch
     from smachac.diagnostics.baseline import Baseline
     from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
     from smachac.driver import MachineCheck, Previous
+    from smachac.frontend.discovery import PythonFiles
     from smachac.frontend.files import Disk
+    from smachac.pysource.coverage import Coverage
     from smachac.refactor.autofix import FixResult
 
 EXAMPLES = """\
@@ -143,13 +145,11 @@ def _check_once(
     from smachac.checks.robot.workspace import unreachable
     from smachac.commands.git import changed_since
     from smachac.diagnostics.diagnostic import Severity
-    from smachac.frontend.discovery import scripts_of
+    from smachac.frontend.discovery import PYTHON_SUFFIX, scripts_of
     from smachac.frontend.files import Disk
-    from smachac.python_machines import files_with_machines
 
     started = time.perf_counter()
-    python = files_with_machines if arguments.python else None
-    paths = scripts_of(arguments.script, disk, python)
+    paths = scripts_of(arguments.script, disk, _python_files(arguments))
     sim_rule = unreachable if arguments.sim else None
 
     def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
@@ -179,6 +179,8 @@ def _check_once(
             return FINDINGS
         found, notes = _select(fixed.batch, changed, arguments)
         notes += [f"{fixes} fixed"] if fixes else []
+        if any(path.suffix == PYTHON_SUFFIX for path in paths):
+            notes.append("--fix does not edit Python files")
     elif any(item.finding.edits for item in found.report):
         from smachac.refactor.autofix import fixable
 
@@ -189,15 +191,28 @@ def _check_once(
         name: [item for item in each if item.severity in severe]
         for name, each in found.reports.items()
     }
-    notes += [each.coverage for each in whole.analyses.values() if each.coverage]
     if sys.stdout.isatty():
         notes.append(f"{time.perf_counter() - started:.2f} s")
     if not arguments.notes and len(without_notes(found.report)) < len(found.report):
         notes.append("--notes shows notes")
     if not arguments.diff:
         clusters = _clusters(found, sim_rule, arguments)
-        _put(found, failing, clusters, notes, arguments)
+        coverage = {
+            name: analysis.coverage
+            for name, analysis in whole.analyses.items()
+            if name in found.reports and analysis.coverage is not None
+        }
+        _put(found, failing, clusters, coverage, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
+
+
+def _python_files(arguments: Namespace) -> PythonFiles | None:
+    """The function that finds the Python files with machines in a folder, if they are checked."""
+    if not arguments.python:
+        return None
+    from smachac.python_machines import files_with_machines
+
+    return files_with_machines
 
 
 def _select(
@@ -257,6 +272,7 @@ def _put(
     found: Batch,
     failing: dict[str, Report],
     clusters: Sequence[Cluster],
+    coverage: Mapping[str, Coverage],
     notes: list[str],
     arguments: Namespace,
 ) -> None:
@@ -269,7 +285,8 @@ def _put(
         case "json":
             from smachac.report.json import render_json
 
-            sys.stdout.write(render_json(report, clusters, on_one_line=on_one_line))
+            data = _coverage_data(coverage)
+            sys.stdout.write(render_json(report, clusters, data, on_one_line=on_one_line))
         case "sarif":
             from smachac.report.sarif import render_sarif
 
@@ -283,19 +300,38 @@ def _put(
             from smachac.report.github import render_github
 
             sys.stdout.write(render_github(listed))
-            print(_summary(report, len(found.reports), notes))
+            _put_coverage(coverage, arguments)
+            print(_summary(found, coverage, notes))
         case _:
             print_report(listed, arguments, sys.stdout, clusters)
-            print(_summary(report, len(found.reports), notes))
+            _put_coverage(coverage, arguments)
+            print(_summary(found, coverage, notes))
 
 
-def _summary(report: Report, scripts: int, notes: list[str]) -> str:
+def _coverage_data(coverage: Mapping[str, Coverage]) -> list[dict[str, Any]]:
+    if not coverage:
+        return []
+    from smachac.report.coverage import coverage_data
+
+    return coverage_data(coverage)
+
+
+def _put_coverage(coverage: Mapping[str, Coverage], arguments: Namespace) -> None:
+    """Print how much of the machines in Python files is known."""
+    if coverage:
+        from smachac.report.coverage import coverage_lines
+
+        for line in coverage_lines(coverage, every=arguments.notes):
+            print(shown(line))
+
+
+def _summary(found: Batch, coverage: Mapping[str, Coverage], notes: list[str]) -> str:
     """The last line of the output: the numbers of findings and scripts, and the notes."""
     from smachac.report.text import summary
 
-    words = summary(report)
-    if scripts != 1:
-        words += f"; {scripts} scripts checked"
+    words = summary(found.report)
+    if len(found.reports) != 1:
+        words += f"; {len(found.reports)} {'files' if coverage else 'scripts'} checked"
     return f"{words} ({', '.join(notes)})" if notes else words
 
 

@@ -7,8 +7,9 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import colour, search_folders
+from smachac.commands.arguments import colour, machine_name, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.python_files import MachineError, is_python, one_analysis
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ examples:
   smachac explain main.yml grasp_pose    a key: which states set it and read it, where it is unset
   smachac explain main.yml PICK/GRASP    a state, by its path or the end of its path
   smachac explain main.yml --failures    where every failure leads
+  smachac explain machine.py PICK        a state of a machine in Python
   smachac explain main.yml --failures --format csv > failures.csv
   smachac explain main.yml --properties  the properties of the script, and which of them hold
   smachac explain main.yml --properties --scenario NAME > fails.yml
@@ -44,6 +46,7 @@ def explain_arguments(parser: argparse.ArgumentParser) -> None:
                         " or number, as a scenario for `run --mock`")  # fmt: skip
     parser.add_argument("--format", choices=("text", "json", "md", "csv"), default="text",
                         help="format of the output; md and csv only with --failures")  # fmt: skip
+    machine_name(parser)
     search_folders(parser)
     colour(parser)
 
@@ -53,7 +56,9 @@ def explain_command(arguments: Namespace) -> int:
     from pathlib import Path
 
     from smachac.analysis.context import Context
+    from smachac.diagnostics.diagnostic import has_errors
     from smachac.driver import CODES, analyse_script
+    from smachac.frontend.files import Disk
 
     words, form = arguments.words, arguments.format
     if form in ("md", "csv") and not arguments.failures:
@@ -74,12 +79,23 @@ def explain_command(arguments: Namespace) -> int:
         return usage(
             "name a code such as SM201, or a script with a state, a key, --failures or --properties"
         )
-    analysis = analyse_script(Path(words[0]), arguments.scripts, arguments.templates)
+    path = Path(words[0])
+    if arguments.machine is not None and not is_python(path):
+        return usage("--machine is for Python files")
+    try:
+        analysis = (
+            one_analysis(path, Disk(), arguments)
+            if is_python(path)
+            else analyse_script(path, arguments.scripts, arguments.templates)
+        )
+    except MachineError as error:
+        return usage(str(error), error.word, error.known)
     if analysis.machine is None:
         print_report(without_notes(analysis.report), arguments, sys.stderr)
         return FINDINGS
-    if analysis.checked is None and not arguments.properties:
-        print("the script has errors: the explanation may be incomplete", file=sys.stderr)
+    if has_errors(analysis.report) and not arguments.properties:
+        what = "file" if is_python(path) else "script"
+        print(f"the {what} has errors: the explanation may be incomplete", file=sys.stderr)
     if arguments.properties:
         return _explain_properties(Context(analysis.machine), arguments.scenario, form)
     if arguments.failures:

@@ -14,6 +14,10 @@ from smachac.frontend.config import Project
 from smachac.frontend.files import Disk, find_project, leads_out, lies_inside
 
 SUFFIXES = (".yml", ".yaml")
+
+PYTHON_SUFFIX = ".py"
+"""The suffix of Python files with machines."""
+
 SKIPPED = ("__pycache__", "node_modules")
 """Folders that are not searched; nor are those whose name begins with a dot."""
 

@@ -517,7 +517,7 @@ class Param:
 class Machine:
     """A whole program: the outermost container and the data of the base template.
 
-    `base` is the base template; `variables` are its variables (`node_name`, `function_name`,
+    `base` is the base template, empty for a machine in Python; `variables` are its variables (`node_name`, `function_name`,
     `manifest`, and those of its interface). `source` is the name of the script without its folder,
     `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
     `properties`, `definitions`, those of messages of ROS, `missing_definitions` and
@@ -526,6 +526,8 @@ class Machine:
     `fixed_params` the look-ups of params in time limits and retries. `functions` are those of the
     user that the script names, by the text in the script. `state_types` are the interfaces of its
     states and of its base, by name. `aliases` are the types that the script names, for messages.
+    `unknown` are the states that are not known exactly, by path, with the reason: a machine that is
+    read from Python can have some, and pictures show them dashed.
     """
 
     root: StateMachine
@@ -544,6 +546,7 @@ class Machine:
     functions: Mapping[str, FunctionFacts] = field(default_factory=dict, compare=False, repr=False)
     state_types: Mapping[str, StateType] = field(default_factory=dict, compare=False, repr=False)
     aliases: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
+    unknown: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
 
 
 Checked = NewType("Checked", Machine)

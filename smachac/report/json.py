@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from smachac.diagnostics.clusters import Cluster
@@ -17,18 +17,27 @@ VERSION = 4
 
 
 def render_json(
-    report: Report, clusters: Sequence[Cluster] = (), *, on_one_line: bool = False
+    report: Report,
+    clusters: Sequence[Cluster] = (),
+    coverage: Sequence[Mapping[str, Any]] = (),
+    *,
+    on_one_line: bool = False,
 ) -> str:
-    """The findings in the order of the report, in ASCII. Equal reports give equal texts."""
+    """The findings in the order of the report, in ASCII. Equal reports give equal texts.
+
+    `coverage` is that of Python files, as data (`report.coverage`).
+    """
     counts = {
         severity.value: sum(item.severity is severity for item in report) for severity in Severity
     }
-    whole = {
+    whole: dict[str, Any] = {
         "version": VERSION,
         "diagnostics": list(map(diagnostic_data, report)),
         "clusters": clusters_data(report, clusters),
         "counts": counts,
     }
+    if coverage:
+        whole["coverage"] = list(coverage)
     return json_text(whole, sort_keys=True, on_one_line=on_one_line)
 
 

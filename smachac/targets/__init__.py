@@ -72,12 +72,14 @@ class Target:
     the support code that the files need beside them: file name to path under smachac/runtime.
     `has_code(type, library)` is whether the target can emit states of a type.
     `declared(type, library)` is the interface that the user's class for a type declares; None if it
-    cannot be read.
+    cannot be read. `is_picture`: `emit` also accepts a machine with errors, and one that was read
+    from Python.
     """
 
     name: str
     description: str
     emit: Emit
+    is_picture: bool = False
     options: Mapping[str, str] = field(default_factory=dict)
     file_options: frozenset[str] = frozenset()
     runtime: Callable[[Checked, BuildContext], Mapping[str, str]] = _no_runtime

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import re
+import tokenize
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -66,9 +69,22 @@ def suppressions_in(
 
 
 def _scalars(source: Source, parse: Parser) -> list[tuple[int, int]]:
-    """The ranges of a YAML text, in order, that are values: `#` starts no comment in them."""
-    tree = parse(source, []) if not source.name.endswith(".py") else None
+    """The ranges of a text, in order, that are values of YAML or strings of Python: `#` starts no
+    comment in them."""
+    if source.name.endswith(".py"):
+        return [*_strings(source)]
+    tree = parse(source, [])
     return sorted((span.start, span.end) for span in _spans(tree)) if tree is not None else []
+
+
+def _strings(source: Source) -> Iterator[tuple[int, int]]:
+    """The ranges of the strings of a Python text, in order, as far as it can be read."""
+    starts = source.line_starts
+    with contextlib.suppress(tokenize.TokenError, SyntaxError):
+        for token in tokenize.generate_tokens(io.StringIO(source.text, newline="\n").readline):
+            if MARK in token.string and token.type != tokenize.COMMENT:
+                (first, column), (last, end) = token.start, token.end
+                yield starts[first - 1] + column, starts[last - 1] + end
 
 
 def _spans(tree: Tree) -> Iterator[Span]:

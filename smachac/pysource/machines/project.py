@@ -41,6 +41,7 @@ class Repository:
         self.loaded: dict[str, ModuleValue | Unknown] = {}
         self.libraries: dict[str, ModuleValue] = {}
         self.missing: dict[str, str] = {}
+        self.imported: dict[str, dict[str, None]] = {}
 
     def method_of(self, cls: str, name: str) -> Native | None:
         return method_of(cls, name)
@@ -58,7 +59,18 @@ class Repository:
         file = self.file_of(name, user)
         if file is None:
             return Unknown(reason=name)
+        self.imported.setdefault(user.file, {})[file] = None
         return self.module(evaluator, file)
+
+    def files_of(self, file: str) -> Iterable[str]:
+        """The files of the modules that a file imports, and of those that these import."""
+        found = {file: None}
+        todo = [file]
+        while todo:
+            new = self.imported.get(todo.pop(), {}).keys() - found.keys()
+            found |= dict.fromkeys(sorted(new))
+            todo += sorted(new)
+        return found
 
     def file_of(self, name: str, user: ModuleValue) -> str | None:
         """The file of a module."""

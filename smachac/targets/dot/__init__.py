@@ -27,6 +27,7 @@ TARGET = Target(
     name="dot",
     description="a picture for Graphviz",
     emit=emit,
+    is_picture=True,
     options={
         "depth": "levels of containers that are drawn open; deeper ones are closed boxes",
         "rankdir": "where the picture runs to: TB (down, the default), LR, BT or RL",

@@ -23,6 +23,8 @@ from smachac.targets.dot.style import (
     PARALLEL_FILL,
     STATE_FILL,
     TONES,
+    UNKNOWN_LEGEND,
+    UNKNOWN_STYLE,
     attributes,
     font,
     html,
@@ -43,13 +45,15 @@ class Notes(NamedTuple):
 
 class Position(NamedTuple):
     """The position of a state: its full path, its node name in DOT and its depth; `paths` are those
-    of the script by full path, where they differ; `tones` those of the states in properties."""
+    of the script by full path, where they differ; `tones` those of the states in properties;
+    `unknown` the reasons of the states that are not known exactly."""
 
     path: str
     id: str
     level: int
     paths: Mapping[str, str]
     tones: Mapping[str, str]
+    unknown: Mapping[str, str]
     notes: Notes = Notes()
 
     def below(self, name: str) -> Position:
@@ -84,7 +88,8 @@ def picture(
         yield f"  {line}"
     todo: list[str | tuple[Position, Container]] = ["}"]
     tones = property_tones(machine)
-    start = Position(root.name, identifier(root.name), 1, script_paths(root), tones, notes)
+    paths = script_paths(root)
+    start = Position(root.name, identifier(root.name), 1, paths, tones, machine.unknown, notes)
     todo.append((start, root))
     while todo:
         item = todo.pop()
@@ -110,7 +115,11 @@ def picture(
 
 def _settings(machine: Machine, rankdir: str) -> Iterator[str]:
     root = machine.root
-    title = spaced([f"<B>{html(root.name)}</B>", font(html(machine.base), colour=FAINT, size=10)])
+    base = machine.base or machine.source
+    rows = [f"<B>{html(root.name)}</B>", font(html(base), colour=FAINT, size=10)]
+    if machine.unknown:
+        rows.append(font(html(UNKNOWN_LEGEND), colour=FAINT, size=10))
+    title = spaced(rows)
     look = {
         "rankdir": rankdir,
         "compound": "true",
@@ -146,10 +155,12 @@ def _frame(container: Container, place: Position) -> Iterator[str]:
         title += f"  {_property_mark(shade)}"
     if note := place.notes.states.get(place.path):
         title += f"<BR/>{font(html(note), colour=FAINT, size=9)}"
+    if place.path in place.unknown:
+        style = UNKNOWN_STYLE
     look = {"labeljust": "c", "labelloc": "t", "style": style}
     colours = {"fillcolor": fill, "color": border, "fontsize": "11"}
     yield f'subgraph "cluster_{place.id}" {{'
-    tip = {"tooltip": container.doc or place.shown}
+    tip = {"tooltip": _tip(container, place)}
     yield f"  graph{attributes(look | colours | tip, title)}"
 
 
@@ -160,13 +171,20 @@ def _box(node: Node, place: Position) -> str:
     kind = kind if isinstance(node, Leaf) else f"{kind} <B>+</B>"
     if node.type:
         rows.append(font(kind, colour=FAINT, size=9))
-    look = {"tooltip": node.doc or place.shown}
+    look = {"tooltip": _tip(node, place)}
+    if place.path in place.unknown:
+        look["style"] = UNKNOWN_STYLE
     if shade := place.tones.get(place.path):
         rows.append(_property_mark(shade))
         look |= {"color": TONES[shade][0], "penwidth": "2"} if shade == "failure" else {}
     if note := place.notes.states.get(place.path):
         rows.append(font(html(note), colour=INK, size=9))
     return f'"{place.id}"{attributes(look, spaced(rows))}'
+
+
+def _tip(node: Node, place: Position) -> str:
+    reason = place.unknown.get(place.path)
+    return f"{place.shown}: {reason}" if reason else node.doc or place.shown
 
 
 def _property_mark(shade: str) -> str:

@@ -27,6 +27,10 @@ TONES = {
 }
 """The line and fill colours by tone of an outcome."""
 
+UNKNOWN_LEGEND = "dashed: not known exactly"
+UNKNOWN_STYLE = "rounded,filled,dashed"
+"""What the dashed boxes of pictures mean, and their style: states that are not known exactly."""
+
 _WORDS = {
     "success": "succeeded success successful done ok finished completed complete reached true yes",
     "failure": "aborted failed failure fail error errored invalid rejected lost crashed collision"

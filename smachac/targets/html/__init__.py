@@ -22,6 +22,7 @@ TARGET = Target(
     name="html",
     description="a picture to explore in a browser: one file, no network",
     emit=emit,
+    is_picture=True,
     options={"trace": "a trace of a run: the page replays it (a file of `run --trace`)"},
     file_options=frozenset({"trace"}),
 )

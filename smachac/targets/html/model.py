@@ -21,7 +21,7 @@ from smachac.ir.outcome_names import fails, successes
 from smachac.ir.properties import in_words
 from smachac.ir.script_paths import name_in_script, role_in_words
 from smachac.ir.secret_keys import SecretKeys
-from smachac.ir.traversal import remapping
+from smachac.ir.traversal import enclosing, remapping
 from smachac.runtime.tracing.writer import SECRET
 from smachac.targets.dot.edges import items
 
@@ -43,6 +43,7 @@ def machine_model(
     `live`: the page connects to the server that it comes from.
     """
     context = Context(machine)
+    around = enclosing(machine.root)
     shown = context.script_paths
     hidden = [flow.span for flow in secret_values(context.types, context.secret_keys)]
     by_node: dict[str, list[int]] = {}
@@ -57,7 +58,8 @@ def machine_model(
         "root": machine.root.name,
         "live": live,
         "nodes": [
-            _node(path, node, context, shown, by_node.get(path, []), hidden)
+            _node(path, node, around, context, shown, by_node.get(path, []), hidden)
+            | ({"unknown": machine.unknown[path]} if path in machine.unknown else {})
             for path, node in context.states
         ],
         "edges": [edge for path, node in context.containers for edge in edges_of(path, node)],
@@ -77,6 +79,7 @@ def machine_model(
 def _node(
     path: str,
     node: Node,
+    around: Mapping[str, tuple[str, Container]],
     context: Context,
     shown: Mapping[str, str],
     found: list[int],
@@ -89,7 +92,7 @@ def _node(
         "path": path,
         "name": name_in_script(node),
         "kind": "leaf" if isinstance(node, Leaf) else node.keyword,
-        "parent": path.rpartition("/")[0] or None,
+        "parent": around[path][0] if path in around else None,
         "children": [f"{path}/{child.name}" for child in children],
         "initial": _initial(path, node),
         "type": node.type or None,
@@ -236,18 +239,18 @@ def place_in_script(span: Span) -> tuple[str | None, int | None]:
 
 
 def snippet(span: Span, hidden: Sequence[Span] = ()) -> str:
-    """The lines of the script that describe a state: those indented deeper than its first one.
-    Values of secret keys (`hidden`) are not shown."""
+    """The lines of the script that describe a state: those of its span, and those indented deeper
+    than its first one. Values of secret keys (`hidden`) are not shown."""
     if span.source is NOWHERE.source:
         return ""
-    first = span.line
+    first, last = span.line, span.source.position(span.end)[0]
     start = _indentation(span.source, first)
     shown = _without(span.source, hidden)
     lines = [shown(first)]
     number = first + 1
     while number <= len(span.source.line_starts) and len(lines) <= SNIPPET_LINES:
         text = span.source.line(number)
-        if text.strip() and _indentation(span.source, number) <= start:
+        if number > last and text.strip() and _indentation(span.source, number) <= start:
             break
         lines.append(shown(number))
         number += 1

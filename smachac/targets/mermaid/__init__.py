@@ -19,7 +19,7 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     direction = context.options.get("direction", "TB")
     if direction not in DIRECTIONS:
         raise OptionError(f"`direction` must be one of {', '.join(DIRECTIONS)}, not `{direction}`")
-    lines = diagram(machine.root, depth=depth, direction=direction)
+    lines = diagram(machine, depth=depth, direction=direction)
     return {f"{stem(machine)}.mmd": "\n".join([f"%% {made_by(machine)}", *lines, ""])}
 
 
@@ -27,6 +27,7 @@ TARGET = Target(
     name="mermaid",
     description="a picture for Markdown pages",
     emit=emit,
+    is_picture=True,
     options={
         "depth": "levels of containers that are drawn open; deeper ones are closed boxes",
         "direction": "where the picture runs to: TB (down, the default), LR, BT or RL",

@@ -7,15 +7,16 @@ Mermaid cannot style edges, so marks in their labels show failures and implicit 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.ir import nodes
 from smachac.ir.graph import Edge, Vertex, edges
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
 from smachac.ir.outcome_names import fails
 from smachac.ir.script_paths import name_in_script, role_in_words
 from smachac.targets.dot.edges import items
+from smachac.targets.dot.style import UNKNOWN_LEGEND
 
 FAILURE = "✗"
 """The mark of an edge for an outcome of failure."""
@@ -28,13 +29,19 @@ _ODD = re.compile("[\x00-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 """Characters that HTML cannot represent."""
 
 
-def diagram(root: StateMachine, *, depth: int | None, direction: str) -> Iterator[str]:
+def diagram(machine: Machine, *, depth: int | None, direction: str) -> Iterator[str]:
     """The lines of a state diagram. Containers below `depth` levels are drawn as closed boxes."""
+    root = machine.root
     yield "stateDiagram-v2"
     yield f"  accTitle: {label(root.name)}"
     yield f"  direction {direction}"
     ids = _Ids()
-    todo: list[str | _Open] = [_Open(root, ids.new(root.name), 1)]
+    if machine.unknown:
+        legend = ids.new("legend")
+        yield "  classDef unknown stroke-dasharray: 4 3"
+        yield f'  state "{label(UNKNOWN_LEGEND)}" as {legend}'
+        yield f"  class {legend} unknown"
+    todo: list[str | _Open] = [_Open(root, ids.new(root.name), root.name, 1, machine.unknown)]
     while todo:
         item = todo.pop()
         if isinstance(item, str):
@@ -44,11 +51,14 @@ def diagram(root: StateMachine, *, depth: int | None, direction: str) -> Iterato
 
 
 class _Open(NamedTuple):
-    """A container whose states are drawn in it: its identifier, and its level from 1."""
+    """A container whose states are drawn in it: its identifier, its path, its level from 1, and the
+    states that are not known exactly, by path."""
 
     container: Container
     id: str
+    path: str
     level: int
+    unknown: Mapping[str, str]
 
 
 def _inside(place: _Open, ids: _Ids, depth: int | None) -> Iterator[str | _Open]:
@@ -64,15 +74,17 @@ def _inside(place: _Open, ids: _Ids, depth: int | None) -> Iterator[str | _Open]
     # Mermaid's layout fails for some composite states that follow a simple one.
     children = container.children if parallel else sorted(container.children, key=closed)
     for number, child in enumerate(children):
-        id = inside[child.name]
+        id, path = inside[child.name], f"{place.path}/{child.name}"
         if parallel and number:
             yield f"{pad}--"
         if isinstance(child, Leaf) or closed(child):
             yield from (pad + line for line in _box(child, id))
         else:
             yield f'{pad}state "{_title(child)}" as {id} {{'
-            yield _Open(child, id, place.level + 1)
+            yield _Open(child, id, path, place.level + 1, place.unknown)
             yield f"{pad}}}"
+        if path in place.unknown:
+            yield f"{pad}class {id} unknown"
         if parallel:
             yield from (pad + line for line in arrows.pop(child.name, ()))
     for lines in arrows.values():
