@@ -17,7 +17,7 @@ from smachac.commands.arguments import (
     time_limit,
 )
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
-from smachac.commands.python_files import MachineError, is_python, python_analyses
+from smachac.commands.python_files import MachineError, is_python, named_analyses
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def _put_pictures(target: Target, options: Mapping[str, str], arguments: Namespa
     from smachac.frontend.files import Disk, disk_library
 
     disk = Disk()
-    analyses = python_analyses(arguments.script, disk, arguments)
+    analyses = named_analyses(arguments.script, disk, arguments.machine)
     printed = str(arguments.output) == "-"
     if printed and len(analyses) > 1:
         raise MachineError("-o - prints one machine: use --machine NAME", "", tuple(analyses))

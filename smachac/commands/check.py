@@ -19,6 +19,7 @@ from smachac.commands.arguments import (
     time_limit,
 )
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
+from smachac.commands.python_files import is_python, python_finder
 from smachac.commands.streams import print_failure
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
     from smachac.driver import MachineCheck, Previous
-    from smachac.frontend.discovery import PythonFiles
     from smachac.frontend.files import Disk
     from smachac.pysource.coverage import Coverage
     from smachac.refactor.autofix import FixResult
@@ -145,11 +145,11 @@ def _check_once(
     from smachac.checks.robot.workspace import unreachable
     from smachac.commands.git import changed_since
     from smachac.diagnostics.diagnostic import Severity
-    from smachac.frontend.discovery import PYTHON_SUFFIX, scripts_of
+    from smachac.frontend.discovery import scripts_of
     from smachac.frontend.files import Disk
 
     started = time.perf_counter()
-    paths = scripts_of(arguments.script, disk, _python_files(arguments))
+    paths = scripts_of(arguments.script, disk, python_finder(arguments))
     sim_rule = unreachable if arguments.sim else None
 
     def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
@@ -179,7 +179,7 @@ def _check_once(
             return FINDINGS
         found, notes = _select(fixed.batch, changed, arguments)
         notes += [f"{fixes} fixed"] if fixes else []
-        if any(path.suffix == PYTHON_SUFFIX for path in paths):
+        if any(map(is_python, paths)):
             notes.append("--fix does not edit Python files")
     elif any(item.finding.edits for item in found.report):
         from smachac.refactor.autofix import fixable
@@ -204,15 +204,6 @@ def _check_once(
         }
         _put(found, failing, clusters, coverage, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
-
-
-def _python_files(arguments: Namespace) -> PythonFiles | None:
-    """The function that finds the Python files with machines in a folder, if they are checked."""
-    if not arguments.python:
-        return None
-    from smachac.python_machines import files_with_machines
-
-    return files_with_machines
 
 
 def _select(

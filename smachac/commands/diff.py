@@ -7,17 +7,29 @@ import contextlib
 import os
 import sys
 from argparse import Namespace
+from dataclasses import replace
 
-from smachac.commands.arguments import FORMAT, as_path, colour, search_folders
+from smachac.commands.arguments import FORMAT, as_path, colour, machine_name, search_folders
 from smachac.commands.output import OK, print_report, usage
+from smachac.commands.python_files import (
+    UNREAD,
+    MachineError,
+    is_python,
+    python_analyses,
+    python_finder,
+)
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
+    from typing import TypeAlias
 
     from smachac.diff.comparison import Comparison
     from smachac.driver import Analysis
+
+    Machines: TypeAlias = Mapping[str, Analysis]
+    Pair: TypeAlias = tuple[Analysis | None, Analysis | None]
 
 EXAMPLES = """\
 examples:
@@ -25,6 +37,8 @@ examples:
   smachac diff main.yml                           what changed since the last commit
   smachac diff main.yml --from v1.0 --to v2.0     two git revisions
   smachac diff --from origin/main --format markdown > comment.md   all scripts, for a pull request
+  smachac diff machine.py --from v1.0            the machines in a Python file
+  smachac diff src --python --from origin/main   all scripts, and all Python files with machines
   smachac diff old.yml new.yml --format dot | dot -Tsvg > diff.svg   a picture in red and green
   smachac diff old.yml new.yml --format html > diff.html   the same to explore in a browser
 
@@ -47,6 +61,9 @@ def diff_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="new", metavar="REV",
                         help="the git revision after (default: the files as they are)")  # fmt: skip
     parser.add_argument("--format", choices=FORMATS, default="text", help=FORMAT)
+    parser.add_argument("--python", action="store_true", help="in folders, also compare Python"
+                        " files that build machines for SMACH")  # fmt: skip
+    machine_name(parser)
     search_folders(parser)
     colour(parser)
 
@@ -60,27 +77,62 @@ def diff_command(arguments: Namespace) -> int:
         pairs = _analyses(arguments)
     except (GitError, NothingFoundError) as error:
         return usage(str(error))
+    except MachineError as error:
+        return usage(str(error), error.word, error.known)
     for analysis in (each for pair in pairs for each in pair):
         if analysis is not None and analysis.machine is None:
             print_report(analysis.report, arguments, sys.stderr)
     return _put(arguments, pairs)
 
 
-def _analyses(arguments: Namespace) -> list[tuple[Analysis | None, Analysis | None]]:
-    """Each script before and after; None where it does not exist. Raises GitError and
-    NothingFoundError."""
+def _analyses(arguments: Namespace) -> list[Pair]:
+    """Each script, and each machine of a Python file, before and after; None where it does not
+    exist. Raises GitError, NothingFoundError and MachineError."""
     from smachac.frontend.discovery import NothingFoundError
 
     paths = [_from_here(path) for path in arguments.script] or [as_path(".")]
     revisions = (arguments.old, arguments.new)
     if revisions == (None, None) and len(paths) == 2 and not any(map(os.path.isdir, paths)):
-        one, other = (_checked([path], None, arguments)[str(path)] for path in paths)
-        return [(one, other)]
+        one, other = (_checked([path], None, arguments).get(str(path), {}) for path in paths)
+        return _named([*_pairs(one, other)], arguments.machine)
     before = _at("HEAD" if arguments.old is None else arguments.old, paths, arguments)
     after = _at(arguments.new, paths, arguments)
     if not before and not after:
         raise NothingFoundError(f"there is no script in `{paths[0]}`")
-    return [(before.get(name), after.get(name)) for name in dict.fromkeys([*after, *before])]
+    names = dict.fromkeys([*after, *before])
+    pairs = [pair for name in names for pair in _pairs(before.get(name, {}), after.get(name, {}))]
+    if not pairs:
+        raise NothingFoundError(f"there is no state machine in `{paths[0]}`")
+    return _named(pairs, arguments.machine)
+
+
+def _pairs(before: Machines, after: Machines) -> Iterator[tuple[str, Pair]]:
+    """The machines of a file before and after, each with its name. Two that are the only ones of
+    their files are the same machine; so is one in a file that could not be read."""
+    names = dict.fromkeys([*after, *before])
+    if UNREAD in names or (len(before) == len(after) == 1):
+        name = next(reversed(names)) if UNREAD in names else next(iter(names))
+        yield name, (next(iter(before.values()), None), next(iter(after.values()), None))
+        return
+    for name in names:
+        old, new = before.get(name), after.get(name)
+        if len(names) > 1:
+            old, new = _with_machine(old, name), _with_machine(new, name)
+        yield name, (old, new)
+
+
+def _named(pairs: Sequence[tuple[str, Pair]], name: str | None) -> list[Pair]:
+    """All pairs, or those of the machines with a name. Raises MachineError."""
+    found = [pair for known, pair in pairs if name is None or known == name]
+    if not found and name is not None:
+        known = tuple(dict.fromkeys(known for known, _ in pairs if known))
+        raise MachineError(f"there is no machine `{name}`", name, known)
+    return found
+
+
+def _with_machine(analysis: Analysis | None, name: str) -> Analysis | None:
+    """The analysis of one of several machines, whose name is shown behind that of the file."""
+    return None if analysis is None else replace(analysis, script=f"{analysis.script} ({name})")
 
 
 def _from_here(path: Path) -> Path:
@@ -90,7 +142,7 @@ def _from_here(path: Path) -> Path:
 
 def _at(
     revision: str | None, paths: Sequence[Path], arguments: Namespace
-) -> Mapping[str, Analysis]:
+) -> Mapping[str, Machines]:
     """The analyses of the scripts in a revision, or on disk, by name. A link that leads out of the
     repository is not followed, also if it is named. Raises GitError."""
     from smachac.commands.git import GitError, checked_out, top_folder
@@ -108,7 +160,7 @@ def _at(
 
 def _checked(
     paths: Sequence[Path], top: Path | None, arguments: Namespace
-) -> Mapping[str, Analysis]:
+) -> Mapping[str, Machines]:
     """The analyses of the scripts that files, folders and patterns match, by name; none where there
     is no such file. Links that lead out of the folder `top` are not followed."""
     from smachac.batch import check_scripts
@@ -117,6 +169,7 @@ def _checked(
 
     found: list[Path] = []
     disk = Disk()
+    python = python_finder(arguments)
     for path in paths:
         if top is not None and not lies_inside(path, top):
             folder = as_path(os.path.relpath(top))
@@ -124,12 +177,16 @@ def _checked(
             found += [path] if os.path.lexists(path) else []
         else:
             with contextlib.suppress(NothingFoundError):
-                found += [each for each in scripts_of([path], disk) if os.path.lexists(each)]
-    scripts = list(dict.fromkeys(found))
-    return check_scripts(scripts, disk, arguments.scripts, arguments.templates).analyses
+                inside = scripts_of([path], disk, python)
+                found += [each for each in inside if os.path.lexists(each)]
+    found = list(dict.fromkeys(found))
+    scripts = [path for path in found if not is_python(path)]
+    analyses = check_scripts(scripts, disk, arguments.scripts, arguments.templates).analyses
+    machines: dict[str, Machines] = {name: {"": analysis} for name, analysis in analyses.items()}
+    return machines | python_analyses(filter(is_python, found), disk)
 
 
-def _put(arguments: Namespace, pairs: Sequence[tuple[Analysis | None, Analysis | None]]) -> int:
+def _put(arguments: Namespace, pairs: Sequence[Pair]) -> int:
     """Print the comparisons; the exit code."""
     from smachac.diff.comparison import compare
     from smachac.diff.report import render_json, render_markdown, render_text
@@ -155,18 +212,22 @@ def _put_picture(found: Sequence[Comparison]) -> int:
     from smachac.diff.picture import render_picture
 
     if len(found) > 1:
-        return usage("--format dot draws one script: name it")
+        return usage(
+            "--format dot draws one script: name it, and with --machine one of several machines"
+        )
     sys.stdout.write(render_picture(found[0]))
     return OK if found[0].equal else DIFFERENT
 
 
-def _put_page(found: Sequence[tuple[tuple[Analysis | None, Analysis | None], Comparison]]) -> int:
+def _put_page(found: Sequence[tuple[Pair, Comparison]]) -> int:
     """Print the page of one script; the exit code."""
     from smachac.diff.page import render_difference_page
 
     different = [each for each in found if not each[1].equal] or found
     if len(different) > 1:
-        return usage("--format html draws one script: name it")
+        return usage(
+            "--format html draws one script: name it, and with --machine one of several machines"
+        )
     ((pair, comparison),) = different
     machine = next((each.machine for each in reversed(pair) if each and each.machine), None)
     if machine is None or comparison.unread:

@@ -84,7 +84,7 @@ def explain_command(arguments: Namespace) -> int:
         return usage("--machine is for Python files")
     try:
         analysis = (
-            one_analysis(path, Disk(), arguments)
+            one_analysis(path, Disk(), arguments.machine)
             if is_python(path)
             else analyse_script(path, arguments.scripts, arguments.templates)
         )

@@ -11,8 +11,9 @@ import time
 from argparse import Namespace
 from contextlib import contextmanager, suppress
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, search_folders
+from smachac.commands.arguments import SCRIPT, as_path, colour, machine_name, search_folders
 from smachac.commands.output import OK, print_report, usage
+from smachac.commands.python_files import MachineError, is_python, one_analysis
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 examples:
   smachac view main.yml                        the picture, drawn again when a file changes
+  smachac view machine.py                      the machine in a Python file
   smachac view main.yml --attach run.jsonl     replay a trace; follow it while it is written
   smachac view main.yml --attach run.jsonl --film film.mp4   with the film of `run --record`
   smachac run main.yml --view                  watch a run, and control it
@@ -79,6 +81,7 @@ def view_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=port, default=0, metavar="PORT",
                         help="the port of the page (default: one that is free)")  # fmt: skip
     browser(parser)
+    machine_name(parser)
     search_folders(parser)
     colour(parser)
 
@@ -109,6 +112,8 @@ def view_command(arguments: Namespace) -> int:
         return usage(f"there is no file {arguments.script}")
     if arguments.script.is_dir():
         return usage(f"{arguments.script} is a folder: name a script")
+    if arguments.machine is not None and not is_python(arguments.script):
+        return usage("--machine is for Python files")
     trace = as_path(attach) if attach is not None and ros is None else None
     if trace is not None and not trace.is_file():
         return usage(f"there is no trace {trace}, and it is no port")
@@ -187,15 +192,19 @@ def _serve(arguments: Namespace, attached: Path | Topic | None, film: Film | Non
     from smachac.view.picture import Picture
 
     feed = Feed()
+    is_edited = attached is None and not is_python(arguments.script)
     data = None if film is None else {FILM_ID: {"type": film.type, "rate": RATE, "speed": SPEED}}
-    picture = Picture(feed, arguments.script.stem, editable=attached is None, data=data)
+    picture = Picture(feed, arguments.script.stem, editable=is_edited, data=data)
     script = ViewedScript(arguments, picture)
-    edits = edits_of_script(script) if attached is None else None
+    edits = edits_of_script(script) if is_edited else None
     try:
         server = _server(arguments.port, picture, feed, edits=edits, film=film)
     except PortError as error:
         return usage(str(error))
-    script.check()
+    try:
+        script.check()
+    except MachineError as error:
+        return usage(str(error), error.word, error.known)
     run = None if attached is None else _run_of(attached, feed, picture)
     if run is not None:
         run.read()
@@ -208,7 +217,10 @@ def _serve(arguments: Namespace, attached: Path | Topic | None, film: Film | Non
                 time.sleep(PAUSE)
                 if run is not None:
                     run.read()
-            script.check()
+            try:
+                script.check()
+            except MachineError as error:  # the last machine stays
+                print(error, file=sys.stderr)
 
 
 def _run_of(attached: Path | Topic, feed: Feed, picture: Picture) -> _TraceFile | _NodeRun:
@@ -244,7 +256,7 @@ class ViewedScript:
         self._lock = threading.Lock()
 
     def check(self) -> None:
-        """Check it, and publish the result. Errors are also printed."""
+        """Check it, and publish the result. Errors are also printed. Raises MachineError."""
         with self._lock:
             self._check()
 
@@ -272,30 +284,40 @@ class ViewedScript:
 
     def _check(self) -> None:
         from smachac.diagnostics.diagnostic import Severity
-        from smachac.driver import CODES, analyse
-        from smachac.frontend.files import disk_library, stamps
+        from smachac.frontend.files import stamps
 
-        arguments, disk, path = self.arguments, self._disk, self.arguments.script
+        disk, path = self._disk, self.arguments.script
         disk.refresh()
         disk.searched.clear()
-        report: Report = []
-        source = disk.read(path, report)
-        machine: Machine | None = None
-        if source is not None:
-            library = disk_library(
-                path,
-                report,
-                scripts=arguments.scripts,
-                templates=arguments.templates,
-                disk=disk,
-                codes=CODES,
-            )
-            analysis = analyse(source, library, report)
-            machine, report = analysis.machine, analysis.report
+        machine, report = self._read()
         self._known = stamps({str(path), *disk.searched_files()})
         self._picture.update(machine, report)
         errors = [item for item in report if item.severity is Severity.ERROR]
-        print_report(errors, arguments, sys.stderr)
+        print_report(errors, self.arguments, sys.stderr)
+
+    def _read(self) -> tuple[Machine | None, Report]:
+        """The machine and its findings. Raises MachineError."""
+        from smachac.driver import CODES, analyse
+        from smachac.frontend.files import disk_library
+
+        arguments, disk, path = self.arguments, self._disk, self.arguments.script
+        if is_python(path):
+            found = one_analysis(path, disk, arguments.machine)
+            return found.machine, found.report
+        report: Report = []
+        source = disk.read(path, report)
+        if source is None:
+            return None, report
+        library = disk_library(
+            path,
+            report,
+            scripts=arguments.scripts,
+            templates=arguments.templates,
+            disk=disk,
+            codes=CODES,
+        )
+        analysis = analyse(source, library, report)
+        return analysis.machine, analysis.report
 
 
 class _TraceFile:

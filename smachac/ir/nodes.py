@@ -517,9 +517,10 @@ class Param:
 class Machine:
     """A whole program: the outermost container and the data of the base template.
 
-    `base` is the base template, empty for a machine in Python; `variables` are its variables (`node_name`, `function_name`,
-    `manifest`, and those of its interface). `source` is the name of the script without its folder,
-    `digest` a SHA-256 over the texts of the script and its sub-scripts. `robot`, `unused`,
+    `base` is the base template, empty for a machine in Python; `variables` are its variables
+    (`node_name`, `function_name`, `manifest`, and those of its interface). `source` is the name of
+    the script without its folder, `digest` a SHA-256 over the texts of the script and its
+    sub-scripts. `robot`, `unused`,
     `properties`, `definitions`, those of messages of ROS, `missing_definitions` and
     `other_types` are for rules; of the targets only `dot` uses properties. `params` are those of
     the main script,
