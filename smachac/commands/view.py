@@ -256,7 +256,8 @@ class ViewedScript:
         self._lock = threading.Lock()
 
     def check(self) -> None:
-        """Check it, and publish the result. Errors are also printed. Raises MachineError."""
+        """Check it, and publish the result. Errors are also printed, and why there is no machine.
+        Raises MachineError."""
         with self._lock:
             self._check()
 
@@ -292,8 +293,8 @@ class ViewedScript:
         machine, report = self._read()
         self._known = stamps({str(path), *disk.searched_files()})
         self._picture.update(machine, report)
-        errors = [item for item in report if item.severity is Severity.ERROR]
-        print_report(errors, self.arguments, sys.stderr)
+        shown = [item for item in report if machine is None or item.severity is Severity.ERROR]
+        print_report(shown, self.arguments, sys.stderr)
 
     def _read(self) -> tuple[Machine | None, Report]:
         """The machine and its findings. Raises MachineError."""

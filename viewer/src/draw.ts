@@ -73,7 +73,7 @@ function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
 
 function classes(node: StateNode, box: Box): string {
   const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
-  return ["state", node.kind, kind.trim(), node.change].filter(Boolean).join(" ");
+  return ["state", node.kind, kind.trim(), node.unknown && "unknown", node.change].filter(Boolean).join(" ");
 }
 
 /** The sign of a change at the corner of a box: plus, minus or a wave, not a colour alone. */
@@ -95,7 +95,7 @@ function ground(node: StateNode | undefined, box: Box): string {
 /** Give a state its tooltip, once: a tooltip is no part of its name for screen readers. */
 export function addTooltip(element: Element, node: StateNode): void {
   if (element.querySelector(":scope > title")) return;
-  const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
+  const text = [node.shown ?? node.path, node.doc, node.unknown].filter(Boolean).join("\n");
   element.prepend(svg("title", {}, text));
 }
 
@@ -105,6 +105,7 @@ function spoken(node: StateNode, box: Box): string[] {
   const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
   if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
   if (node.change && node.change !== "same") parts.push(node.change);
+  if (node.unknown) parts.push(`not known exactly: ${node.unknown}`);
   if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
   return parts;
 }
@@ -348,17 +349,22 @@ function speakVisits(element: SVGGElement, visits: string): void {
 }
 
 /** A legend of the signs of the picture. The picture of differences marks no failures. */
-export function legend({ differences }: Model): HTMLElement {
+export function legend({ differences, nodes }: Model): HTMLElement {
   const sign = (name: string): SVGElement =>
     svg("svg", { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
       svg("g", { class: name },
         svg("path", { class: "stroke", d: "M2 7H32" }),
         svg("path", { class: "head", d: "M38 7l-7.5-4q1.6 4 0 8z" }),
       ));
+  const box = (): SVGElement =>
+    svg("svg", { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
+      svg("g", { class: "state unknown" }, svg("rect", { class: "body", x: 5, y: 1, width: 30, height: 12, rx: 4 })),
+    );
   const row = (name: string, text: string): HTMLElement => html("li", {}, sign(name), html("span", {}, text));
   return html("ul", { class: "legend" },
     row("line", "outcome"),
     differences ? null : row("line failure", "outcome of failure"),
     row("line implicit", "implied, not written in the script"),
+    nodes.some((node) => node.unknown) ? html("li", {}, box(), html("span", {}, "not known exactly")) : null,
   );
 }

@@ -60,6 +60,8 @@ export interface StateNode {
   rules?: Rule[];
   items?: string;
   change?: Change;
+  /** Why a state that was read from Python is not known exactly. */
+  unknown?: string;
 }
 
 export interface ModelEdge {

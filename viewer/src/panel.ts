@@ -64,7 +64,7 @@ function stateSections(graph: Graph, node: StateNode, actions: PanelActions): (H
     node.rules ? section("Rules", rules(graph, node)) : null,
     properties.length ? section("Properties", propertyList(graph, properties, actions)) : null,
     node.children.length ? section("States", children(graph, node, actions)) : null,
-    node.snippet ? section("Script", snippet(node)) : null,
+    node.snippet ? section(node.file?.endsWith(".py") ? "Code" : "Script", snippet(node)) : null,
   ];
 }
 
@@ -76,6 +76,7 @@ function heading(graph: Graph, node: StateNode, actions: PanelActions): HTMLElem
     html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) && !node.role ? ` (${node.type})` : ""),
   );
   if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
+  if (node.unknown) made.append(html("p", { class: "doc" }, `Not known exactly: ${node.unknown}.`));
   if (node.tags.length) {
     made.append(html("p", { class: "tags" }, ...node.tags.map((tag) => html("span", { class: "tag" }, tag))));
   }

@@ -344,7 +344,7 @@ ${target2}`;
   }
   function classes(node, box) {
     const kind = box.open ? `open ${ground(node, box)}` : `closed ${isContainer(node) ? ground(node, box) : ""}`;
-    return ["state", node.kind, kind.trim(), node.change].filter(Boolean).join(" ");
+    return ["state", node.kind, kind.trim(), node.unknown && "unknown", node.change].filter(Boolean).join(" ");
   }
   function changeSign(change) {
     const sign = { added: "M-4 0H4M0-4V4", removed: "M-4 0H4", changed: "M-4.5 1Q-2.2-4 0 0T4.5-1" };
@@ -362,7 +362,7 @@ ${target2}`;
   }
   function addTooltip(element, node) {
     if (element.querySelector(":scope > title")) return;
-    const text = [node.shown ?? node.path, node.doc].filter(Boolean).join("\n");
+    const text = [node.shown ?? node.path, node.doc, node.unknown].filter(Boolean).join("\n");
     element.prepend(svg("title", {}, text));
   }
   function spoken(node, box) {
@@ -370,6 +370,7 @@ ${target2}`;
     const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
     if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
     if (node.change && node.change !== "same") parts.push(node.change);
+    if (node.unknown) parts.push(`not known exactly: ${node.unknown}`);
     if (node.findings.length) parts.push(`findings: ${node.findings.length}`);
     return parts;
   }
@@ -586,7 +587,7 @@ ${target2}`;
     element.dataset["visits"] = visits;
     element.setAttribute("aria-label", words + visits + rest);
   }
-  function legend({ differences }) {
+  function legend({ differences, nodes }) {
     const sign = (name) => svg(
       "svg",
       { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
@@ -597,13 +598,19 @@ ${target2}`;
         svg("path", { class: "head", d: "M38 7l-7.5-4q1.6 4 0 8z" })
       )
     );
+    const box = () => svg(
+      "svg",
+      { viewBox: "0 0 40 14", width: 40, height: 14, "aria-hidden": "true" },
+      svg("g", { class: "state unknown" }, svg("rect", { class: "body", x: 5, y: 1, width: 30, height: 12, rx: 4 }))
+    );
     const row = (name, text) => html("li", {}, sign(name), html("span", {}, text));
     return html(
       "ul",
       { class: "legend" },
       row("line", "outcome"),
       differences ? null : row("line failure", "outcome of failure"),
-      row("line implicit", "implied, not written in the script")
+      row("line implicit", "implied, not written in the script"),
+      nodes.some((node) => node.unknown) ? html("li", {}, box(), html("span", {}, "not known exactly")) : null
     );
   }
 
@@ -967,7 +974,7 @@ ${target2}`;
       node.rules ? section("Rules", rules(graph, node)) : null,
       properties.length ? section("Properties", propertyList(graph, properties, actions)) : null,
       node.children.length ? section("States", children(graph, node, actions)) : null,
-      node.snippet ? section("Script", snippet(node)) : null
+      node.snippet ? section(node.file?.endsWith(".py") ? "Code" : "Script", snippet(node)) : null
     ];
   }
   function heading(graph, node, actions) {
@@ -980,6 +987,7 @@ ${target2}`;
       html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) && !node.role ? ` (${node.type})` : "")
     );
     if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
+    if (node.unknown) made.append(html("p", { class: "doc" }, `Not known exactly: ${node.unknown}.`));
     if (node.tags.length) {
       made.append(html("p", { class: "tags" }, ...node.tags.map((tag) => html("span", { class: "tag" }, tag))));
     }
