@@ -94,13 +94,16 @@ def _analyses(arguments: Namespace) -> list[Pair]:
     revisions = (arguments.old, arguments.new)
     if revisions == (None, None) and len(paths) == 2 and not any(map(os.path.isdir, paths)):
         one, other = (_checked([path], None, arguments).get(str(path), {}) for path in paths)
-        return _named([*_pairs(one, other)], arguments.machine)
-    before = _at("HEAD" if arguments.old is None else arguments.old, paths, arguments)
-    after = _at(arguments.new, paths, arguments)
-    if not before and not after:
-        raise NothingFoundError(f"there is no script in `{paths[0]}`")
-    names = dict.fromkeys([*after, *before])
-    pairs = [pair for name in names for pair in _pairs(before.get(name, {}), after.get(name, {}))]
+        pairs = [*_pairs(one, other)]
+    else:
+        before = _at("HEAD" if arguments.old is None else arguments.old, paths, arguments)
+        after = _at(arguments.new, paths, arguments)
+        if not before and not after:
+            raise NothingFoundError(f"there is no script in `{paths[0]}`")
+        names = dict.fromkeys([*after, *before])
+        pairs = [
+            pair for name in names for pair in _pairs(before.get(name, {}), after.get(name, {}))
+        ]
     if not pairs:
         raise NothingFoundError(f"there is no state machine in `{paths[0]}`")
     return _named(pairs, arguments.machine)

@@ -198,13 +198,12 @@ def _serve(arguments: Namespace, attached: Path | Topic | None, film: Film | Non
     script = ViewedScript(arguments, picture)
     edits = edits_of_script(script) if is_edited else None
     try:
-        server = _server(arguments.port, picture, feed, edits=edits, film=film)
-    except PortError as error:
-        return usage(str(error))
-    try:
         script.check()
+        server = _server(arguments.port, picture, feed, edits=edits, film=film)
     except MachineError as error:
         return usage(str(error), error.word, error.known)
+    except PortError as error:
+        return usage(str(error))
     run = None if attached is None else _run_of(attached, feed, picture)
     if run is not None:
         run.read()
