@@ -50,6 +50,7 @@ ELSEWHERE = {
     "ci": "tests/repository/test_ci_files.py",
     "cpp": "tests/cpp/test_headers.py",
     "editors": "settings of editors",
+    "existing": "tests/docs/test_existing.py",
     "properties": "tests/docs/test_properties.py",
     "robots": "tests/docs/test_tutorial.py",
     "ros": "tests/ros, tests/targets/test_ros_2.py",

@@ -85,7 +85,14 @@ def commands(folder: Path) -> dict[str, str]:
 
 def checked(text: str, **inputs: str) -> dict[str, str]:
     """The environment of the step `Check`, its expressions filled in."""
-    names = {"paths": ".", "arguments": "", "sarif": "", "diff": "", "base": ""} | inputs
+    names = {
+        "paths": ".",
+        "arguments": "",
+        "sarif": "",
+        "diff": "",
+        "base": "",
+        "python": "false",
+    } | inputs
     return {
         name: re.sub(r"\$\{\{ inputs\.(\w+) \}\}", lambda found: names[found[1]], value)
         for name, value in load(text)["runs"]["steps"][1]["env"].items()
@@ -120,6 +127,36 @@ def test_the_step_of_the_action(
         report = json.loads((tmp_path / "my report.sarif").read_text())
         assert bool(report["runs"][0]["results"]) == bool(ended)
         assert ("file=main.yml,line=" in done.stdout) == bool(ended)
+
+
+MACHINE = (
+    "import smach\nsm = smach.StateMachine(outcomes=['done'])\n"
+    "with sm: sm.add('A', smach.State(outcomes=['ok']), {'ok': 'dnoe'})\n"
+)
+
+
+@pytest.mark.parametrize(("python", "ended"), [("true", 1), ("false", 0)])
+def test_the_action_checks_python(python: str, ended: int, tmp_path: Path) -> None:
+    (tmp_path / "main.yml").write_text(RIGHT)
+    (tmp_path / "machine.py").write_text(MACHINE)
+    text = (ROOT / "action.yml").read_text("utf-8")
+    environment = {**commands(tmp_path), "SMACHAC": str(tmp_path / "bin" / "smachac")}
+    code, output = run_step(1, tmp_path, environment | checked(text, python=python))
+    assert code == ended, output
+    assert ("file=machine.py,line=3" in output) == bool(ended)
+
+
+@pytest.mark.parametrize("suffix", ["py", "yml"])
+def test_the_hook_for_python(suffix: str, tmp_path: Path) -> None:
+    hooks = {hook["id"]: hook for hook in load((ROOT / ".pre-commit-hooks.yaml").read_text())}
+    hook = hooks["smachac-check-python"]
+    assert re.search(hook["files"], f"src/machine.{suffix}")
+    (tmp_path / "machine.py").write_text(MACHINE)
+    done = subprocess.run(
+        [*hook["entry"].split(), *hook["args"]], cwd=tmp_path, env=commands(tmp_path),
+        capture_output=True, text=True, check=False, timeout=120,
+    )  # fmt: skip
+    assert (done.returncode, "machine.py:3" in done.stdout) == (1, True), done.stderr
 
 
 @pytest.mark.slow
@@ -235,7 +272,7 @@ def test_the_script_of_gitlab(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_hook_runs_when_it_has_to(tmp_path: Path) -> None:
-    hook, _ = load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
+    hook, *_ = load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))
     home = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "HOME": str(tmp_path)}
     environment = {**commands(tmp_path), **home}
     environment |= {

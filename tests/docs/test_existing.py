@@ -1,0 +1,36 @@
+"""The page on machines that exist already: its example gives the output that it shows."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from smachac.commands.cli import main
+from smachac.driver import CODES
+
+PAGE = Path(__file__).parents[2] / "docs" / "existing.md"
+
+
+def test_the_example(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = PAGE.read_text("utf-8")
+    monkeypatch.chdir(tmp_path)
+    (code, *_) = re.findall(r"^```python\n# parcels\.py\n(.*?)^```", text, re.M | re.S)
+    Path("parcels.py").write_text(f"# parcels.py\n{code}")
+    (session,) = re.findall(r"^```console\n\$ smachac (.*?)\n(.*?)^```", text, re.M | re.S)
+    assert main(session[0].split()) == 1
+    assert capsys.readouterr().out == session[1]
+    for words in (["build", "parcels.py", "--target", "html"], ["explain", "parcels.py", "WEIGH"]):
+        main(words)
+    assert Path("sm.html").is_file()
+
+
+def test_the_table_of_codes_is_complete() -> None:
+    from smachac.python_machines import CANNOT_WORK
+
+    (table,) = re.findall(r"^code \| fault\n(.*?)\n\n", PAGE.read_text("utf-8"), re.M | re.S)
+    shown = set(re.findall(r"SM\d{3}", "\n".join(row.split("|")[0] for row in table.split("\n"))))
+    assert shown == CANNOT_WORK | {code for code in CODES if code.startswith("SM80")}
