@@ -28,12 +28,13 @@ from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import python_machines, references, suppressions
 from smachac.frontend.errors import script as script_errors
+from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import Script
 from smachac.frontend.script.kept import Kept
 from smachac.frontend.script.lower import KeptNodes, lower
-from smachac.frontend.script.resolve import resolve
+from smachac.frontend.script.resolve import refuse_python, resolve
 from smachac.frontend.text.suppressions import Suppression, suppress
 from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.recursion import deep_recursion
@@ -230,6 +231,9 @@ def parse_and_resolve(
 ) -> Script | None:
     """The script of a text, with its sub-scripts and look-ups filled in, as far as it can be
     read. `kept`: see `resolve`."""
+    if source.name.endswith(PYTHON_SUFFIX):
+        refuse_python(source, report)
+        return None
     tree = library.parse(source, report)
     return resolve(source, tree, library, report, kept)
 

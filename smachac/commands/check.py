@@ -406,5 +406,9 @@ def _watched(arguments: Namespace, used: Iterable[str]) -> list[str]:
     from smachac.frontend.discovery import yaml_files
 
     named = [str(path) for path in arguments.script if not os.path.isdir(path)]  # noqa: PTH112
-    inside = map(str, yaml_files(arguments.script))
+    inside = {*map(str, yaml_files(arguments.script))}
+    if arguments.python:
+        from smachac.python_machines import python_files
+
+        inside.update(str(path) for folder in arguments.script for path in python_files(folder))
     return sorted({*named, *inside, *used})

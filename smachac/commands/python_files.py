@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from smachac.frontend.discovery import PYTHON_SUFFIX
-
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -31,6 +29,8 @@ class MachineError(Exception):
 
 def is_python(path: Path) -> bool:
     """Whether an argument is a Python file and not a script."""
+    from smachac.frontend.discovery import PYTHON_SUFFIX
+
     return path.suffix == PYTHON_SUFFIX
 
 

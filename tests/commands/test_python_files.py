@@ -539,3 +539,42 @@ def test_view(start: Callable[..., Viewed], run: Run) -> None:
     )
     write("machine.py", "def (")
     assert view.until(lambda message: message["kind"] == "report" and message["outdated"])
+
+
+# Other commands, and changes
+
+
+@pytest.mark.parametrize("command", ["run", "verify", "sweep"])
+def test_commands_that_need_a_script(command: str, run: Run) -> None:
+    code, out, err = run(command, "machine.py")
+    assert code in (1, 2)
+    assert "a script is expected; this is a Python file" in out + err
+
+
+def test_watch(folder: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "smachac", "check", "--python", ".", "--watch"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder,
+    )  # fmt: skip
+    assert process.stdout is not None
+
+    def summary() -> str:
+        """The last line of a round; read until it waits."""
+        last = ""
+        for line in process.stdout or ():
+            if line.startswith("watching"):
+                return last
+            last = line.strip("\n") and line
+        raise AssertionError(process.communicate()[1])
+
+    try:
+        assert summary() == "no findings\n"
+        write("states.py", STATES.replace('return "light"', 'return "ligth"'))
+        assert summary() == "1 error in states.py\n"
+        write("states.py", STATES)
+        assert summary() == "no findings\n"
+        write("new.py", EXACT)
+        assert summary() == "no findings; 2 files checked\n"
+    finally:
+        process.kill()
+        process.communicate()

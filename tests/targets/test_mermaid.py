@@ -169,7 +169,7 @@ def test_a_label_is_letters_and_digits_and_character_codes(text: str) -> None:
 def test_every_state_has_an_identifier_of_its_own(machine: Machine) -> None:
     states = [node for _, node in walk(machine.root)]
     assume(all(_distinct(node) for node in states))
-    lines = list(diagram(machine.root, depth=None, direction="TB"))
+    lines = list(diagram(machine, depth=None, direction="TB"))
     found = [match[1] for line in lines if (match := re.search(r'" as (\w+)(?: \{)?$', line))]
     assert len(set(found)) == len(found) == len(states) - 1
     assert all(id.isascii() and not id.endswith(("_start", "_end")) for id in found)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -54,7 +55,7 @@ def parsed(texts: list[str]) -> list[dict[str, Any]]:
 
 
 def text_of(machine: Machine) -> str:
-    return "\n".join([*diagram(machine.root, depth=None, direction="TB"), ""])
+    return "\n".join([*diagram(machine, depth=None, direction="TB"), ""])
 
 
 def shown(name: str) -> str:
@@ -98,6 +99,20 @@ def test_random_machines() -> None:
     assert len(machines) >= 200
     for machine, answer in zip(machines, parsed([*map(text_of, machines)]), strict=True):
         check(machine, answer)
+
+
+def test_states_that_are_not_known_exactly() -> None:
+    """They get a class, in containers and regions too; the legend is the only other state."""
+    inner = machine_of("IN", ("done",), leaf("A", "done", done="done"), leaf("?", "done"))
+    root = machine_of("sm", ("done",), inner, leaf("B", "done", done="done"))
+    unknown = {"sm/IN": "x", "sm/IN/?": "x", "sm/B": "x"}
+    text = text_of(Machine(root=root, unknown=unknown))
+    (answer,) = parsed([text])
+    titles = dict(reversed(answer["states"]))
+    assert titles.pop("legend") == "dashed: not known exactly"
+    assert sorted(titles.values()) == ["?", "A", "B", "IN"]
+    marked = re.findall(r"class (\w+) unknown", text)
+    assert sorted(marked) == ["legend", "sm__B", "sm__IN", "sm__IN___"]
 
 
 def test_any_name() -> None:

@@ -175,6 +175,13 @@ def resolve(
     return None if resolver.has_too_many_keys() else script
 
 
+def refuse_python(source: Source, report: Report) -> None:
+    """Report that a Python file is no script."""
+    message = "a script is expected; this is a Python file"
+    help = "`smachac check`, `view`, `explain`, `diff` and pictures of `build` read it"
+    report.append(wrong_shape(Span(source, 0, 0), message, help, arguments=("python",)))
+
+
 class _Resolver:
     """One run of `resolve`: the library, the report, and what was read so far.
 
