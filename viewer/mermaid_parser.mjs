@@ -1,5 +1,6 @@
 // Parses the state diagrams of standard input, a JSON list of texts, with Mermaid's own parser.
-// Prints for each text its error, or its states with their lines of text, and its edges.
+// Prints for each text its error, or its states with their lines of text, its edges and the
+// states that are drawn dashed.
 import { JSDOM } from "jsdom";
 
 const { window } = new JSDOM("<!DOCTYPE html><body></body>");
@@ -34,7 +35,10 @@ for (const text of JSON.parse(Buffer.concat(chunks).toString())) {
     await mermaid.parse(text);
     const diagram = await mermaid.mermaidAPI.getDiagramFromText(text);
     const document = diagram.db.getRootDocV2().doc;
-    answers.push({ states: states(document), edges: edges(document) });
+    const dashed = diagram.db.getData().nodes
+      .filter((node) => node.cssClasses?.split(" ").includes("unknown"))
+      .map((node) => node.id);
+    answers.push({ states: states(document), edges: edges(document), dashed });
   } catch (error) {
     answers.push({ error: String(error) });
   }

@@ -84,7 +84,7 @@ def picture(
     """The lines of a DOT file. Containers below `depth` levels are drawn as closed boxes."""
     root = machine.root
     yield f"digraph {quoted(root.name)} {{"
-    for line in _settings(machine, rankdir):
+    for line in _settings(machine, rankdir, draws_unknown=_draws_unknown(machine, depth)):
         yield f"  {line}"
     todo: list[str | tuple[Position, Container]] = ["}"]
     tones = property_tones(machine)
@@ -113,11 +113,25 @@ def picture(
             todo += reversed([pad + line for line in _frame(child, inner)])
 
 
-def _settings(machine: Machine, rankdir: str) -> Iterator[str]:
+def _draws_unknown(machine: Machine, depth: int | None) -> bool:
+    """Whether a state that is not known exactly is drawn, not only the closed box around it."""
+    todo: list[tuple[str, Container, int]] = [(machine.root.name, machine.root, 1)]
+    while todo and machine.unknown:
+        path, container, level = todo.pop()
+        for child in container.children:
+            inside = f"{path}/{child.name}"
+            if inside in machine.unknown:
+                return True
+            if not isinstance(child, Leaf) and level != depth:
+                todo.append((inside, child, level + 1))
+    return False
+
+
+def _settings(machine: Machine, rankdir: str, *, draws_unknown: bool) -> Iterator[str]:
     root = machine.root
     base = machine.base or machine.source
     rows = [f"<B>{html(root.name)}</B>", font(html(base), colour=FAINT, size=10)]
-    if machine.unknown:
+    if draws_unknown:
         rows.append(font(html(UNKNOWN_LEGEND), colour=FAINT, size=10))
     title = spaced(rows)
     look = {

@@ -36,33 +36,35 @@ def diagram(machine: Machine, *, depth: int | None, direction: str) -> Iterator[
     yield f"  accTitle: {label(root.name)}"
     yield f"  direction {direction}"
     ids = _Ids()
-    if machine.unknown:
-        legend = ids.new("legend")
-        yield "  classDef unknown stroke-dasharray: 4 3"
-        yield f'  state "{label(UNKNOWN_LEGEND)}" as {legend}'
-        yield f"  class {legend} unknown"
-    todo: list[str | _Open] = [_Open(root, ids.new(root.name), root.name, 1, machine.unknown)]
+    dashed: list[str] = []
+    todo: list[str | _Open] = [_Open(root, ids.new(root.name), root.name, 1)]
     while todo:
         item = todo.pop()
         if isinstance(item, str):
             yield item
         else:
-            todo += reversed(list(_inside(item, ids, depth)))
+            todo += reversed(list(_inside(item, ids, depth, machine.unknown, dashed)))
+    if dashed:  # Mermaid ignores classes that are given in a composite state
+        legend = ids.new("legend")
+        yield f'  state "{label(UNKNOWN_LEGEND)}" as {legend}'
+        yield "  classDef unknown stroke-dasharray: 4 3"
+        yield f"  class {','.join([legend, *dashed])} unknown"
 
 
 class _Open(NamedTuple):
-    """A container whose states are drawn in it: its identifier, its path, its level from 1, and the
-    states that are not known exactly, by path."""
+    """A container whose states are drawn in it: its identifier, its path, its level from 1."""
 
     container: Container
     id: str
     path: str
     level: int
-    unknown: Mapping[str, str]
 
 
-def _inside(place: _Open, ids: _Ids, depth: int | None) -> Iterator[str | _Open]:
-    """The lines in a container, and the containers in it that are drawn open."""
+def _inside(
+    place: _Open, ids: _Ids, depth: int | None, unknown: Mapping[str, str], dashed: list[str]
+) -> Iterator[str | _Open]:
+    """The lines in a container, and the containers in it that are drawn open. The identifiers of
+    the states in `unknown` go into `dashed`."""
     container, pad = place.container, "  " * place.level
     inside = {child.name: ids.new(f"{place.id}__{child.name}") for child in container.children}
     arrows = _arrows(container, inside)
@@ -81,10 +83,10 @@ def _inside(place: _Open, ids: _Ids, depth: int | None) -> Iterator[str | _Open]
             yield from (pad + line for line in _box(child, id))
         else:
             yield f'{pad}state "{_title(child)}" as {id} {{'
-            yield _Open(child, id, path, place.level + 1, place.unknown)
+            yield _Open(child, id, path, place.level + 1)
             yield f"{pad}}}"
-        if path in place.unknown:
-            yield f"{pad}class {id} unknown"
+        if path in unknown:
+            dashed.append(id)
         if parallel:
             yield from (pad + line for line in arrows.pop(child.name, ()))
     for lines in arrows.values():
