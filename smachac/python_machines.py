@@ -45,8 +45,8 @@ IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
 one can have other transitions."""
 
-MOST_FILES = 20_000
-"""The most Python files of a repository that are searched for modules."""
+MOST_FILES, MOST_ENTRIES = 20_000, 200_000
+"""The most Python files, and files and folders, of a repository that are searched for modules."""
 
 _SKIPPED = ("__pycache__", "node_modules", "build", "install", "devel", "log")
 
@@ -125,8 +125,8 @@ class PythonProject:
 
 
 def repository_of(path: Path) -> Path:
-    """The folder in which the modules of a file are searched: that of its git repository, or of its
-    package of ROS, or its own."""
+    """The folder in which the modules of a file are searched: that of its git repository, or that
+    of its package of ROS and of the packages beside it, or its own."""
     folder = path.parent
     above = [folder, *Path(os.path.abspath(folder)).parents]  # noqa: PTH100
     for parent in above:
@@ -134,7 +134,8 @@ def repository_of(path: Path) -> Path:
             return _as_given(parent)
     for parent in above[:8]:
         if (parent / "package.xml").is_file():
-            return _as_given(parent)
+            beside = len([*parent.parent.glob("*/package.xml")])
+            return _as_given(parent.parent if beside > 1 else parent)
     return folder
 
 
@@ -144,13 +145,16 @@ def _as_given(folder: Path) -> Path:
 
 
 def python_files(folder: Path) -> Iterator[Path]:
-    """The Python files below a folder, sorted."""
-    count = 0
+    """The Python files below a folder, sorted; of a very large one only the first ones."""
+    count = visited = 0
     for top, folders, names in os.walk(folder):
         folders[:] = [name for name in sorted(folders)
                       if not name.startswith(".") and name not in _SKIPPED]  # fmt: skip
+        visited += 1 + len(names)
+        if visited > MOST_ENTRIES or count >= MOST_FILES:
+            return
         for name in sorted(names):
-            if name.endswith(PYTHON_SUFFIX) and count < MOST_FILES:
+            if name.endswith(PYTHON_SUFFIX):
                 count += 1
                 yield Path(top, name)
 
