@@ -16,7 +16,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.driver import CODES, Analysis
 from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors import python_machines as errors
-from smachac.frontend.files import Disk, disk_library
+from smachac.frontend.files import Disk, disk_library, lies_inside
 from smachac.frontend.text.suppressions import suppress
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
@@ -102,10 +102,10 @@ class PythonProject:
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
         report += _of_uses(evaluator.faults, whole)
         self.disk.searched.update(repository.files_of(str(path)))
-        rest, _, _ = suppress(report, source, (source,), CODES)
+        rest, _, _ = suppress([*map(_of_python, report)], source, (source,), CODES)
         if not everything:  # afterwards, as a comment can be about any finding
             rest = [item for item in rest if _cannot_work(item)]
-        found = grouped(apply_severities(in_order(map(_without_edits, rest)), library.policy))
+        found = grouped(apply_severities(in_order(rest), library.policy))
         coverage = coverage_of(whole)
         return PythonFile(
             path=path, source=source, graphs=tuple(whole), report=found, coverage=coverage
@@ -145,7 +145,8 @@ def _as_given(folder: Path) -> Path:
 
 
 def python_files(folder: Path) -> Iterator[Path]:
-    """The Python files below a folder, sorted; of a very large one only the first ones."""
+    """The Python files below a folder, sorted; no links that lead out of it. Of a very large folder
+    only the first ones."""
     count = visited = 0
     for top, folders, names in os.walk(folder):
         folders[:] = [name for name in sorted(folders)
@@ -154,9 +155,12 @@ def python_files(folder: Path) -> Iterator[Path]:
         if visited > MOST_ENTRIES or count >= MOST_FILES:
             return
         for name in sorted(names):
-            if name.endswith(PYTHON_SUFFIX):
+            path = Path(top, name)
+            if name.endswith(PYTHON_SUFFIX) and not (
+                path.is_symlink() and not lies_inside(path, folder)
+            ):
                 count += 1
-                yield Path(top, name)
+                yield path
 
 
 def files_with_machines(folder: Path, disk: Disk) -> list[Path]:
@@ -197,9 +201,11 @@ def _cannot_work(item: Diagnostic) -> bool:
     return not of_rule or (item.code in CANNOT_WORK and item.severity is Severity.ERROR)
 
 
-def _without_edits(item: Diagnostic) -> Diagnostic:
-    """A finding without repairs: those of the rules write YAML, and Python files are not edited."""
-    return replace(item, finding=replace(item.finding, edits=(), repairs=()))
+def _of_python(item: Diagnostic) -> Diagnostic:
+    """A finding as it is reported of a Python file. It has no repair: those of rules write YAML. It
+    can be allowed and be in a baseline, as no program is generated."""
+    finding = replace(item.finding, edits=(), repairs=())
+    return replace(item, kind=replace(item.kind, firm=False), finding=finding)
 
 
 def _in_file(findings: Report, file: str) -> Report:
