@@ -26,9 +26,9 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.severities import apply_severities
 from smachac.diagnostics.source import Source, Span
+from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors import python_machines, references, suppressions
 from smachac.frontend.errors import script as script_errors
-from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import Script
