@@ -255,6 +255,7 @@ def facts_of_callback(
     name = Word(function.name, name_span(module.text, function))
     return ClassFacts(
         name=name,
+        is_function=True,
         endings=flow.endings,
         complete=flow.complete and not flow.passed,
         execute=name.span,

@@ -207,7 +207,8 @@ class _Builder:
         join = self._join(made.slots.get("$child_termination_cb"))
         if unknown or builder.incomplete:
             outcomes: tuple[Outcome, ...] = common["outcomes"]
-            extra = Leaf(name=ELSEWHERE, type=ELSEWHERE, open=True, span=span, outcomes=outcomes)
+            extra = Leaf(name=ELSEWHERE, type=ELSEWHERE, open=True, synthetic=True, span=span,
+                         outcomes=outcomes)  # fmt: skip
             built = (*(child for child in built if child.name != ELSEWHERE), extra)
             rules += [
                 OutcomeRule(outcome=outcome.name, span=span,
@@ -477,7 +478,7 @@ class _Children:
         span: Span = added.span
         self.choices.append(
             Leaf(
-                name=label, type=ELSEWHERE, span=span,
+                name=label, type=ELSEWHERE, synthetic=True, span=span,
                 outcomes=tuple(Outcome(name=name, span=span) for name in targets),
                 transitions=tuple(
                     Transition(outcome=name, target=name, span=span,
@@ -509,7 +510,7 @@ class _Children:
         targets += [name for name, _ in self.outcomes or self.targets_outside()
                     if name not in targets]  # fmt: skip
         return Leaf(
-            name=ELSEWHERE, type=ELSEWHERE, open=True, span=span,
+            name=ELSEWHERE, type=ELSEWHERE, open=True, synthetic=True, span=span,
             outcomes=tuple(Outcome(name=name, span=span) for name in targets),
             transitions=tuple(
                 Transition(outcome=name, target=name, span=span, target_span=span)
