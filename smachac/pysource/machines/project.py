@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import PurePath
@@ -19,7 +20,8 @@ from smachac.pysource.machines.values import (
     Unknown,
     Value,
 )
-from smachac.pysource.source import python_text
+from smachac.pysource.python2 import NotInstalledError, python2_text
+from smachac.pysource.source import PythonText, python_text
 
 
 class Repository:
@@ -80,7 +82,7 @@ class Repository:
         if key in self.loaded:
             return self.loaded[key]
         source = self.read(file)
-        text = python_text(source, template=False) if source is not None else None
+        text = module_text(source) if source is not None else None
         if text is None:
             found = Unknown(reason=file)
             self.loaded[key] = found
@@ -99,6 +101,15 @@ class Repository:
         evaluator.opened[:] = around
         module.is_loaded = True
         return module
+
+
+def module_text(source: Source) -> PythonText | None:
+    """The text of a module for Python 3 or 2; None if it cannot be read."""
+    text = python_text(source, template=False)
+    if text is None:
+        with contextlib.suppress(NotInstalledError):
+            text = python2_text(source)
+    return text
 
 
 def _shared(one: tuple[str, ...], other: tuple[str, ...]) -> int:
