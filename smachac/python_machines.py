@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from smachac.checks import check_machine
@@ -30,10 +31,11 @@ from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
     "SM101", "SM102", "SM103", "SM104", "SM106", "SM201", "SM301", "SM308", "SM309", "SM310",
-    "SM403", "SM405", "SM609",
+    "SM403", "SM609",
 })  # fmt: skip
 """The codes of rules that are reported of Python files: with such a fault a machine cannot work.
-Only errors of these are, because a warning can be about a path that is impossible."""
+Only errors of these are, because a warning can be about a path that is impossible. A race of two
+branches (SM405) is none of them: both can use parts of one value, as entries of a dictionary."""
 
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
@@ -101,13 +103,13 @@ class PythonProject:
         with deep_recursion():
             several = machines_of(repository, evaluator, str(path), made)
             whole = [graph for some in several for graph in some]
-            findings = [item for graph in whole for item in check_machine(graph.machine)]
+            findings = [item for graph in whole for item in _checked(graph.machine)]
             findings = _in_file(findings, str(path))
             variants: list[Graph] = []
             if any(item.code in IN_ALL for item in findings):
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                findings += [item for graph in variants for item in check_machine(graph.machine)
+                findings += [item for graph in variants for item in _checked(graph.machine)
                              if item.code in IN_ALL and item.span.source.name == str(path)]  # fmt: skip
         if not everything:
             findings = [item for item in findings
@@ -196,6 +198,14 @@ def _unreadable(source: Source) -> Diagnostic:
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
     help = "correct the code at the mark"
     return errors.unreadable_module(word.span, message, help)
+
+
+def _checked(machine: Machine) -> Report:
+    """The findings about a machine, without edits: those of the rules are for scripts."""
+    return [
+        replace(item, finding=replace(item.finding, edits=(), repairs=()))
+        for item in check_machine(machine)
+    ]
 
 
 def _in_file(findings: Report, file: str) -> Report:

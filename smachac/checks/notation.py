@@ -8,6 +8,9 @@ from typing import Literal
 from smachac.diagnostics.spelling import written_name
 from smachac.ir.nodes import Leaf, Node
 
+UNDECIDED = "..."
+"""In code in place of a name that is not certain."""
+
 
 def is_python(node: Node) -> bool:
     """Whether a state is written in Python, with the calls of SMACH."""
@@ -36,6 +39,8 @@ def rule(node: Node, outcome: str, conditions: Iterable[tuple[str, str]]) -> str
 
 
 def _word(node: Node, text: str) -> str:
+    if text == UNDECIDED:
+        return text
     return repr(text) if is_python(node) else written_name(text)
 
 
@@ -68,8 +73,15 @@ def is_function(leaf: Leaf) -> bool:
     return leaf.class_facts is not None and leaf.class_facts.is_function
 
 
+def code_of(leaf: Leaf) -> str:
+    """The code of a state type: that of a class, or a function."""
+    return f"`{leaf.type}`" if is_function(leaf) else f"the code of `{leaf.type}`"
+
+
 def own_key(leaf: Leaf, role: Literal["input", "output"]) -> str:
-    """A key that the interface of a state type declares, or its class."""
+    """A key that the interface of a state type declares, or its class, or the state."""
+    if is_function(leaf):
+        return f"one of the {role} keys of `{leaf.name}`"
     return f"one of its {role} keys" if is_python(leaf) else f"an {role} key of its interface"
 
 

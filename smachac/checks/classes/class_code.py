@@ -178,6 +178,8 @@ def _code_of(leaf: Leaf) -> str:
 
 def _known(leaf: Leaf, outcomes: tuple[str, ...]) -> str:
     """The help that names the outcomes which `execute` can return."""
+    if not outcomes and notation.is_python(leaf):
+        return f"{notation.declared(leaf)} has no outcomes"
     if not outcomes:
         return f"add outcomes to {notation.declared(leaf)}"
     return f"return one of its outcomes: {listed([n for n in outcomes if n != leaf.catches])}"

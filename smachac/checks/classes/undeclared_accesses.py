@@ -78,7 +78,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
             declared = notation.own_key(leaf, "input")
-            message = f"the code of `{leaf.type}` reads `{word.text}`, which is not {declared}"
+            message = f"{notation.code_of(leaf)} reads `{word.text}`, which is not {declared}"
             near = guesser(key for key in inputs if key not in used)(word.text)
             help = did_you_mean(near) or _added(leaf, facts, "input_keys", word.text)
             renamed = [each.key for each in leaf.remaps if each.to == word.text]
@@ -91,7 +91,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 help = f"write `{_owner(word)}.{lone}`" if _owner(word) else f"write `{lone}`"
             if word.text in outputs:
                 declared = notation.own_key(leaf, "output")
-                message = f"the code of `{leaf.type}` reads `{word.text}`, which is only {declared}"
+                message = f"{notation.code_of(leaf)} reads `{word.text}`, which is only {declared}"
                 if _sets_first(facts, word) or not any(
                     _comes_from_outside(leaf, each, word.text) for each in levels
                 ):
@@ -99,7 +99,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             if word.text in DICTIONARY_METHODS and _is_called(word):
                 name = _owner(word)
                 message = (
-                    f"the code of `{leaf.type}` calls `{name}.{word.text}`, but the userdata of a"
+                    f"{notation.code_of(leaf)} calls `{name}.{word.text}`, but the userdata of a"
                     " state has no methods of a dictionary"
                 )
                 help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
@@ -179,7 +179,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 guess, places = old.help, (*old.places, *places)
             yield Finding(
                 span=word.span,
-                message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
+                message=f"{notation.code_of(leaf)} sets `{word.text}`, which is {what}: the value"
                 f" is discarded{never}",
                 arguments=(word.text,),
                 help=guess or _added(leaf, facts, "output_keys", word.text),

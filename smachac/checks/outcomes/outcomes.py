@@ -291,10 +291,6 @@ def _before_detour(container: Linear, child: Node, target: str) -> str:
     return before[0].name
 
 
-UNDECIDED = "..."
-"""In a help in place of a target that is not certain."""
-
-
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
     """The target that an outcome probably needs: that of the other failures of the state, the state
     after a stop request, that of the same outcome of other states, a failure of the container or
@@ -322,7 +318,7 @@ def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str
         unused = [name for name in ends if name not in used and name != PREEMPTED]
         targets = [*(unused if len(unused) == 1 else ()), *others, *failed]
         if not targets and len(ends) + len(names) > 2:
-            return UNDECIDED
+            return notation.UNDECIDED
     plain = [name for name in ends if name != PREEMPTED]
     return next(iter([*targets, *reversed(plain), *ends, *names]))
 

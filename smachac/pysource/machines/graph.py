@@ -117,7 +117,8 @@ class _Builder:
         node = self.container(container, name, span, 0)
         if not isinstance(node, StateMachine):
             node = _wrapped(node, span)
-        exposed = "$exposed" in container.slots or not self.roots.closed
+        closed = self.roots.closed or "$executed" in container.slots
+        exposed = "$exposed" in container.slots or not closed
         if exposed:
             node = _with_inputs(node)
         machine = Machine(
@@ -266,7 +267,7 @@ class _Builder:
             reason = "its class is not known"
             if isinstance(value, Unknown) and value.reason:
                 reason = f"package {value.reason.partition('.')[0]} not found"
-            return self.open_leaf(name, span, added, reason)
+            return self.open_leaf(name, span, added, reason, self._faults(value))
         outcomes = self.names(value.slots.get("$outcomes"), span)
         inputs = sequence(value.slots.get("$inputs"))
         outputs = sequence(value.slots.get("$outputs"))
@@ -301,13 +302,23 @@ class _Builder:
             return self.reader.of_callback(function, bound=bound)
         return None
 
-    def open_leaf(self, name: str, span: Span, added: Added, reason: str) -> Leaf:
+    def _faults(self, value: Value) -> ClassFacts | None:
+        """The faults of a class whose constructor does not set the outcomes of the state."""
+        if not isinstance(value, Instance) or value.opaque or not isinstance(value.cls, Class):
+            return None
+        facts = self.reader.of_class(value.cls)
+        return ClassFacts(name=facts.name, faults=facts.faults) if facts is not None else None
+
+    def open_leaf(
+        self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
+    ) -> Leaf:
         """A state of an unknown type: its outcomes are those of its transitions."""
         self.unknown.append((span, reason))
         items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
         names = [str(key) for key in items] if isinstance(items, Mapping) else []
         outcomes = tuple(Outcome(name=text, span=span) for text in names)
-        return Leaf(name=name, type="?", open=True, outcomes=outcomes, span=span)
+        return Leaf(name=name, type="?", open=True, outcomes=outcomes, span=span,
+                    class_facts=facts)  # fmt: skip
 
     def _type(
         self, value: Instance, outcomes: Sequence[tuple[str, Span]], inputs: Sequence[Key],
