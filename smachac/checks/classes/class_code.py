@@ -179,7 +179,7 @@ def _code_of(leaf: Leaf) -> str:
 def _known(leaf: Leaf, outcomes: tuple[str, ...]) -> str:
     """The help that names the outcomes which `execute` can return."""
     if not outcomes and notation.is_python(leaf):
-        return f"{notation.declared(leaf)} has no outcomes"
+        return f"add the names that it returns to the outcomes of {notation.declared(leaf)}"
     if not outcomes:
         return f"add outcomes to {notation.declared(leaf)}"
     return f"return one of its outcomes: {listed([n for n in outcomes if n != leaf.catches])}"
@@ -255,6 +255,8 @@ def _or_declare(ending: Ending, leaf: Leaf) -> str:
     a name is usually in `__init__` too."""
     word = ending.outcome
     if not word.text.isidentifier() or word.text in ("None", "True", "False"):
+        return ""
+    if notation.is_python(leaf) and not leaf.outcomes:
         return ""
     if notation.is_python(leaf):
         return f", or add `{word.text}` to the outcomes of {notation.declared(leaf)}"

@@ -528,11 +528,15 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
                 )
                 if meant is not None:
                     help = f"rename one of the two to `{meant}`, to which transitions lead"
+                is_replaced = isinstance(container, Concurrence) and notation.is_python(child)
                 yield Finding(
                     span=child.span,
                     message=f"`{container.name}` already has a state `{child.name}`",
                     arguments=(child.name,),
                     help=help,
+                    effect="the second one takes the place of the first, which never runs"
+                    if is_replaced
+                    else None,
                     related=(
                         *other_place(known.span, "the first state of this name"),
                         *calls(child, child.span),

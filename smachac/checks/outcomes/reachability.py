@@ -409,7 +409,9 @@ def no_initial(context: Context) -> Iterator[Finding]:
                 span=span,
                 message=f"`{container.name}` has no states",
                 arguments=(container.name,),
-                help=f"write `states: [NAME: {{{_first_state(container)}}}]`",
+                help="add a state to it"
+                if notation.is_python(container)
+                else f"write `states: [NAME: {{{_first_state(container)}}}]`",
                 related=calls(container, span),
                 node=path,
             )

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from itertools import islice
 
 from smachac.analysis.def_use import written_on
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
@@ -170,7 +171,13 @@ def fitting_keys(types: Types, missing: Missing, node: Node, wanted: Type) -> li
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
-    """The state inside a container that reads the key, and the other readers of the unset key."""
+    """The place of the code that reads the key, the state inside a container that does, and the
+    other readers of the unset key."""
+    node = witness.reader.node
+    if isinstance(node, nodes.Leaf) and notation.is_python(node) and node.class_facts is not None:
+        reads = (word.span for word in node.class_facts.reads if word.text == witness.reader.key)
+        for span in islice(reads, 1):
+            yield from other_place(span, f"{notation.code_of(node)} reads it here")
     if witness.inner is not None:
         yield from other_place(witness.inner.span, f"{witness.inner.words} here")
     for vertex in witness.also[:MOST_RELATED]:

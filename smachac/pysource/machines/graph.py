@@ -317,7 +317,8 @@ class _Builder:
         items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
         names = [str(key) for key in items] if isinstance(items, Mapping) else []
         outcomes = tuple(Outcome(name=text, span=span) for text in names)
-        return Leaf(name=name, type="?", open=True, outcomes=outcomes, span=span,
+        type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
+        return Leaf(name=name, type=type_, open=True, outcomes=outcomes, span=span,
                     class_facts=facts)  # fmt: skip
 
     def _type(

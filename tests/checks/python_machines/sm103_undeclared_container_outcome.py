@@ -11,6 +11,11 @@ class Look(smach.State):
         return "seen"
 
 
+class Lost(Look):
+    def execute(self, userdata):
+        return "hidden"
+
+
 def default_outcome():
     sm = smach.StateMachine(outcomes=["done"])
     with sm:
@@ -62,7 +67,7 @@ class Search(smach.Iterator):
             it_label="place",
         )
         with self:
-            smach.Iterator.set_contained_state("LOOK", Look(), loop_outcomes=["seen"])
+            smach.Iterator.set_contained_state("LOOK", Lost(), loop_outcomes=["seen"])
 
 
 def search():

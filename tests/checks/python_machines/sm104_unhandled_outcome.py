@@ -1,8 +1,6 @@
 """Outcomes without transitions."""
 
-import actionlib_msgs.msg
 import smach
-import smach_ros
 
 
 class Grip(smach.State):
@@ -32,14 +30,6 @@ def without_transitions():
     sm = smach.StateMachine(outcomes=["done", "failed"])
     with sm:
         sm.add("GRIP", Grip())
-    return sm
-
-
-def action():
-    sm = smach.StateMachine(outcomes=["done"])
-    with sm:
-        move = smach_ros.SimpleActionState("move", actionlib_msgs.msg.GoalStatus)
-        sm.add("MOVE", move, {"succeeded": "done"})
     return sm
 
 
