@@ -362,14 +362,15 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
         if not lost:
             continue
         name, counted_on = container.name, PREEMPTED in outcome_names(container)
-        renamed = ", ".join(f"{outcome}: {PREEMPTED}" for outcome in lost)
+        pairs = [(outcome, PREEMPTED) for outcome in lost]
+        renaming = notation.mapping(container, "final_outcome_map", pairs)
         first = "" if counted_on else f"add `{PREEMPTED}` to the outcomes of `{name}`, and "
         yield Finding(
             span=container.span,
             message=f"after a preempt request `{name}` can end with {listed(lost)}, which is not"
             " one of its outcomes",
             arguments=(name, *sorted(lost)),
-            help=f"{first}write `final_outcome_map: {{{renamed}}}`",
+            help=f"{first}write `{renaming}`",
             related=calls(container, container.span),
             severity=Severity.WARNING if counted_on else None,
             node=path,
