@@ -34,6 +34,7 @@ from smachac.ir.nodes import (
     Transition,
 )
 from smachac.ir.traversal import outer_inputs
+from smachac.pysource.machines.dead_code import live_facts
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.roots import Roots
@@ -279,7 +280,7 @@ class _Builder:
         required = sequence(value.slots.get("$required")) or ()
         names = {text for item in required if (text := _text(item)) is not None}
         if facts is not None:
-            names |= {word.text for word in facts.reads}
+            names |= _read_first(facts)
         in_keys = tuple(
             key if key.name in names else _optional(key)
             for key in self.keys(value.slots.get("$inputs"), span, required=True)
@@ -294,7 +295,9 @@ class _Builder:
     def _facts(self, value: Instance) -> ClassFacts | None:
         """What the code of a state does; None if it is not known."""
         if isinstance(value.cls, Class):
-            return self.reader.of_class(value.cls)
+            facts = self.reader.of_class(value.cls)
+            classes = self.evaluator.classes(value.cls)
+            return live_facts(facts, value, classes) if facts is not None else None
         callback = value.slots.get("$callback")
         bound = isinstance(callback, Method)
         function = callback.function if isinstance(callback, Method) else callback
@@ -334,6 +337,7 @@ class _Builder:
             tuple(name for name, _ in outcomes),
             tuple(key.name for key in inputs),
             tuple(key.name for key in outputs),
+            facts and (facts.reads, facts.writes, facts.returns),
         )
         known = self.type_names.get(which)
         if known is not None:
@@ -611,6 +615,15 @@ def _without_targets(node: Node, known: Collection[str]) -> Node:
 
 def _connected(node: Node, transitions: tuple[Transition, ...], remaps: tuple[Remap, ...]) -> Node:
     return replace(node, transitions=transitions, remaps=remaps)
+
+
+def _read_first(facts: ClassFacts) -> set[str]:
+    """The keys that code reads in no line after one that sets them."""
+    set_in: dict[str, int] = {}
+    for word in facts.writes:
+        set_in[word.text] = min(word.span.line, set_in.get(word.text, word.span.line))
+    return {word.text for word in facts.reads
+            if word.span.line <= set_in.get(word.text, word.span.line)}  # fmt: skip
 
 
 def _is_none(value: Value | None) -> bool:
