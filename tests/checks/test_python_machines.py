@@ -97,7 +97,7 @@ for name, cls in inspect.getmembers(module, inspect.isclass):
 """
 
 
-RUN = {"sm101", "sm102", "sm103", "sm104", "sm106", "sm301", "sm403"}
+REFUSED = {"sm101", "sm102", "sm103", "sm104", "sm106", "sm301", "sm403"}
 """The codes with whose faults a machine ends with an error."""
 
 
@@ -112,7 +112,7 @@ def results(program: str, name: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in NAMES if name[:5] in RUN and name != "sm104_action"]
+    "name", [name for name in NAMES if name[:5] in REFUSED and name != "sm104_action"]
 )
 def test_smach_refuses_the_machines(name: str) -> None:
     found = results(MACHINES, name)
@@ -142,3 +142,30 @@ def test_a_class_of_several_machines_is_one_finding(
     monkeypatch.chdir(tmp_path)
     report = read("sm609_unusable_class", tmp_path, everything=False).report
     assert len({item.span for item in report}) == len(report) == 6
+
+
+def test_machines_that_work_have_no_finding(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = read("valid", tmp_path, everything=False)
+    assert render_text(file.report) == ""
+    assert len(file.graphs) == 4
+    assert set(results(MACHINES, "valid").values()) == {"runs"}
+
+
+def test_a_module_of_a_package_is_a_name_of_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An import of a module binds its name in its package."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot" / "__init__.py").write_text("from .checks import *\n", "utf-8")
+    (tmp_path / "robot" / "checks.py").write_text("def check(): pass\n", "utf-8")
+    (tmp_path / "main.py").write_text(
+        "import robot\nimport smach\nrobot.checks.check()\nrobot.chekcs.check()\n"
+        "sm = smach.StateMachine(outcomes=['done'])\nsm.execute()\n",
+        "utf-8",
+    )
+    report = PythonProject(Disk()).read(Path("main.py")).report
+    assert [(item.code, item.finding.arguments[1]) for item in report] == [("SM803", "chekcs")]
