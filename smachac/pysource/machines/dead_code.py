@@ -6,6 +6,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import ClassFacts
@@ -21,9 +22,19 @@ from smachac.pysource.machines.values import (
 )
 
 
-def live_facts(facts: ClassFacts, instance: Instance, classes: Sequence[Value]) -> ClassFacts:
-    """The facts about a class without those in dead code of an instance. `classes` are its class
-    and the base classes."""
+class Choice(NamedTuple):
+    """A condition of a method whose object is `own`, with the places of facts in the code that runs
+    only if it is true, and only if it is false."""
+
+    test: ast.expr
+    own: str
+    if_true: frozenset[Span]
+    if_false: frozenset[Span]
+
+
+def choices(facts: ClassFacts, classes: Sequence[Value]) -> tuple[Choice, ...]:
+    """The conditions on which facts about a class depend. `classes` are the class and its bases.
+    Conditions over attributes that a method changes later are left out."""
     methods = [
         value
         for cls in classes
@@ -33,16 +44,34 @@ def live_facts(facts: ClassFacts, instance: Instance, classes: Sequence[Value]) 
     ]
     changed = {name for method in methods if method.name != "__init__"
                for name in _assigned(method.node)}  # fmt: skip
-    known = {name: value for name, value in instance.slots.items() if name not in changed}
-    dead = [span for method in methods for span in _dead_spans(method, known)]
+    words = (*facts.reads, *facts.writes, *facts.returns)
+    found = [choice for method in methods for choice in _choices_of(method, words)]
+    return tuple(
+        choice
+        for choice in found
+        if (choice.if_true or choice.if_false) and changed.isdisjoint(_attributes(choice.test))
+    )
+
+
+def live_facts(facts: ClassFacts, found: Iterable[Choice], instance: Instance) -> ClassFacts:
+    """The facts about a class without those in dead code of an instance."""
+    dead: set[Span] = set()
+    for choice in found:
+        result = _condition(choice.test, choice.own, instance.slots)
+        if result is not None:
+            dead |= choice.if_false if result else choice.if_true
     if not dead:
         return facts
     return replace(
         facts,
-        reads=_outside(facts.reads, dead),
-        writes=_outside(facts.writes, dead),
-        endings=tuple(each for each in facts.endings if not _inside(each.outcome.span, dead)),
+        reads=tuple(word for word in facts.reads if word.span not in dead),
+        writes=tuple(word for word in facts.writes if word.span not in dead),
+        endings=tuple(each for each in facts.endings if each.outcome.span not in dead),
     )
+
+
+def _attributes(node: ast.AST) -> Iterator[str]:
+    return (part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute))
 
 
 def _assigned(function: ast.AST) -> Iterator[str]:
@@ -52,40 +81,33 @@ def _assigned(function: ast.AST) -> Iterator[str]:
             yield node.attr
 
 
-def _outside(words: Iterable[Word], dead: Sequence[Span]) -> tuple[Word, ...]:
-    return tuple(word for word in words if not _inside(word.span, dead))
-
-
-def _inside(span: Span, dead: Sequence[Span]) -> bool:
-    return any(part.source is span.source and part.start <= span.start < part.end for part in dead)
-
-
-def _dead_spans(method: Function, known: Mapping[str, Value]) -> Iterator[Span]:
-    """The places of the parts of a method that do not run if attributes have known values."""
+def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
     text, node = method.frame.module.text, method.node
     if text is None or not isinstance(node, ast.FunctionDef) or not node.args.args:
         return
     own = node.args.args[0].arg
-    for part in ast.walk(node):
-        for dead in _dead_parts(part, own, known):
-            yield text.span(dead)
+    place = text.span(node)
+    inside = [word.span for word in words if _contains(place, word.span)]
+
+    def within(parts: Sequence[ast.stmt | ast.expr]) -> frozenset[Span]:
+        places = [text.span(part) for part in parts]
+        return frozenset(span for span in inside for place in places if _contains(place, span))
+
+    for part in ast.walk(node) if inside else ():
+        match part:
+            case ast.If(test=test, body=body, orelse=orelse):
+                yield Choice(test, own, within(body), within(orelse))
+            case ast.IfExp(test=test, body=yes, orelse=no):
+                yield Choice(test, own, within([yes]), within([no]))
+            case ast.BoolOp(op=op, values=values):
+                for at, value in enumerate(values[:-1]):
+                    rest, none = within(values[at + 1 :]), frozenset[Span]()
+                    is_or = isinstance(op, ast.Or)
+                    yield Choice(value, own, none if is_or else rest, rest if is_or else none)
 
 
-def _dead_parts(
-    node: ast.AST, own: str, known: Mapping[str, Value]
-) -> Sequence[ast.stmt | ast.expr]:
-    match node:
-        case ast.If(test=test, body=body, orelse=orelse):
-            result = _condition(test, own, known)
-            return () if result is None else orelse if result else body
-        case ast.IfExp(test=test, body=yes, orelse=no):
-            result = _condition(test, own, known)
-            return () if result is None else [no if result else yes]
-        case ast.BoolOp(op=op, values=values):
-            for at, value in enumerate(values):
-                if _condition(value, own, known) is isinstance(op, ast.Or):
-                    return values[at + 1 :]
-    return ()
+def _contains(place: Span, span: Span) -> bool:
+    return place.source is span.source and place.start <= span.start < place.end
 
 
 def _condition(test: ast.expr, own: str, known: Mapping[str, Value]) -> bool | None:

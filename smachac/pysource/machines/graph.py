@@ -34,7 +34,6 @@ from smachac.ir.nodes import (
     Transition,
 )
 from smachac.ir.traversal import outer_inputs
-from smachac.pysource.machines.dead_code import live_facts
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.roots import Roots
@@ -72,6 +71,7 @@ class FactReader(Protocol):
     """Reads what the code of a state does."""
 
     def of_class(self, cls: Class) -> ClassFacts | None: ...
+    def of_instance(self, instance: Instance, classes: Sequence[Value]) -> ClassFacts | None: ...
     def of_callback(self, function: Function, *, bound: bool) -> ClassFacts | None: ...
 
 
@@ -295,9 +295,7 @@ class _Builder:
     def _facts(self, value: Instance) -> ClassFacts | None:
         """What the code of a state does; None if it is not known."""
         if isinstance(value.cls, Class):
-            facts = self.reader.of_class(value.cls)
-            classes = self.evaluator.classes(value.cls)
-            return live_facts(facts, value, classes) if facts is not None else None
+            return self.reader.of_instance(value, self.evaluator.classes(value.cls))
         callback = value.slots.get("$callback")
         bound = isinstance(callback, Method)
         function = callback.function if isinstance(callback, Method) else callback
