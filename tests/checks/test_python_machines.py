@@ -45,7 +45,7 @@ def test_no_words_of_scripts(name: str, tmp_path: Path, monkeypatch: pytest.Monk
         texts = [finding.message, finding.help or "", finding.effect or "", item.effect]
         texts += [part.message for part in finding.related]
         assert not [text for text in texts if YAML.search(text)], item.code
-        assert finding.edits == finding.repairs == ()
+        assert (finding.edits, finding.repairs) == ((), ())
 
 
 MACHINES = """\
