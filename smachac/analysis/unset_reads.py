@@ -266,7 +266,8 @@ class Reader(NamedTuple):
 def container_name(scope: UserdataScope, span: Span) -> str:
     """The name of a container in a message: "the sub-script" for the root of a called script, which
     has another name at each call."""
-    is_called = scope.container.span.source is not span.source
+    own = scope.container.span.source
+    is_called = own is not span.source and own.language != "python"
     return "the sub-script" if is_called else f"`{scope.container.name}`"
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from itertools import pairwise, takewhile
 from typing import Literal
 
+from smachac.checks import notation
 from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.diagnostics.spelling import is_plain
@@ -84,27 +85,27 @@ def listing(nodes: Iterable[Node], part: KeyList, key: str) -> str:
     every = [*nodes]
     names = listed(name_in_script(each) for each in every)
     shown = {_whole_list(each, part, key) for each in every}
-    if len(shown) == 1 and (text := shown.pop()):
-        return f"write `{part}: [{text}]` in {names}"
+    if len(shown) == 1 and (whole := shown.pop()):
+        return f"write `{notation.names(every[0], part, whole)}` in {names}"
     return f"add `{key}` to the `{part}` of {names}"
 
 
-def _whole_list(node: Node, part: KeyList, key: str) -> str:
-    """The items of a list of keys with one more; nothing where it is long, or no list."""
+def _whole_list(node: Node, part: KeyList, key: str) -> tuple[str, ...]:
+    """The items of a list of keys with one more; none where it is long, or no list."""
     known = node.inputs if part == "input_keys" else node.outputs
     if not known:
-        return key
+        return (key,)
     text = node.span.source.text
     if len(known) > MOST_LISTED or any(each.span.source is not node.span.source for each in known):
-        return ""
+        return ()
     first, last = known[0].span, known[-1].span
     in_brackets = (
         text[: first.start].rstrip().endswith("[") and text[last.end :].lstrip()[:1] == "]"
     )
     between = text[first.start : last.end]
     names = [each.name for each in known]
-    plain = in_brackets and [each.strip() for each in between.split(",")] == names
-    return ", ".join([*names, key]) if plain and key not in names else ""
+    written = [each.strip().strip("'\"") for each in between.split(",")]
+    return (*names, key) if in_brackets and written == names and key not in names else ()
 
 
 def _with_key(node: Node, known: Iterable[Key], part: str, key: str) -> tuple[Edit, ...]:

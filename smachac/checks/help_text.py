@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import takewhile
 
+from smachac.checks import notation
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import NOWHERE, Span
 from smachac.ir.leaf import variable_of
@@ -74,5 +75,5 @@ def own_name(node: Node, span: Span) -> str:
 def added_remapping(node: Node, key: str, to: str) -> str:
     """The help that remaps a key of a state: a new field, or an entry of that which it has."""
     if node.remaps:
-        return f"add `{key}: {to}` to the `remapping` of `{node.name}`"
-    return f"write `remapping: {{{key}: {to}}}` in `{node.name}`"
+        return f"add `{notation.entry(node, key, to)}` to the `remapping` of `{node.name}`"
+    return f"write `{notation.mapping(node, 'remapping', [(key, to)])}` in `{node.name}`"

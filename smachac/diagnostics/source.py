@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from functools import cached_property
-from typing import NamedTuple, NoReturn
+from typing import Literal, NamedTuple, NoReturn
 
 from smachac.records import dataclass
 
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A text and its name (a path as the user gave it).
+    """A text and its name (a path as the user gave it), and the language of the states in it.
 
     Two sources are equal only if they are the same object.
     """
 
     name: str
     text: str
+    language: Literal["yaml", "python"] = "yaml"
 
     @cached_property
     def line_starts(self) -> list[int]:

@@ -54,7 +54,7 @@ def read_source(path: Path, report: Report) -> Source | None:
         report.append(unreadable_file(place, message, help, arguments=("name",)))
         return None
     try:
-        return Source(str(path), decoded(read_bytes(path), path.name))
+        return source_of(path, decoded(read_bytes(path), path.name))
     except TooBigError as error:
         help = "split it into smaller files"
         report.append(too_big(place, str(error), help, arguments=("bytes",)))
@@ -75,6 +75,11 @@ def read_source(path: Path, report: Report) -> Source | None:
         message = f"this file cannot be read: {words}"
         report.append(unreadable_file(place, message, near, arguments=("read",)))
     return None
+
+
+def source_of(path: Path, text: str) -> Source:
+    """The text of a file as a source."""
+    return Source(str(path), text, "python" if path.suffix == ".py" else "yaml")
 
 
 def _is_text(name: str) -> bool:
@@ -196,9 +201,9 @@ class Disk:
             text = self.texts.get(key)
             if text is None:  # before the text: a change while it is read is noticed
                 self._stamps |= stamps([key])
-            source = read_source(path, found) if text is None else Source(str(path), text)
+            source = read_source(path, found) if text is None else source_of(path, text)
             if self.plain and source is not None and "\r" in source.text:
-                source = Source(source.name, with_line_feeds(source.text))
+                source = replace(source, text=with_line_feeds(source.text))
             self._sources[key] = (source, found)
         source, problems_found = self._sources[key]
         report.extend(problems_found)

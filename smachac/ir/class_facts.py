@@ -190,7 +190,8 @@ class ClassMessages(NamedTuple):
 class ClassFacts:
     """Facts about the class of a state type; declarations of a script are not included.
 
-    `name` is the class name in its file, `faults` are certain faults of its structure.
+    `name` is the class name in its file; `is_function`: the code is a function, which has that
+    name, as the callback of a CBState. `faults` are certain faults of its structure.
     `parameters` are those of its constructor; None: not known, or it accepts any.
     `outcomes`, `inputs` and `outputs` are the names that the constructor declares; None: not known.
     `passed` are the lists of these that are its parameters, `outcomes`, `input_keys` and
@@ -222,6 +223,7 @@ class ClassFacts:
     """
 
     name: Word | None = None
+    is_function: bool = False
     faults: tuple[ClassFault, ...] = ()
     parameters: tuple[Parameter, ...] | None = None
     outcomes: tuple[Word, ...] | None = None

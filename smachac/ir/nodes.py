@@ -275,12 +275,14 @@ class Leaf(_State):
     The other fields are facts of the state type (docs/state_types.md, Facts). `built_in` is the
     name of the built-in state type; it is empty for a type of the user, also for one of that name.
     `misplaced_keys` are the input keys that the script writes as variables of the state (SM003).
+    `synthetic`: no such state is written; it stands for what is not known of its container.
     """
 
     keyword: ClassVar[str] = "state"
     variables: tuple[Variable, ...] = ()
     writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     open: bool = False
+    synthetic: bool = False
     blocking: bool = False
     class_facts: ClassFacts | None = field(default=None, compare=False, repr=False)
     built_in: str = field(default="", compare=False, repr=False)

@@ -54,6 +54,12 @@ def containers(node: Node) -> Iterator[tuple[str, Container]]:
                 stack.append((f"{here}/{child.name}", child))
 
 
+def written_children(container: Container) -> list[Node]:
+    """The states of a container that are written, without those that stand for unknown ones."""
+    return [child for child in container.children
+            if not (isinstance(child, Leaf) and child.synthetic)]  # fmt: skip
+
+
 def outcome_names(node: Node) -> tuple[str, ...]:
     """The names of the declared outcomes of a node."""
     return tuple([outcome.name for outcome in node.outcomes])

@@ -43,7 +43,7 @@ from smachac.pysource.class_values import (
     written_values,
 )
 from smachac.pysource.flow import Flow, Flows
-from smachac.pysource.functions import is_plain
+from smachac.pysource.functions import is_generator, is_plain
 from smachac.pysource.imports import missing_imports
 from smachac.pysource.library_names import missing_attributes
 from smachac.pysource.local_values import local_values, text_of, unused_values
@@ -250,11 +250,12 @@ def facts_of_callback(
         flow = Flows(nothing, library).of(module, function, userdata)
     except (RecursionError, MemoryError, ValueError):
         return None
-    if flow is None or not is_plain(function):
+    if flow is None or is_generator(function):
         return None
     name = Word(function.name, name_span(module.text, function))
     return ClassFacts(
         name=name,
+        is_function=True,
         endings=flow.endings,
         complete=flow.complete and not flow.passed,
         execute=name.span,

@@ -193,7 +193,7 @@ def test_every_visible_outcome_needs_a_transition() -> None:
     known = leaf("A", {"ok": "done"}, outcomes="ok no maybe")
     assert found(machine("sm", "done", known)) == ["SM104 sm/A"]
     item = one(machine("sm", "done", replace(known, open=True)), "SM104")
-    assert item.finding.help == "add `no: done, maybe: done` to the transitions of `A`"
+    assert item.finding.help == 'add `"no": done, maybe: done` to the transitions of `A`'
     both = concurrence("BOTH", "ok", leaf("L", outcomes="x y"), default="ok", to={"ok": "done"})
     assert found(machine("sm", "done", both)) == []
 

@@ -241,7 +241,7 @@ states:
       transitions: {ok: done}
 """
     found = [each for each in reported({"main.yml": text}) if each[0] == "SM302"]
-    help = "the key of the state comes first: write `{x: a, y: b}`"
+    help = 'the key of the state comes first: write `{x: a, "y": b}`'
     assert found == [("SM302", "a", help)]
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from smachac.analysis.context import Context
+from smachac.checks import notation
 from smachac.checks.classes.renamed_names import renamed_in_interface
 from smachac.checks.classes.types_with_code import (
     declared_here,
@@ -159,7 +160,7 @@ def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[st
     known = _known(leaf, outcomes)
     return Finding(
         span=alone or facts.execute,
-        message=f"`execute` of `{leaf.type}` {does} an outcome",
+        message=f"{_code_of(leaf)} {does} an outcome",
         arguments=(leaf.type,),
         help=f"write `return {' '.join(alone.text.split())}`"
         if alone
@@ -170,10 +171,17 @@ def _without_return(path: str, leaf: Leaf, facts: ClassFacts, outcomes: tuple[st
     )
 
 
+def _code_of(leaf: Leaf) -> str:
+    """The function that SMACH runs for a state."""
+    return f"`{leaf.type}`" if notation.is_function(leaf) else f"`execute` of `{leaf.type}`"
+
+
 def _known(leaf: Leaf, outcomes: tuple[str, ...]) -> str:
     """The help that names the outcomes which `execute` can return."""
+    if not outcomes and notation.is_python(leaf):
+        return f"add the names that it returns to the outcomes of {notation.declared(leaf)}"
     if not outcomes:
-        return f"add outcomes to the interface `{leaf.type}`"
+        return f"add outcomes to {notation.declared(leaf)}"
     return f"return one of its outcomes: {listed([n for n in outcomes if n != leaf.catches])}"
 
 
@@ -248,6 +256,10 @@ def _or_declare(ending: Ending, leaf: Leaf) -> str:
     word = ending.outcome
     if not word.text.isidentifier() or word.text in ("None", "True", "False"):
         return ""
+    if notation.is_python(leaf) and not leaf.outcomes:
+        return ""
+    if notation.is_python(leaf):
+        return f", or add `{word.text}` to the outcomes of {notation.declared(leaf)}"
     where = "its interface" if ending.defined else "its interface and `__init__`"
     return f", or add `{word.text}` to the outcomes of `{leaf.type}` in {where}"
 
@@ -390,10 +402,11 @@ def _never(
     path: str, leaf: Leaf, facts: ClassFacts, outcome: str, limits: tuple[Related, ...]
 ) -> Finding:
     assert facts.execute is not None
-    message = f"`execute` of `{leaf.type}` never returns `{outcome}`"
+    message = f"{_code_of(leaf)} never returns `{outcome}`"
+    init = "" if notation.is_python(leaf) else ", from `__init__`,"
     help = (
-        f"return `{outcome}` where it is meant, or remove it from the interface `{leaf.type}`, from"
-        f" `__init__`, and from the transitions of `{leaf.name}`"
+        f"return `{outcome}` where it is meant, or remove it from {notation.declared(leaf)}{init}"
+        f" and from the transitions of `{leaf.name}`"
     )
     if outcome == PREEMPTED:
         help = "add where it waits: `if self.preempt_requested(): self.service_preempt(); return"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
+from smachac.checks import notation
 from smachac.checks.help_text import other_place
 from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import NOWHERE, Word
@@ -74,11 +75,15 @@ def own_names(leaf: Leaf) -> TypeNames:
 
 def used_here(leaf: Leaf) -> tuple[Related, ...]:
     """The first state of a type, as a related place."""
-    return other_place(leaf.span, f"`{leaf.name}` is of the type `{leaf.type}`")
+    what = "runs the function" if notation.is_function(leaf) else "is of the type"
+    return other_place(leaf.span, f"`{leaf.name}` {what} `{leaf.type}`")
 
 
 def declared_here(leaf: Leaf, names: Sequence[Outcome | Key]) -> tuple[Related, ...]:
-    """The place of the first of some names of a state in its interface, or of its outcomes."""
+    """The place of the first of some names of a state in its interface, or of its outcomes; none
+    for a class of a program in Python."""
+    if notation.is_python(leaf):
+        return ()
     spans = [each.span for each in (*names, *leaf.outcomes)]
     span = next((span for span in spans if span.source is not leaf.span.source), NOWHERE)
     return other_place(span, f"the interface of `{leaf.type}`")

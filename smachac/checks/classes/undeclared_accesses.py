@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator
 from typing import Literal
 
 from smachac.analysis.context import Context
+from smachac.checks import notation
 from smachac.checks.classes.renamed_names import renamed_in_interface
 from smachac.checks.classes.types_with_code import (
     declared_here,
@@ -24,6 +25,14 @@ from smachac.ir import nodes
 from smachac.ir.class_facts import ClassFacts, renamed_name
 from smachac.ir.nodes import Leaf
 from smachac.ir.traversal import enclosing, outer_outputs, remapping
+
+
+def _added(
+    leaf: Leaf, facts: ClassFacts, field: Literal["input_keys", "output_keys"], key: str
+) -> str:
+    """The help that adds a key to a list."""
+    added = f"add `{key}` to the `{field}` of {notation.declared(leaf)}"
+    return added if notation.is_python(leaf) else added + _in_the_class(facts, field, key)
 
 
 def _in_the_class(facts: ClassFacts, field: Literal["input_keys", "output_keys"], key: str) -> str:
@@ -68,15 +77,10 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
         old = renamed_in_interface(leaf, "input_keys", facts, facts.inputs, inputs)
         for word in first_of_each(facts.reads, known):
             effect: str | None = None
-            message = (
-                f"the code of `{leaf.type}` reads `{word.text}`, which is not an input"
-                " key of its interface"
-            )
+            declared = notation.own_key(leaf, "input")
+            message = f"{notation.code_of(leaf)} reads `{word.text}`, which is not {declared}"
             near = guesser(key for key in inputs if key not in used)(word.text)
-            help = did_you_mean(near) or (
-                f"add `{word.text}` to the `input_keys` of the interface `{leaf.type}`"
-                + _in_the_class(facts, "input_keys", word.text)
-            )
+            help = did_you_mean(near) or _added(leaf, facts, "input_keys", word.text)
             renamed = [each.key for each in leaf.remaps if each.to == word.text]
             if renamed and renamed[0] in inputs:
                 help = f"write `{_owner(word)}.{renamed[0]}`: `{word.text}` is the name of this key"
@@ -86,8 +90,8 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
                 message += f", and it never reads its input key `{lone}`"
                 help = f"write `{_owner(word)}.{lone}`" if _owner(word) else f"write `{lone}`"
             if word.text in outputs:
-                message = f"the code of `{leaf.type}` reads `{word.text}`, which is only an output"
-                message += " key of its interface"
+                declared = notation.own_key(leaf, "output")
+                message = f"{notation.code_of(leaf)} reads `{word.text}`, which is only {declared}"
                 if _sets_first(facts, word) or not any(
                     _comes_from_outside(leaf, each, word.text) for each in levels
                 ):
@@ -95,7 +99,7 @@ def unknown_reads(context: Context) -> Iterator[Finding]:
             if word.text in DICTIONARY_METHODS and _is_called(word):
                 name = _owner(word)
                 message = (
-                    f"the code of `{leaf.type}` calls `{name}.{word.text}`, but the userdata of a"
+                    f"{notation.code_of(leaf)} calls `{name}.{word.text}`, but the userdata of a"
                     " state has no methods of a dictionary"
                 )
                 help = f"read a key as `{name}.KEY`; test it with `'KEY' in {name}`"
@@ -161,7 +165,7 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
         old = renamed_in_interface(leaf, "output_keys", facts, facts.outputs, outputs)
         for word in first_of_each(facts.writes, [*outputs, *unknown]):
             only = word.text in inputs
-            what = "only an input key" if only else "not an output key of its interface"
+            what = "only an input key" if only else f"not {notation.own_key(leaf, 'output')}"
             unset = [key for key in outputs if key not in written and key not in inputs]
             near = guesser(unset if only else outputs)(word.text)
             guess = did_you_mean(near)
@@ -175,12 +179,10 @@ def dropped_writes(context: Context) -> Iterator[Finding]:
                 guess, places = old.help, (*old.places, *places)
             yield Finding(
                 span=word.span,
-                message=f"the code of `{leaf.type}` sets `{word.text}`, which is {what}: the value"
+                message=f"{notation.code_of(leaf)} sets `{word.text}`, which is {what}: the value"
                 f" is discarded{never}",
                 arguments=(word.text,),
-                help=guess
-                or f"add `{word.text}` to the `output_keys` of the interface `{leaf.type}`"
-                + _in_the_class(facts, "output_keys", word.text),
+                help=guess or _added(leaf, facts, "output_keys", word.text),
                 related=(*places, *used_here(leaf)),
                 node=path,
             )

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from smachac.analysis.context import Context
+from smachac.checks import notation
+from smachac.checks.classes.types_with_code import used_here
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.source import Span
 from smachac.pysource.template_sources import template_sources, uses_own_templates
 from smachac.pysource.user_code import StateFault
 
@@ -167,6 +171,27 @@ def unusable_class(context: Context) -> Iterator[Finding]:
         kind = item.fault.kind
         if not kind.missing:
             yield _finding(item, None if built or kind.stops else Severity.WARNING)
+    yield from _faults_of_program(context)
+
+
+def _faults_of_program(context: Context) -> Iterator[Finding]:
+    """The faults of the classes of a program in Python, each once."""
+    seen: set[Span] = set()
+    for path, leaf, facts, _ in context.leaves_with_class:
+        if not notation.is_python(leaf) or facts.name is None:
+            continue
+        for fault in facts.faults:
+            if fault.kind.early or fault.name.span in seen:
+                continue
+            seen.add(fault.name.span)
+            name = facts.name.text
+            item = StateFault(fault, "python", name, name, used_here(leaf))
+            found = _finding(item, None if fault.kind.stops else Severity.WARNING)
+            yield replace(found, node=path, effect=found.effect or STOPS)
+
+
+STOPS = "the program stops with an error when it makes the state or runs it"
+"""What most faults of a class do in a program that is written in Python."""
 
 
 def _finding(item: StateFault, severity: Severity | None = None) -> Finding:

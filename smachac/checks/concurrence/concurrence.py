@@ -15,6 +15,7 @@ from smachac.analysis.outcome_rules import (
     without_other,
 )
 from smachac.analysis.possible_outcomes import Judged
+from smachac.checks import notation
 from smachac.checks.concurrence.combinations import written
 from smachac.checks.concurrence.inverted_rules import inverted_rules, transposed_rules
 from smachac.checks.help_text import calls, did_you_mean, ends_of, other_place
@@ -23,7 +24,7 @@ from smachac.checks.timing.iterator_stops import turned_renames
 from smachac.checks.timing.watched_branches import missing_joins
 from smachac.checks.types.value_places import place_of_value
 from smachac.diagnostics.diagnostic import Finding, Severity
-from smachac.diagnostics.spelling import guesser, written_name
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Leaf, Node, OutcomeRule
@@ -95,12 +96,12 @@ def dead_rule(context: Context) -> Iterator[Finding]:
 
 def _without_conditions(path: str, container: Concurrence, entry: OutcomeRule) -> Finding:
     """The finding on a rule that is empty, or lists states with `any` only."""
-    name = written_name(entry.outcome)
     what = " beside `any`, which stands for every outcome" if entry.ignored else ""
-    condition = _example(container)
-    help = f"write conditions, as in `{name}: {{{condition}}}`, or remove the rule"
+    example = notation.rule(container, entry.outcome, [_example(container)])
+    help = f"write conditions, as in `{example}`, or remove the rule"
     if entry.ignored and container.default_outcome in ("", entry.outcome):
-        help = f"write `default_outcome: {name}` in place of the rule"
+        default = notation.name(container, "default_outcome", entry.outcome)
+        help = f"write `{default}` in place of the rule"
     return Finding(
         span=entry.span,
         message=f"the rule for `{entry.outcome}` has no conditions{what}",
@@ -162,12 +163,12 @@ def _dead_rules(path: str, container: Concurrence) -> Iterator[Finding]:
             )
 
 
-def _example(container: Concurrence) -> str:
+def _example(container: Concurrence) -> tuple[str, str]:
     """A condition on the first branch of a concurrence, as an example."""
     for child in container.children:
         for name in outcome_names(child):
-            return f"{child.name}: {name}"
-    return "STATE: OUTCOME"
+            return child.name, name
+    return "STATE", "OUTCOME"
 
 
 MOST_COMPARED_RULES = 100
@@ -187,7 +188,8 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
               and part.outcome != PREEMPTED} if is_searched else {}  # fmt: skip
     if meant is None and len(others) == 1:
         ((name, other),) = others.items()
-        return f"write `{child.name}: {name}`, as in the rule for `{other}`"
+        right = notation.entry(container, child.name, name)
+        return f"write `{right}`, as in the rule for `{other}`"
     meant = meant or guesser(names)(outcome)
     return did_you_mean(meant) or ends_of(child) or _documented(child) or known
 
@@ -292,7 +294,8 @@ def _dead_renames(path: str, container: nodes.Iterator) -> Iterator[Finding]:
         if name in known:
             continue
         inverted = (name, result) in turned_renames(container)
-        turned = f"write `{result}: {name}`: the outcome that is renamed comes first"
+        turned = f"write `{notation.entry(container, result, name)}`: the outcome that is renamed"
+        turned += " comes first"
         yield Finding(
             span=span,
             message=f"the final outcome map of `{container.name}` renames `{name}`, but its state"
@@ -421,8 +424,8 @@ def uncovered_combination(context: Context) -> Iterator[Finding]:
             severity, span = Severity.INFO, node.default_span
             message = f"no rule of `{node.name}` matches {shown}: it ends with the default outcome"
             message += f" `{node.default_outcome}`"
-            rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
-            help = f"if another outcome is meant, add a rule for it, as in `OUTCOME: {{{rule}}}`"
+            rule = notation.rule(node, "OUTCOME", needed.items())
+            help = f"if another outcome is meant, add a rule for it, as in `{rule}`"
             effect = ""
         else:
             severity, span = Severity.ERROR, node.span
@@ -449,22 +452,23 @@ def _covering(node: Concurrence, needed: Mapping[str, str]) -> str:
     """The help for a combination without a rule. No outcome is chosen but a failure."""
     names = outcome_names(node)
     bad = next((name for name in reversed(names) if fails(node, name)), None)
-    default = f"`default_outcome: {bad}`" if bad else "a `default_outcome`"
-    rule = ", ".join(f"{child}: {end}" for child, end in needed.items())
-    if rule and not node.rules:
-        rule = f"outcome_map: {{OUTCOME: {{{rule}}}}}"
-        return f"write rules for its outcomes, as in `{rule}`, and {default}"
+    default = f"`{notation.name(node, 'default_outcome', bad)}`" if bad else "a `default_outcome`"
+    if needed and not node.rules:
+        rules = f"{{{notation.rule(node, 'OUTCOME', needed.items())}}}"
+        rules = notation.field(node, "outcome_map", rules)
+        return f"write rules for its outcomes, as in `{rules}`, and {default}"
     every = f"write {default} for all combinations without a rule"
     wider = []
     for entry in node.rules if needed else ():
         others = [part for part in entry.when if needed.get(part.child) != part.outcome]
         if len(others) == 1 and len(entry.when) > 1:
-            condition = f"{others[0].child}: {others[0].outcome}"
+            condition = notation.entry(node, others[0].child, others[0].outcome)
             wider.append(f"remove `{condition}` from the rule for `{entry.outcome}`")
     if wider and not bad:
         return f"{', or '.join(wider[:MOST_WIDENED])}; or {every}"
     free = _without_rule(node)
-    return f"{every}, or add a rule, as in `{free}: {{{rule}}}`" if rule and free else every
+    rule = notation.rule(node, free, needed.items())
+    return f"{every}, or add a rule, as in `{rule}`" if needed and free else every
 
 
 def _without_rule(node: Concurrence) -> str:
@@ -600,7 +604,7 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
     first, last = _ends(each.concurrence, tie)
     above, below = each.concurrence.written[first], each.concurrence.written[last]
     here = each.concurrence.written[number]
-    conditions = ", ".join(f"{child}: {outcome}" for child, outcome in tie.items())
+    rule = notation.rule(each.concurrence.node, above.outcome, tie.items())
     return Finding(
         span=here.span,
         message=f"the rules for `{above.outcome}` and `{below.outcome}` both hold for"
@@ -608,7 +612,7 @@ def _overlapping(each: Judged, number: int, tie: Combination) -> Finding:
         f" `{below.outcome}`",
         arguments=(above.outcome, below.outcome, *_names(tie)),
         help="add a condition to the rule that must win, as in"
-        f" `{above.outcome}: {{{conditions}}}`: the rule with more conditions wins",
+        f" `{rule}`: the rule with more conditions wins",
         related=(
             *other_place(above.span, "the other rule"),
             *calls(each.concurrence.node, here.span),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from smachac.analysis.control_flow import is_open
+from smachac.checks import notation
 from smachac.ir.nodes import Concurrence, OutcomeRule
 from smachac.ir.traversal import outcome_names
 
@@ -50,9 +51,9 @@ def transposed_rules(container: Concurrence) -> dict[str, str]:
         if entry.outcome in declared or len(results) != 1 or not results <= declared:
             continue
         if all(entry.outcome in children.get(part.child, ()) for part in entry.when):
-            states = ", ".join(f"{part.child}: {entry.outcome}" for part in entry.when)
+            states = [(part.child, entry.outcome) for part in entry.when]
             found[entry.outcome] = (
-                f"write `{results.pop()}: {{{states}}}`: a rule begins with an"
+                f"write `{notation.rule(container, results.pop(), states)}`: a rule begins with an"
                 f" outcome of `{container.name}`"
             )
     return found

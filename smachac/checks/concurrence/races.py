@@ -11,6 +11,7 @@ from smachac.analysis.control_flow import children_names
 from smachac.analysis.raced_outputs import RacedOutput, raced_output
 from smachac.analysis.resource_claims import Held, prefixes
 from smachac.analysis.type_lattice import present
+from smachac.checks import notation
 from smachac.checks.concurrence.raced_keys import is_never_set, own_key
 from smachac.checks.edits import likely, with_remapping
 from smachac.checks.help_text import calls, other_place
@@ -127,14 +128,16 @@ def _race(
     if raced is not None:
         here = next(each for each in writing if each[0] is raced.child)
     own, span = own_key(here[0], key), here[0].span
-    help = f"write `remapping: {{{own}: {key}_2}}` at `{here[0].name}`, for a key of its own, or"
+    other = notation.mapping(here[0], "remapping", [(own, f"{key}_2")])
+    help = f"write `{other}` at `{here[0].name}`, for a key of its own, or"
     help += " run one branch after the other"
     edits: tuple[Edit, ...] = ()
     if raced is not None:
         written = [each for each in here[0].remaps if each.to == key]
         span = written[0].to_span if written and written[0].to_span.source is span.source else span
-        help = f"write `{own}: {raced.meant}` in the `remapping` of `{here[0].name}`: nothing sets"
-        help += f" `{raced.meant}`, which is an output of `{container.name}`"
+        help = f"write `{notation.entry(here[0], own, raced.meant)}` in the `remapping` of"
+        help += f" `{here[0].name}`: nothing sets `{raced.meant}`, which is an output of"
+        help += f" `{container.name}`"
         edits = (Edit(span=span, text=raced.meant),)
         if span == here[0].span:
             edits = with_remapping(here[0], own, raced.meant)

@@ -22,6 +22,7 @@ from smachac.analysis.control_flow import (
     strays,
     unknown_outcomes,
 )
+from smachac.checks import notation
 from smachac.checks.edits import adding_outcome
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.names.other_outcomes import continuing_outcome, other_outcome
@@ -35,7 +36,7 @@ from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
 from smachac.ir.outcome_names import OF_SMACH
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, written_children
 
 EXCEPTIONS = "error"
 """The name by which a script refers to the exceptions of a state (docs/language.md)."""
@@ -54,7 +55,7 @@ class _Targets:
 
     @cached_property
     def states(self) -> frozenset[str]:
-        return children_names(self.container)
+        return frozenset([child.name for child in written_children(self.container)])
 
     @cached_property
     def all_upper(self) -> bool:
@@ -65,7 +66,7 @@ class _Targets:
     def unentered(self) -> Mapping[str, tuple[Span, ...]]:
         """The places of the states that no transition leads to."""
         found: dict[str, tuple[Span, ...]] = {}
-        for child in self.container.children:
+        for child in written_children(self.container):
             if child.name not in self.places and child.name != self.container.initial:
                 found[child.name] = (*found.get(child.name, ()), child.span)
         return found
@@ -207,8 +208,8 @@ def _add_or_use(fault: _Lost) -> str:
     known = f"use a state or an outcome of `{container.name}`: {fault.targets.listed}"
     if not target.isupper() or not fault.targets.all_upper:
         return known
-    if len(container.children) == 2:
-        other = next(each.name for each in container.children if each is not fault.child)
+    if len(fault.targets.states) == 2:
+        other = next(name for name in fault.targets.states if name != fault.child.name)
         return f"add the state `{target}`, or write `{other}`"
     return f"add the state `{target}`, or {known}"
 
@@ -281,14 +282,13 @@ def _through_outcome(fault: _Lost, above: str) -> str:
         if outer.target == target and outer.outcome in used:
             own = step.outcome
             return (
-                f"add the outcome `{own}` to `{name}`, write `{own}: {own}` here, and"
-                f" `{own}: {target}` in the transitions of `{name}`"
+                f"add the outcome `{own}` to `{name}`, write"
+                f" `{notation.entry(container, own, own)}` here, and"
+                f" `{notation.entry(container, own, target)}` in the transitions of `{name}`"
             )
         if outer.target == target:
-            return (
-                f"write `{step.outcome}: {outer.outcome}`: the outcome `{outer.outcome}` of"
-                f" `{name}` leads to `{target}`"
-            )
+            right = notation.entry(container, step.outcome, outer.outcome)
+            return f"write `{right}`: the outcome `{outer.outcome}` of `{name}` leads to `{target}`"
     return (
         f"use a state or an outcome of `{name}`: {fault.targets.listed}; the state `{target}` in"
         f" `{above}` cannot be a target here"
@@ -400,7 +400,7 @@ def _catch_all(child: Node, step: Transition) -> str | None:
     rest = [name for name in outcome_names(child) if name not in handled]
     if not is_catch_all(step) or not rest:
         return None
-    rows = ", ".join(f"{name}: {step.target}" for name in rest)
+    rows = notation.entries(child, ((name, step.target) for name in rest))
     return f"each outcome has its own transition: write `{rows}`"
 
 
@@ -528,11 +528,15 @@ def duplicate_state(context: Context) -> Iterator[Finding]:
                 )
                 if meant is not None:
                     help = f"rename one of the two to `{meant}`, to which transitions lead"
+                is_replaced = isinstance(container, Concurrence) and notation.is_python(child)
                 yield Finding(
                     span=child.span,
                     message=f"`{container.name}` already has a state `{child.name}`",
                     arguments=(child.name,),
                     help=help,
+                    effect="the second one takes the place of the first, which never runs"
+                    if is_replaced
+                    else None,
                     related=(
                         *other_place(known.span, "the first state of this name"),
                         *calls(child, child.span),

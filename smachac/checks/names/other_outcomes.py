@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from smachac.checks import notation
 from smachac.checks.help_text import ends_of
-from smachac.diagnostics.spelling import written_name
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Leaf, Node, Transition
@@ -30,8 +30,8 @@ def other_outcome(child: Node, step: Transition) -> str:
         have = "its outcome" if is_one else "its outcomes"
         return f"remove this transition: {have} {both(names)} {'has' if is_one else 'have'} one"
     if len(left) == 1 and _can_mean(child, step.outcome, left[0]):
-        entry = f"{written_name(left[0])}: {written_name(step.target)}"
-        return f"write `{entry}`: `{left[0]}` is its only outcome without a transition"
+        right = notation.entry(child, left[0], step.target)
+        return f"write `{right}`: `{left[0]}` is its only outcome without a transition"
     return ends_of(child) or f"use one of its outcomes: {listed(names)}"
 
 
@@ -52,6 +52,8 @@ def _is_good(outcome: str) -> bool:
 def _missing_field(child: Node, outcome: str) -> str | None:
     """The help for an outcome that a field of the language adds, which the state lacks."""
     if isinstance(child, nodes.Iterator | nodes.Concurrence) and child.sugar == "timeout":
+        return None
+    if notation.is_python(child):
         return None
     if outcome == TIMEOUT and not _has_limit(child):
         return (

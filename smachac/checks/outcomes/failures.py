@@ -10,6 +10,7 @@ from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.failure_paths import starts_failure
 from smachac.analysis.outcome_rules import Combination, SoundConcurrence, Space, UndecidedError
 from smachac.analysis.possible_outcomes import Judged
+from smachac.checks import notation
 from smachac.checks.concurrence.combinations import written
 from smachac.checks.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
@@ -301,7 +302,7 @@ def _meant_help(child: Node, outcome: str) -> str:
             causes = child.loop_outcomes if outcome == child.exhausted_outcome else causes
         child = inner
     own = [each for each in causes if each in outcome_names(child)]
-    if not own:
+    if not own or notation.is_python(child):
         return ""
     declared = ", ".join(f"{each}: {{failure: false}}" for each in own)
     return (

@@ -17,7 +17,7 @@ from smachac.diagnostics.wording import listed
 from smachac.ir.graph import edges, reachable
 from smachac.ir.nodes import Node, Sequence, Transition
 from smachac.ir.outcome_names import PREEMPTED, fails
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, written_children
 
 
 class Hidden(NamedTuple):
@@ -39,7 +39,7 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
     missed: set[str] | None = None
     for (path, container), whole in zip(context.linear, context.corrected, strict=True):
         seen = context.of_container(reachable, path, whole)
-        hidden = [child for child in container.children if child.name not in seen]
+        hidden = [child for child in written_children(container) if child.name not in seen]
         if not hidden:
             continue
         if isinstance(container, Sequence) and _never_continues(container):

@@ -12,6 +12,7 @@ from smachac.analysis.control_flow import (
     unhandled_in,
     unknown_outcomes,
 )
+from smachac.checks import notation
 from smachac.checks.concurrence.inverted_rules import Inverted, inverted_rules, transposed_rules
 from smachac.checks.edits import likely, with_field
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
@@ -20,7 +21,7 @@ from smachac.checks.outcomes.iterator_endings import MeantEnding, endings, meant
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
+from smachac.diagnostics.spelling import MOST_EXPLAINED
 from smachac.diagnostics.wording import both
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Outcome, Transition
@@ -33,7 +34,7 @@ from smachac.ir.outcome_names import (
     is_failure,
     successes,
 )
-from smachac.ir.traversal import outcome_names
+from smachac.ir.traversal import outcome_names, written_children
 
 
 @rule(
@@ -118,30 +119,31 @@ def _undeclared_results(path: str, container: Concurrence) -> Iterator[Finding]:
             )
 
 
-def _added(container: Container, name: str) -> str:
+def _added(container: Container, outcome: str) -> str:
     """The help that adds an outcome to a container, and to its transitions where it has some. No
     target is chosen but a failure."""
-    help = f"add `{name}` to the outcomes of `{container.name}`"
+    help = f"add `{outcome}` to the outcomes of `{container.name}`"
     target = next((step.target for step in reversed(container.transitions) if step.target), "")
-    if name == PREEMPTED or not target:
+    if outcome == PREEMPTED or not target:
         return help
-    transition = f", and `{name}: {target}` to its transitions"
+    transition = f", and `{notation.entry(container, outcome, target)}` to its transitions"
     return f"{help}{transition if is_failure(target) else ' and to its transitions'}"
 
 
 def _inverted(path: str, container: Concurrence, inverted: tuple[Inverted, ...]) -> Finding:
     first = inverted[0].rule
-    rules: dict[str, list[str]] = {}
-    for entry in inverted:
-        for result, end in entry.meant:
-            rules.setdefault(result, []).append(f"{entry.rule.outcome}: {end}")
-    shown = ", ".join(f"{name}: {{{', '.join(parts)}}}" for name, parts in rules.items())
+    rules: dict[str, list[tuple[str, str]]] = {}
+    for one in inverted:
+        for result, end in one.meant:
+            rules.setdefault(result, []).append((one.rule.outcome, end))
+    shown = ", ".join(notation.rule(container, result, parts) for result, parts in rules.items())
+    shown = notation.field(container, "outcome_map", f"{{{shown}}}")
     return Finding(
         span=first.span,
         message=f"the outcome map of `{container.name}` begins a rule with its state"
         f" `{first.outcome}`, not with one of its outcomes",
         arguments=(own_name(container, first.span), first.outcome),
-        help=f"the outcome comes first: `outcome_map: {{{shown}}}`",
+        help=f"the outcome comes first: `{shown}`",
         related=calls(container, first.span),
         node=path,
     )
@@ -157,14 +159,16 @@ def _undeclared_endings(path: str, container: nodes.Iterator) -> Iterator[Findin
         if misnamed and child and outcome.lower() in SUCCESSES | GOOD:
             continue  # SM102: an entry of `loop_outcomes` is meant for it
         when = f"when `{child}` ends with `{outcome}`" if child else "after the last item"
-        others = f", write `loop_outcomes: [{outcome}]` to continue on it" if child else ""
+        others = notation.names(container, "loop_outcomes", [outcome])
         mapped = next(reversed(outcome_names(container)), "")
+        renaming = notation.mapping(container, "final_outcome_map", [(outcome, mapped)])
         yield Finding(
             span=container.span,
             message=f"`{container.name}` ends with `{result}` {when}, but has no such outcome",
             arguments=(container.name, result, child, outcome),
-            help=f"{_added(container, result)}{others}"
-            + (f", or map it with `final_outcome_map: {{{outcome}: {mapped}}}`" if mapped else ""),
+            help=_added(container, result)
+            + (f", write `{others}` to continue on it" if child else "")
+            + (f", or map it with `{renaming}`" if mapped else ""),
             related=calls(container, container.span),
             node=path,
         )
@@ -233,7 +237,7 @@ def unentered(container: Linear) -> list[str]:
     """The states of a container to which no transition of another state leads."""
     led = {step.target for child in container.children for step in child.transitions
            if step.target != child.name}  # fmt: skip
-    return [child.name for child in container.children
+    return [child.name for child in written_children(container)
             if child.name not in led and child.name != container.initial]  # fmt: skip
 
 
@@ -279,16 +283,12 @@ def _before_detour(container: Linear, child: Node, target: str) -> str:
     """The only state that leads to a state, if another of its outcomes leads to `target`, which is
     meant for a success of that state: it may have to run again. Empty without one."""
     before = [
-        state for state in container.children
+        state for state in written_children(container)
         if state is not child and any(step.target == child.name for step in state.transitions)
     ]  # fmt: skip
     if len(before) != 1 or all(step.target != target for step in before[0].transitions):
         return ""
     return before[0].name
-
-
-UNDECIDED = "..."
-"""In a help in place of a target that is not certain."""
 
 
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
@@ -297,9 +297,10 @@ def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str
     its stop, or what comes after a success."""
     ends = outcome_names(container)
     failed = [name for name in ends if fails(container, name)]
-    names = [each.name for each in container.children]
+    names = [each.name for each in written_children(container)]
     alike = [step.target for each in container.children if each is not child
-             for step in each.transitions if step.outcome == outcome]  # fmt: skip
+             for step in each.transitions if step.outcome == outcome
+             and step.target in (*names, *ends)]  # fmt: skip
     others = [name for name in alike if name in ends or outcome == PREEMPTED]
     own = {step.target for step in child.transitions if step.origin == "written"
            and step.outcome != PREEMPTED and fails(child, step.outcome)}  # fmt: skip
@@ -317,7 +318,7 @@ def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str
         unused = [name for name in ends if name not in used and name != PREEMPTED]
         targets = [*(unused if len(unused) == 1 else ()), *others, *failed]
         if not targets and len(ends) + len(names) > 2:
-            return UNDECIDED
+            return notation.UNDECIDED
     plain = [name for name in ends if name != PREEMPTED]
     return next(iter([*targets, *reversed(plain), *ends, *names]))
 
@@ -326,10 +327,10 @@ def _several_unhandled(
     path: str, container: Linear, child: Node, targets: dict[str, str]
 ) -> Finding:
     """SM104 for a state of which several outcomes have no transition."""
-    rows = ", ".join(f"{name}: {target}" for name, target in targets.items())
-    help = f"add `{rows}` to the transitions of `{child.name}`"
+    pairs = targets.items()
+    help = f"add `{notation.entries(child, pairs)}` to the transitions of `{child.name}`"
     if not any(step.origin == "written" for step in child.transitions):
-        help = f"write `transitions: {{{rows}}}` in `{child.name}`"
+        help = f"write `{notation.mapping(child, 'transitions', pairs)}` in `{child.name}`"
     return Finding(
         span=child.span,
         message=f"the outcomes {both(targets)} of `{child.name}` have no transitions, and"
@@ -343,19 +344,20 @@ def _several_unhandled(
 
 def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
     container, result, meant = ending
-    name, field, value = container.name, "exhausted_outcome", meant.name
-    mapped = container.exhausted_outcome in dict(container.final_map)
+    name, last = container.name, container.exhausted_outcome
+    code = notation.name(container, "exhausted_outcome", meant.name)
+    mapped = last in dict(container.final_map)
     if mapped:
-        field, value = "final_outcome_map", f"{{{container.exhausted_outcome}: {meant.name}}}"
+        code = notation.mapping(container, "final_outcome_map", [(last, meant.name)])
     written = result.span.text == result.name
     message = f"`{name}` ends with `{result.name}` after the last item, but has no such outcome"
     if written and not mapped:
-        message = f"`{field}` is `{result.name}`, but `{name}` has no such outcome"
+        message = f"`exhausted_outcome` is `{result.name}`, but `{name}` has no such outcome"
     return Finding(
         span=result.span,
         message=message,
         arguments=(own_name(container, result.span), result.name),
-        help=f"write `{field}: {value}`: `{name}` has no other way to end with `{meant.name}`",
+        help=f"write `{code}`: `{name}` has no other way to end with `{meant.name}`",
         related=(
             *other_place(meant.span, f"`{name}` never ends with this outcome"),
             *calls(container, result.span),
@@ -364,7 +366,7 @@ def _misnamed_ending(path: str, ending: MeantEnding) -> Finding:
         repairs=likely(
             (Edit(span=result.span, text=meant.name),)
             if written and not mapped
-            else with_field(container.span, f"{field}: {value}"),
+            else with_field(container.span, code),
             "name the last outcome",
         ),
     )
@@ -389,14 +391,16 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
             message=f"`{outcome.name}` of `{child.name}` has no transition, and no condition leads"
             f" to `{meant}`, which has one",
             arguments=(child.name, outcome.name),
-            help=f"write `default_outcome: {meant}`",
+            help=f"write `{notation.name(child, 'default_outcome', meant)}`",
             related=calls(child, default.value.span),
             node=f"{path}/{child.name}",
         )
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
     again = _before_detour(container, child, target) if not fails(child, outcome.name) else ""
-    again = f", or `{outcome.name}: {again}` to run `{again}` again" if again else ""
+    if again:
+        again = f", or `{notation.entry(child, outcome.name, again)}` to run `{again}` again"
+    missing = notation.entry(child, outcome.name, target)
     field = _field_that_adds(child, outcome.name)
     origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
     why = ""
@@ -409,9 +413,9 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{outcome.name}: {target}` to the transitions of `{child.name}`{again}",
+        help=f"{why}add `{missing}` to the transitions of `{child.name}`{again}",
         related=(
-            *(other_place(outcome.span, origin) if inside else ()),
+            *(other_place(outcome.span, origin) if inside and outcome.span != child.span else ()),
             *calls(child, child.span),
         ),
         node=f"{path}/{child.name}",
@@ -475,15 +479,15 @@ def _implicit(
         if step.outcome in misspelt:
             continue
         forgotten = beside and fails(child, step.outcome)
-        entry = f"`{written_name(step.outcome)}: {written_name(step.target)}`"
+        added = f"`{notation.entry(child, step.outcome, step.target)}`"
         yield Finding(
             span=step.span,
             message=f"outcome `{step.outcome}` of `{child.name}` has no transition, so"
             f" `{container.name}` ends with `{step.target}`",
             arguments=(own_name(child, step.span), step.outcome),
-            help=f"write {entry} if this is intended, or a transition to a state that recovers"
+            help=f"write {added} if this is intended, or a transition to a state that recovers"
             if forgotten
-            else f"add {entry} to the `transitions` of `{child.name}` to"
+            else f"add {added} to the `transitions` of `{child.name}` to"
             " show that this is intended",
             related=calls(child, step.span),
             severity=Severity.WARNING if forgotten else None,

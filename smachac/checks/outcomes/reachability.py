@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import Linear, children_names, is_open, unhandled_in
+from smachac.checks import notation
 from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.hidden_conditions import hidden_conditions
@@ -16,7 +17,7 @@ from smachac.checks.rule import rule
 from smachac.checks.timing.iterator_stops import undeclared_stops
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.spelling import guesser, written_name
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.graph import edges, stopped_endings
@@ -110,7 +111,8 @@ def _unreached(container: Linear, group: list[Node]) -> str:
 
 
 def _out_help(child: Node, before: Node, step: Transition) -> str:
-    return f"add `{step.outcome}: {child.name}` to the transitions of `{before.name}`"
+    added = notation.entry(before, step.outcome, child.name)
+    return f"add `{added}` to the transitions of `{before.name}`"
 
 
 def _out_places(container: Linear, before: Node, step: Transition) -> tuple[Related, ...]:
@@ -128,8 +130,8 @@ def _passed(path: str, container: Linear, group: list[Node], past: LedPast) -> F
         span=child.span,
         message=_unreached(container, group),
         arguments=(child.name,),
-        help=f"write `{written_name(step.outcome)}: {child.name}` in `{before.name}`, or remove"
-        f" {names} if {'their' if several else 'its'} work is not needed",
+        help=f"write `{notation.entry(before, step.outcome, child.name)}` in `{before.name}`, or"
+        f" remove {names} if {'their' if several else 'its'} work is not needed",
         related=(
             *other_place(
                 step.target_span,
@@ -191,7 +193,8 @@ def _copied_target(container: Linear, wanted: str) -> str | None:
     is_failure = fails(container, wanted) if wanted not in names else False
     fitting = [name for name in outcomes if fails(child, name) == is_failure]
     if len(fitting) == 1 and (is_failure or (others and all(others))):
-        return f"write `{fitting[0]}: {wanted}` in the transitions of `{child.name}`"
+        right = notation.entry(child, fitting[0], wanted)
+        return f"write `{right}` in the transitions of `{child.name}`"
     return (
         f"add a transition to `{wanted}`, for example in `{child.name}`, which leads"
         f" {both(outcomes)} to `{target}`"
@@ -406,7 +409,9 @@ def no_initial(context: Context) -> Iterator[Finding]:
                 span=span,
                 message=f"`{container.name}` has no states",
                 arguments=(container.name,),
-                help=f"write `states: [NAME: {{{_first_state(container)}}}]`",
+                help="add a state to it"
+                if notation.is_python(container)
+                else f"write `states: [NAME: {{{_first_state(container)}}}]`",
                 related=calls(container, span),
                 node=path,
             )

@@ -23,6 +23,7 @@ from smachac.analysis.control_flow import (
     way,
 )
 from smachac.analysis.error_recovery import undeclared_writes
+from smachac.checks import notation
 from smachac.checks.help_text import calls, own_name
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, PathStep, Severity
@@ -149,7 +150,7 @@ def _trapped(
     elif once:
         what = f"`{child.name}` never ends, so `{container.name}` never ends after entering it"
         help = f"make `{child.name}` end with an outcome"
-    if isinstance(container, StateMachine):
+    if isinstance(container, StateMachine) and not notation.is_python(container):
         help += f", or write `forever: true` if `{container.name}` must run without end"
     return Finding(
         span=child.span,
@@ -383,6 +384,11 @@ def _retries(
 
 def _limited(container: Linear, child: Node, step: Transition) -> str:
     """The help for retries without a limit: where the failure leads straight back, the field."""
+    if notation.is_python(child):
+        return (
+            "count the tries in a key of the userdata, and leave the loop after the last one; or"
+            f" lead `{step.outcome}` out of the loop"
+        )
     if step.target != child.name or step.origin != "written":
         return (
             f"count the tries in `userdata: {{tries: 0}}` of `{container.name}`: add to the loop a"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from smachac.analysis.control_flow import MOST_STEPS
 from smachac.analysis.stop_paths import Resumed
+from smachac.checks import notation
 from smachac.checks.help_text import other_place
 from smachac.diagnostics.diagnostic import PathStep, Related, ended, entered
 from smachac.ir.nodes import Container
@@ -32,7 +33,7 @@ def way_out(found: Resumed) -> str:
 
 def led_out(container: Container, outcome: str) -> str:
     """The help that leads an outcome of a stopped state out of its container."""
-    written = f"write `{outcome}: {PREEMPTED}`"
+    written = f"write `{notation.entry(container, outcome, PREEMPTED)}`"
     if PREEMPTED in outcome_names(container):
         return written
     return f"add `{PREEMPTED}` to the outcomes of `{container.name}`, and {written}"

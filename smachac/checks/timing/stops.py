@@ -13,6 +13,7 @@ from smachac.analysis.stop_paths import (
     stopped_space,
     task_successes,
 )
+from smachac.checks import notation
 from smachac.checks.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.checks.timing.stop_answers import answered_here, led_out, way_out, witness
@@ -212,9 +213,12 @@ def _other_ends(container: nodes.Iterator, name: str, end: str) -> str:
     """How an iterator ends differently after a stop and after the last item."""
     add = "" if PREEMPTED in outcome_names(container) else "add the outcome `preempted`, and "
     if name != container.exhausted_outcome:
-        return f"{add}write `{name}: preempted` in the `final_outcome_map`"
-    ends = f"{{{name}: preempted, exhausted: {end}}}"
-    return f"{add}write `exhausted_outcome: exhausted` and `final_outcome_map: {ends}`"
+        renaming = notation.entry(container, name, PREEMPTED)
+        return f"{add}write `{renaming}` in the `final_outcome_map`"
+    last = notation.name(container, "exhausted_outcome", "exhausted")
+    pairs = [(name, PREEMPTED), ("exhausted", end)]
+    ends = notation.mapping(container, "final_outcome_map", pairs)
+    return f"{add}write `{last}` and `{ends}`"
 
 
 @rule(

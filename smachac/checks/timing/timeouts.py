@@ -10,6 +10,7 @@ from smachac.analysis.context import Context
 from smachac.analysis.durations import Ends, ends_of, shortest_ends, time_limit, time_limit_span
 from smachac.analysis.possible_outcomes import Endings
 from smachac.analysis.stop_paths import branch_around, stoppable_branches
+from smachac.checks import notation
 from smachac.checks.help_text import calls, other_place, own_name
 from smachac.checks.rule import rule
 from smachac.checks.timing.iterator_stops import turned_renames, undeclared_stops
@@ -131,6 +132,8 @@ def _stop_help(leaf: Leaf, context: Context) -> str:
 
 def _time_limit(leaf: Leaf, answers: bool, limits: Collection[VariableType]) -> str:
     """The help for a wait without a limit."""
+    if notation.is_python(leaf):
+        return f"limit the time that the code of `{leaf.type}` waits"
     if not answers:
         kind = f"the interface and the code of `{leaf.type}`"
         return f"add the outcome `preempted` to {kind}, and write `timeout: 20s` at `{leaf.name}`"
@@ -359,14 +362,15 @@ def no_way_to_stop(context: Context) -> Iterator[Finding]:
         if not lost:
             continue
         name, counted_on = container.name, PREEMPTED in outcome_names(container)
-        renamed = ", ".join(f"{outcome}: {PREEMPTED}" for outcome in lost)
+        pairs = [(outcome, PREEMPTED) for outcome in lost]
+        renaming = notation.mapping(container, "final_outcome_map", pairs)
         first = "" if counted_on else f"add `{PREEMPTED}` to the outcomes of `{name}`, and "
         yield Finding(
             span=container.span,
             message=f"after a preempt request `{name}` can end with {listed(lost)}, which is not"
             " one of its outcomes",
             arguments=(name, *sorted(lost)),
-            help=f"{first}write `final_outcome_map: {{{renamed}}}`",
+            help=f"{first}write `{renaming}`",
             related=calls(container, container.span),
             severity=Severity.WARNING if counted_on else None,
             node=path,

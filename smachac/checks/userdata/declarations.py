@@ -23,6 +23,7 @@ from smachac.analysis.function_slots import function_reads
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import container_name
 from smachac.analysis.uses import place_of
+from smachac.checks import notation
 from smachac.checks.help_text import CALLED_HERE, calls, did_you_mean, other_place
 from smachac.checks.outcomes.condition_outcomes import meant_default, unknown_endings
 from smachac.checks.rule import rule
@@ -142,7 +143,7 @@ def _lost_result(scope: UserdataScope, child: Node, remap: Remap, meant: str) ->
         span=remap.to_span,
         message=f"`{remap.to}` is set, but nothing in {container_name(scope, remap.span)} reads it",
         arguments=(remap.to,),
-        help=f"did you mean `{meant}`? Write `{remap.key}: {meant}`",
+        help=f"did you mean `{meant}`? Write `{notation.entry(child, remap.key, meant)}`",
         effect=f"the result `{remap.key}` of `{child.name}` is lost: what reads `{meant}`"
         " works without it",
         related=calls(child, remap.span),
@@ -170,10 +171,8 @@ def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
     if len(found) != 1:
         return None
     (state, name), *_ = found
-    return (
-        f"`{state}` can read it as `{name}`: write `remapping: {{{name}: {key}}}` in `{state}`,"
-        f" or remove `{key}`"
-    )
+    pair = notation.mapping(container, "remapping", [(name, key)])
+    return f"`{state}` can read it as `{name}`: write `{pair}` in `{state}`, or remove `{key}`"
 
 
 def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ...]:

@@ -9,6 +9,7 @@ from itertools import groupby
 from smachac.analysis.context import Context
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Reader, container_name, reader_at
+from smachac.checks import notation
 from smachac.checks.help_text import calls, other_place
 from smachac.checks.type_words import placeholder
 from smachac.diagnostics.diagnostic import Finding
@@ -60,14 +61,15 @@ def together_finding(context: Context, lacking: tuple[Missing, ...]) -> Finding:
     keys = [each.key for each in lacking]
     first = readers[0]
     where = container_name(scope, first.span)
-    pairs = [f"{each.key}: {initial_value(context.types, reader, each)}"
+    pairs = [(each.key, initial_value(context.types, reader, each))
              for each, reader in zip(lacking, readers, strict=True)]  # fmt: skip
     others = [each for each in readers[1:] if each.span != first.span][:MOST_RELATED]
     return Finding(
         span=first.span,
         message=f"nothing in {where} sets {listed(keys)} before its states read them",
         arguments=tuple(keys),
-        help=f"give them initial values in {where}: `userdata: {{{', '.join(pairs)}}}`",
+        help=f"give them initial values in {where}:"
+        f" `{notation.initial_values(scope.container, pairs)}`",
         related=(
             *(place for each in others for place in other_place(each.span, f"{each.words} here")),
             *calls(first.node, first.span),

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from smachac.analysis.context import Context
 from smachac.analysis.liveness import DeadStore, dead_stores
 from smachac.analysis.uses import place_of
+from smachac.checks import notation
 from smachac.checks.help_text import calls, other_place
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Severity
@@ -90,14 +91,15 @@ def dead_store(context: Context) -> Iterator[Finding]:
 def _dead(context: Context, store: DeadStore) -> Finding:
     leaf, span = store.leaf, place_of(store.leaf, store.key)
     places = [context.spans[f"{store.path}/{name}"] for name in store.again[:MOST_PLACES]]
+    other = notation.mapping(leaf, "remapping", [(store.key.name, f"{store.name}_2")])
     related = [place for each in places for place in other_place(each, "it is set again here")]
     return Finding(
         span=span,
         message=f"`{leaf.name}` sets `{store.name}`, but {listed(store.again)} sets it again before"
         " a state reads it",
         arguments=(store.key.name, *sorted(store.again)),
-        help=f"write `remapping: {{{store.key.name}: {store.name}_2}}` at one of the two, for a key"
-        f" of its own, or add a state between them that reads `{store.name}`",
+        help=f"write `{other}` at one of the two, for a key of its own, or add a"
+        f" state between them that reads `{store.name}`",
         related=(*related, *calls(leaf, span)),
         node=f"{store.path}/{leaf.name}",
     )

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from smachac.analysis.context import Context
 from smachac.analysis.type_lattice import is_open, present
+from smachac.checks import notation
 from smachac.checks.classes.types_with_code import own_types, used_here
 from smachac.checks.classes.undeclared_accesses import lone_output
 from smachac.checks.help_text import other_place
@@ -193,7 +194,7 @@ def _unwritten(
             span=facts.execute,
             message=f"`execute` of `{leaf.type}` never sets its output key `{key}`",
             arguments=(leaf.type, key),
-            help=f"set `userdata.{key}`, or remove it from the interface `{leaf.type}`",
+            help=f"set `userdata.{key}`, or remove it from {notation.declared(leaf)}",
             related=used_here(leaf),
             node=path,
         )

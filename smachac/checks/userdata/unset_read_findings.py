@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from itertools import islice
 
 from smachac.analysis.def_use import written_on
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.type_inference import Types
 from smachac.analysis.type_lattice import is_open
 from smachac.analysis.unset_reads import Missing, Witness, container_name, reader_at
+from smachac.checks import notation
 from smachac.checks.edits import likely, listing, with_field, with_input, with_remapping
 from smachac.checks.help_text import added_remapping, calls, other_place
 from smachac.checks.userdata.candidate_keys import may_be, unread_output
@@ -51,7 +53,8 @@ def unset_read(
     searched in the whole container."""
     scope, reader, name = missing.scope, witness.reader, missing.scope.container.name
     why = f"which is unset on {'every path' if witness.always else 'some paths'}"
-    value = f"`userdata: {{{missing.key}: {initial_value(types, reader, missing)}}}`"
+    initial = (missing.key, initial_value(types, reader, missing))
+    value = f"`{notation.initial_values(scope.container, [initial])}`"
     where = "on every path" if witness.always else "on this path too,"
     help = (
         f"set `{missing.key}` {where} before `{reader.node.name}`, or give it an initial value in"
@@ -87,7 +90,8 @@ def unset_read(
     if _has_outer_value(flow, missing):
         help = f"{listing([scope.container], 'input_keys', missing.key)}, or {help}"
         repairs += likely(with_input(scope.container, missing.key), "take the key in")
-    for items in _unread_lists(scope) if missing.cause == "nowhere" and not fitting else ():
+    is_sugared = missing.cause == "nowhere" and not fitting and not notation.is_python(reader.node)
+    for items in _unread_lists(scope) if is_sugared else ():
         field = f"for_each: {{item: {missing.key}, in: {items}}}"
         help = f"write `{field}` in `{reader.node.name}`, or {help}"
         repairs += likely(with_field(reader.node.span, field), "run for each item")
@@ -167,7 +171,13 @@ def fitting_keys(types: Types, missing: Missing, node: Node, wanted: Type) -> li
 
 
 def _readers(missing: Missing, witness: Witness) -> Iterator[Related]:
-    """The state inside a container that reads the key, and the other readers of the unset key."""
+    """The place of the code that reads the key, the state inside a container that does, and the
+    other readers of the unset key."""
+    node = witness.reader.node
+    if isinstance(node, nodes.Leaf) and notation.is_python(node) and node.class_facts is not None:
+        reads = (word.span for word in node.class_facts.reads if word.text == witness.reader.key)
+        for span in islice(reads, 1):
+            yield from other_place(span, f"{notation.code_of(node)} reads it here")
     if witness.inner is not None:
         yield from other_place(witness.inner.span, f"{witness.inner.words} here")
     for vertex in witness.also[:MOST_RELATED]:

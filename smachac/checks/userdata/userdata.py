@@ -11,6 +11,7 @@ from smachac.analysis.definite_assignment import DataFlow, UserdataScope
 from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Searches, container_name, provided_keys, reader_at
+from smachac.checks import notation
 from smachac.checks.edits import likely, listing, with_input, with_output
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.ros.message_keys import remapped_fields
@@ -234,7 +235,7 @@ def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[
         if remap in turned:
             if remap is not turned[0]:
                 continue
-            right = ", ".join(f"{each.to}: {each.key}" for each in turned)
+            right = notation.entries(node, ((each.to, each.key) for each in turned))
             right = f"{{{right}}}" if len(turned) > 1 else right
             known = f"the key of the state comes first: write `{right}`"
         yield Finding(
@@ -261,7 +262,8 @@ def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
                 continue
             wanted = types.inputs.get((f"{scope.path}/{child.name}", remap.key), ANY)
             fitting = fitting_keys(types, missing, child, wanted)
-            choices = [f"{remap.key}: {each}" for each in fitting]
+            choices = [notation.entry(child, remap.key, each) for each in fitting]
+            initial = notation.initial_values(scope.container, [(key, "...")])
             help = f"write {either(choices)}, or " if choices else ""
             yield Finding(
                 span=remap.to_span,
@@ -269,7 +271,7 @@ def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
                 f" {container_name(scope, remap.span)} sets",
                 arguments=(remap.key, key),
                 help=help + f"set `{key}` before this state, or give it an initial value in"
-                f" `{scope.container.name}`: `userdata: {{{key}: ...}}`",
+                f" `{scope.container.name}`: `{initial}`",
                 effect=UNSET,
                 related=calls(child, remap.span),
                 node=f"{scope.path}/{child.name}",

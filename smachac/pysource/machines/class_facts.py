@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from pathlib import PurePath
 
 from smachac.diagnostics.source import Source
 from smachac.ir.class_facts import ClassFacts
 from smachac.pysource.class_reader import facts_of, facts_of_callback
+from smachac.pysource.machines.dead_code import Choice, choices, live_facts
 from smachac.pysource.machines.project import Repository
-from smachac.pysource.machines.values import Class, Function, ModuleValue
+from smachac.pysource.machines.values import Class, Function, Instance, ModuleValue, Value
 from smachac.pysource.modules import Module, module_of
 from smachac.pysource.user_code import UserCode
 
@@ -22,6 +24,7 @@ class ClassReader:
         self.library = UserCode(template=lambda file: None, code=self._code)
         self.modules: dict[str, Module] = {}
         self.facts: dict[int, tuple[Class, ClassFacts | None]] = {}
+        self.choices: dict[ast.ClassDef, tuple[Choice, ...]] = {}
 
     def of_callback(self, function: Function, *, bound: bool) -> ClassFacts | None:
         """The facts about a function that works as a state; `bound`: it is a method."""
@@ -42,6 +45,17 @@ class ClassReader:
             facts = facts_of(module, cls.node, self.library) if module is not None else None
             known = self.facts[id(cls.node)] = cls, facts
         return known[1]
+
+    def of_instance(self, instance: Instance, classes: Sequence[Value]) -> ClassFacts | None:
+        """The facts about the class of an instance, without its dead code. `classes` are the class
+        and its bases."""
+        cls = instance.cls
+        facts = self.of_class(cls) if isinstance(cls, Class) else None
+        if facts is None or not isinstance(cls, Class):
+            return None
+        if cls.node not in self.choices:
+            self.choices[cls.node] = choices(facts, classes)
+        return live_facts(facts, self.choices[cls.node], instance)
 
     def _module(self, value: ModuleValue) -> Module | None:
         if value.text is None:

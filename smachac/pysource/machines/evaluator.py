@@ -775,6 +775,7 @@ class Evaluator:
     def _dict(self, node: ast.Dict, frame: Frame) -> Value:
         pairs: dict[Any, tuple[Value, Value]] | None = {}
         repeated: list[Const] = []
+        written: set[object] = set()  # a key replaces that of a `**` dictionary on purpose
         for key, value in zip(node.keys, node.values, strict=True):
             found = self.value(value, frame)
             if key is None:
@@ -785,8 +786,9 @@ class Evaluator:
                 continue
             name = self.value(key, frame)
             if isinstance(name, Const) and pairs is not None:
-                if name.value in pairs and isinstance(pairs[name.value][0], Const):
+                if name.value in written:
                     repeated.append(name)
+                written.add(name.value)
                 pairs[name.value] = name, found
             else:
                 pairs = None
@@ -1033,6 +1035,9 @@ class Evaluator:
         sure = owner.text is not None and owner.is_loaded and not owner.dynamic
         if span is None or not sure or self.tries or name.startswith("__"):
             return
+        inner = self.project.load(self, f"{owner.package}.{name}".strip("."), owner)
+        if owner.file.endswith("__init__.py") and not isinstance(inner, Unknown):
+            return  # any import of a module binds its name in its package
         if "__getattr__" not in owner.slots and "globals" not in owner.text.source.text:  # type: ignore[union-attr]
             place = Span(span.source, span.end - len(name), span.end)
             self.faults.append(UseFault("missing member", place, (name, owner.file)))

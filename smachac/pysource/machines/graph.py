@@ -71,6 +71,7 @@ class FactReader(Protocol):
     """Reads what the code of a state does."""
 
     def of_class(self, cls: Class) -> ClassFacts | None: ...
+    def of_instance(self, instance: Instance, classes: Sequence[Value]) -> ClassFacts | None: ...
     def of_callback(self, function: Function, *, bound: bool) -> ClassFacts | None: ...
 
 
@@ -117,7 +118,8 @@ class _Builder:
         node = self.container(container, name, span, 0)
         if not isinstance(node, StateMachine):
             node = _wrapped(node, span)
-        exposed = "$exposed" in container.slots or not self.roots.closed
+        closed = self.roots.closed or "$executed" in container.slots
+        exposed = "$exposed" in container.slots or not closed
         if exposed:
             node = _with_inputs(node)
         machine = Machine(
@@ -207,7 +209,8 @@ class _Builder:
         join = self._join(made.slots.get("$child_termination_cb"))
         if unknown or builder.incomplete:
             outcomes: tuple[Outcome, ...] = common["outcomes"]
-            extra = Leaf(name=ELSEWHERE, type=ELSEWHERE, open=True, span=span, outcomes=outcomes)
+            extra = Leaf(name=ELSEWHERE, type=ELSEWHERE, open=True, synthetic=True, span=span,
+                         outcomes=outcomes)  # fmt: skip
             built = (*(child for child in built if child.name != ELSEWHERE), extra)
             rules += [
                 OutcomeRule(outcome=outcome.name, span=span,
@@ -265,7 +268,7 @@ class _Builder:
             reason = "its class is not known"
             if isinstance(value, Unknown) and value.reason:
                 reason = f"package {value.reason.partition('.')[0]} not found"
-            return self.open_leaf(name, span, added, reason)
+            return self.open_leaf(name, span, added, reason, self._faults(value))
         outcomes = self.names(value.slots.get("$outcomes"), span)
         inputs = sequence(value.slots.get("$inputs"))
         outputs = sequence(value.slots.get("$outputs"))
@@ -277,7 +280,7 @@ class _Builder:
         required = sequence(value.slots.get("$required")) or ()
         names = {text for item in required if (text := _text(item)) is not None}
         if facts is not None:
-            names |= {word.text for word in facts.reads}
+            names |= _read_first(facts)
         in_keys = tuple(
             key if key.name in names else _optional(key)
             for key in self.keys(value.slots.get("$inputs"), span, required=True)
@@ -292,7 +295,7 @@ class _Builder:
     def _facts(self, value: Instance) -> ClassFacts | None:
         """What the code of a state does; None if it is not known."""
         if isinstance(value.cls, Class):
-            return self.reader.of_class(value.cls)
+            return self.reader.of_instance(value, self.evaluator.classes(value.cls))
         callback = value.slots.get("$callback")
         bound = isinstance(callback, Method)
         function = callback.function if isinstance(callback, Method) else callback
@@ -300,13 +303,24 @@ class _Builder:
             return self.reader.of_callback(function, bound=bound)
         return None
 
-    def open_leaf(self, name: str, span: Span, added: Added, reason: str) -> Leaf:
+    def _faults(self, value: Value) -> ClassFacts | None:
+        """The faults of a class whose constructor does not set the outcomes of the state."""
+        if not isinstance(value, Instance) or value.opaque or not isinstance(value.cls, Class):
+            return None
+        facts = self.reader.of_class(value.cls)
+        return ClassFacts(name=facts.name, faults=facts.faults) if facts is not None else None
+
+    def open_leaf(
+        self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
+    ) -> Leaf:
         """A state of an unknown type: its outcomes are those of its transitions."""
         self.unknown.append((span, reason))
         items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
         names = [str(key) for key in items] if isinstance(items, Mapping) else []
         outcomes = tuple(Outcome(name=text, span=span) for text in names)
-        return Leaf(name=name, type="?", open=True, outcomes=outcomes, span=span)
+        type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
+        return Leaf(name=name, type=type_, open=True, outcomes=outcomes, span=span,
+                    class_facts=facts)  # fmt: skip
 
     def _type(
         self, value: Instance, outcomes: Sequence[tuple[str, Span]], inputs: Sequence[Key],
@@ -321,6 +335,7 @@ class _Builder:
             tuple(name for name, _ in outcomes),
             tuple(key.name for key in inputs),
             tuple(key.name for key in outputs),
+            facts and (facts.reads, facts.writes, facts.returns),
         )
         known = self.type_names.get(which)
         if known is not None:
@@ -477,7 +492,7 @@ class _Children:
         span: Span = added.span
         self.choices.append(
             Leaf(
-                name=label, type=ELSEWHERE, span=span,
+                name=label, type=ELSEWHERE, synthetic=True, span=span,
                 outcomes=tuple(Outcome(name=name, span=span) for name in targets),
                 transitions=tuple(
                     Transition(outcome=name, target=name, span=span,
@@ -509,7 +524,7 @@ class _Children:
         targets += [name for name, _ in self.outcomes or self.targets_outside()
                     if name not in targets]  # fmt: skip
         return Leaf(
-            name=ELSEWHERE, type=ELSEWHERE, open=True, span=span,
+            name=ELSEWHERE, type=ELSEWHERE, open=True, synthetic=True, span=span,
             outcomes=tuple(Outcome(name=name, span=span) for name in targets),
             transitions=tuple(
                 Transition(outcome=name, target=name, span=span, target_span=span)
@@ -598,6 +613,15 @@ def _without_targets(node: Node, known: Collection[str]) -> Node:
 
 def _connected(node: Node, transitions: tuple[Transition, ...], remaps: tuple[Remap, ...]) -> Node:
     return replace(node, transitions=transitions, remaps=remaps)
+
+
+def _read_first(facts: ClassFacts) -> set[str]:
+    """The keys that code reads in no line after one that sets them."""
+    set_in: dict[str, int] = {}
+    for word in facts.writes:
+        set_in[word.text] = min(word.span.line, set_in.get(word.text, word.span.line))
+    return {word.text for word in facts.reads
+            if word.span.line <= set_in.get(word.text, word.span.line)}  # fmt: skip
 
 
 def _is_none(value: Value | None) -> bool:
