@@ -3,10 +3,18 @@ collections."""
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.machines.operations import (
+    LONGEST_TEXT,
+    MOST_BITS,
+    MOST_ITEMS,
+    bounded,
+    has_width,
+)
 from smachac.pysource.machines.values import (
     NONE,
     UNKNOWN,
@@ -31,9 +39,9 @@ from smachac.pysource.machines.values import (
     truth,
 )
 
-_LONGEST, _MOST = 100_000, 10_000
-
-_PURE = ("rospy", "rclpy", "logging", "time", "tf", "tf2_ros", "math", "os", "sys", "json", "re")
+_PURE = ("rospy", "rclpy", "logging", "time", "tf", "tf2_ros", "math", "os", "sys", "json", "re",
+         "threading", "signal", "actionlib", "smach_viewer", "roslaunch", "argparse", "random",
+         "copy", "numpy", "typing", "datetime", "pprint")  # fmt: skip
 """Packages whose functions do not change lists and dictionaries that they get."""
 
 
@@ -54,7 +62,7 @@ def _range(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> V
         found = range(*bounds)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return UNKNOWN
-    return UNKNOWN if len(found) > _MOST else TupleValue(tuple(Const(n) for n in found))
+    return UNKNOWN if len(found) > MOST_ITEMS else TupleValue(tuple(Const(n) for n in found))
 
 
 def _made(kind: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
@@ -128,10 +136,12 @@ def _text(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Va
 def _number(make: Callable[[Any], Any]) -> Callable[[Interpreter, Arguments, Span | None], Value]:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         value = arguments.get(0, "x")
-        if not isinstance(value, Const) or len(str(value.value)) > 300:
+        if not isinstance(value, Const) or len(arguments.positional) > 1 or arguments.named:
+            return UNKNOWN
+        if isinstance(value.value, str) and len(value.value) > MOST_BITS // 4:
             return UNKNOWN
         try:
-            return Const(make(value.value), span)
+            return bounded(make(value.value), span)
         except (TypeError, ValueError, OverflowError):
             return UNKNOWN
 
@@ -161,8 +171,6 @@ def _reversed(evaluator: Interpreter, arguments: Arguments, span: Span | None) -
 
 
 def _getattr(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    import ast
-
     owner, name = arguments.get(0, "object"), arguments.get(1, "name")
     if owner is None or not isinstance(name, Const) or not isinstance(name.value, str):
         return UNKNOWN
@@ -245,6 +253,8 @@ BUILTINS: Mapping[str, Value] = {
         "repr": _unknown, "format": _unknown, "hasattr": _unknown, "any": _unknown, "all": _unknown,
         "id": _unknown, "hash": _unknown, "type": _unknown, "open": _unknown, "next": _unknown,
         "callable": _unknown, "issubclass": _unknown, "round": _unknown, "vars": _unknown,
+        "filter": _unknown, "chr": _unknown, "ord": _unknown, "dir": _unknown, "divmod": _unknown,
+        "pow": _unknown, "eval": _unknown, "globals": _unknown, "locals": _unknown,
         "exit": _nothing, "quit": _nothing,
     }.items()},
     **{name: LibraryClass(f"builtins.{name}") for name in (
@@ -273,37 +283,9 @@ MAKERS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Value]] = {
 
 
 _TEXT_METHODS = frozenset(
-    [
-        "upper",
-        "lower",
-        "title",
-        "capitalize",
-        "strip",
-        "lstrip",
-        "rstrip",
-        "replace",
-        "split",
-        "rsplit",
-        "partition",
-        "rpartition",
-        "startswith",
-        "endswith",
-        "join",
-        "format",
-        "removeprefix",
-        "removesuffix",
-        "swapcase",
-        "zfill",
-        "isdigit",
-        "isupper",
-        "islower",
-        "splitlines",
-        "count",
-        "find",
-        "index",
-        "casefold",
-        "isalpha",
-    ]
+    "upper lower title capitalize strip lstrip rstrip replace split rsplit partition rpartition"
+    " startswith endswith join format removeprefix removesuffix swapcase zfill isdigit isupper"
+    " islower splitlines count find index casefold isalpha".split()
 )
 
 
@@ -350,27 +332,25 @@ def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], V
         try:
             given = [_plain(value) for value in arguments.positional[1:]]
             named = {key: _plain(value) for key, value in arguments.named}
-            if arguments.open or not isinstance(me, Const) or _is_long(me.value, given, named):
+            text = me.value if isinstance(me, Const) else None
+            if arguments.open or not isinstance(text, str) or _is_long([text, *given, *named.values()]):
                 return UNKNOWN
-            found = getattr(str(me.value), name)(*given, **named)
+            if name == "format" and has_width(text):
+                return UNKNOWN
+            found = getattr(text, name)(*given, **named)
         except (ValueError, TypeError, LookupError, AttributeError):
             return UNKNOWN
-        if isinstance(found, str) and len(found) > _LONGEST:
+        if isinstance(found, str) and len(found) > LONGEST_TEXT:
             return UNKNOWN
         return _as_value(found, span or me.span)
 
     return run
 
 
-def _is_long(text: object, given: list[Any], named: Mapping[str, Any]) -> bool:
-    """Whether the result of a method can be a long text: `format` can have a width."""
-    import re
-
-    texts = [text, *given, *named.values()]
-    sizes = sum(len(str(part)) for part in texts)
-    wide = re.search(r"\{[^}]*:[^}]*\d{3}", str(text))
-    numbers = any(isinstance(part, int) and abs(part) > 1_000 for part in given)
-    return sizes > 10_000 or bool(wide) or numbers
+def _is_long(parts: list[Any]) -> bool:
+    """Whether the result of a method with these texts, lists and numbers can be long."""
+    numbers = any(isinstance(part, int) and abs(part) > 1_000 for part in parts)
+    return numbers or sum(len(str(part)) for part in parts) > MOST_ITEMS
 
 
 def _changed(run: Callable[[list[Value], Arguments], Any]) -> Any:
@@ -389,7 +369,7 @@ def _changed(run: Callable[[list[Value], Arguments], Any]) -> Any:
         except (ValueError, IndexError, TypeError):
             evaluator.heap.set(me.slots, "items", UNKNOWN)
             return UNKNOWN
-        evaluator.heap.set(me.slots, "items", tuple(copy) if len(copy) <= _MOST else UNKNOWN)
+        evaluator.heap.set(me.slots, "items", tuple(copy) if len(copy) <= MOST_ITEMS else UNKNOWN)
         return found if found is not None else NONE
 
     return method

@@ -4,19 +4,22 @@ states after the branches of an unknown condition joined."""
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from smachac.pysource.machines.values import (
     UNKNOWN,
     Const,
     OneOf,
+    OwnSlots,
     Slots,
     Value,
     one_of,
 )
 from smachac.records import dataclass
+
+T = TypeVar("T")
 
 ABSENT = object()
 """In place of a slot that does not exist."""
@@ -51,22 +54,64 @@ class Children:
 
 
 class Heap:
-    """The log of all writes: the owner of each slot, its key and its value before."""
+    """The log of all writes: the owner of each slot, its key and its value before. `work` is the
+    size of what was written, in steps of the evaluator: large collections are copied."""
 
     def __init__(self) -> None:
         self.log: list[tuple[Slots, Any, Any]] = []
+        self.work = 0
+        self._logged: dict[tuple[int, Any], int] = {}
+        self._mark = 0
+        self._watches: list[Watch] = []
 
     def set(self, slots: Slots, key: Any, value: Any) -> None:
-        self.log.append((slots, key, slots.get(key, ABSENT)))
+        before = slots.get(key, ABSENT)
+        self._note(slots, key, before)
+        for watch in self._watches:
+            watch.see(slots, key, before, value)
+        if isinstance(value, tuple | Mapping):
+            self.work += len(value) // 64
         slots[key] = value
 
     def delete(self, slots: Slots, key: Any) -> None:
         if key in slots:
-            self.log.append((slots, key, slots[key]))
+            self._note(slots, key, slots[key])
             del slots[key]
 
+    def _note(self, slots: Slots, key: Any, before: Any) -> None:
+        """Logs a write, but only the first one since the last mark."""
+        which = id(slots), key
+        at = self._logged.get(which, -1)
+        if self._mark <= at < len(self.log):
+            owner, name, _ = self.log[at]
+            if owner is slots and name == key:
+                return
+        self._logged[which] = len(self.log)
+        self.log.append((slots, key, before))
+
+    def watch(self, run: Callable[[], T]) -> tuple[T, Changes]:
+        """Runs a part of code that can end anywhere: its result, and of each slot of an object that
+        was there before all values that it has had."""
+        watch = Watch()
+        self._watches.append(watch)
+        try:
+            found = run()
+        finally:
+            self._watches.remove(watch)
+        return found, watch.changes
+
+    def apart(self, run: Callable[[], T]) -> T:
+        """Runs code whose writes stay, whatever is undone later: modules are loaded once."""
+        kept = self.log, self._logged, self._mark, self._watches
+        self.log, self._logged, self._mark, self._watches = [], {}, 0, []
+        try:
+            return run()
+        finally:
+            self.log, self._logged, self._mark, self._watches = kept
+
     def mark(self) -> int:
-        return len(self.log)
+        self._mark = len(self.log)
+        return self._mark
 
     def changes(self, mark: int) -> Changes:
         """The slots that were written since a mark, with their present values."""
@@ -84,6 +129,7 @@ class Heap:
             else:
                 slots[key] = before
         del self.log[mark:]
+        self._mark = mark
         return found
 
     def apply(self, changes: Changes) -> None:
@@ -105,7 +151,27 @@ class Heap:
         for which, (slots, key) in written.items():
             now = slots.get(key, ABSENT)
             values = [state[which][2] if which in state else now for state in states]
-            self.set(slots, key, joined(values))
+            self.work += sum(len(v.added) for v in values if isinstance(v, Children)) // 16
+            whole = joined(values)
+            if whole is ABSENT:
+                self.delete(slots, key)
+            else:
+                self.set(slots, key, whole)
+
+
+class Watch:
+    """The values that slots get in a part of code, those before it included."""
+
+    def __init__(self) -> None:
+        self.start = OwnSlots({}).born
+        self.changes: Changes = {}
+
+    def see(self, slots: Slots, key: Any, before: Any, value: Any) -> None:
+        if isinstance(slots, OwnSlots) and slots.born > self.start:
+            return
+        which = id(slots), key
+        known = self.changes[which][2] if which in self.changes else before
+        self.changes[which] = slots, key, joined([known, value])
 
 
 def joined(values: Iterable[Any]) -> Any:
@@ -115,10 +181,10 @@ def joined(values: Iterable[Any]) -> Any:
     first = values[0]
     if all(value is first or value == first for value in values[1:]):
         return first
-    if any(isinstance(value, Children) for value in values):
-        return _joined_children([v if isinstance(v, Children) else Children() for v in values])
-    if ABSENT in values:  # a name is used only where it has a value
+    if any(value is ABSENT for value in values):  # a name is used only where it has a value
         return joined([value for value in values if value is not ABSENT])
+    if all(isinstance(value, Children) for value in values):
+        return _joined_children(values)
     if all(isinstance(value, tuple) for value in values):
         return OneOf(tuple(values)) if len(values) <= 8 else UNKNOWN  # the items of a list
     if all(isinstance(value, Mapping) for value in values):

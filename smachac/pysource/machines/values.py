@@ -7,6 +7,7 @@ only `heap.Heap` writes, so that the two branches of an unknown condition can be
 from __future__ import annotations
 
 import ast
+import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -21,6 +22,19 @@ MOST_ALTERNATIVES = 8
 
 Slots: TypeAlias = "dict[Any, Any]"
 """The contents of an object by name: attributes, items, or names of a module."""
+
+_BIRTHS = itertools.count()
+
+
+class OwnSlots(dict[Any, Any]):
+    """The slots of an object that the code makes; of two objects, the later one has the larger
+    `born`."""
+
+    __slots__ = ("born",)
+
+    def __init__(self, contents: Mapping[Any, Any]) -> None:
+        super().__init__(contents)
+        self.born = next(_BIRTHS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +82,9 @@ class ListValue:
     span: Span | None = None
     kind: str = "list"
 
+    def __post_init__(self) -> None:
+        self.slots = OwnSlots(self.slots)
+
     @property
     def items(self) -> tuple[Value, ...] | Unknown | OneOf:
         found: tuple[Value, ...] | Unknown | OneOf = self.slots["items"]
@@ -82,6 +99,9 @@ class DictValue:
     slots: Slots
     span: Span | None = None
     repeated: tuple[Const, ...] = ()
+
+    def __post_init__(self) -> None:
+        self.slots = OwnSlots(self.slots)
 
     @property
     def items(self) -> Mapping[Any, tuple[Value, Value]] | Unknown | OneOf:
@@ -99,7 +119,8 @@ class Frame:
     function: Function | None = None
     me: Value | None = None
     global_names: frozenset[str] = frozenset()
-    is_class: bool = False
+    outer_names: frozenset[str] = frozenset()
+    kind: Literal["", "class", "comprehension"] = ""
 
 
 @dataclass(eq=False, slots=True)
@@ -112,6 +133,7 @@ class Function:
     keyword_defaults: Mapping[str, Value]
     owner: Class | None = None
     kind: str = ""
+    setter: Function | None = None
     interface: Interface | None = None
 
     @property
@@ -130,11 +152,12 @@ class Interface:
 
 @dataclass(eq=False, slots=True)
 class Class:
-    """A class of the project; `slots` are the names in it."""
+    """A class of the project; `slots` are the names in it, `order` the classes in which Python
+    searches a name, without this one. A base class that is not known is UNKNOWN there."""
 
     node: ast.ClassDef
     frame: Frame
-    bases: tuple[Value, ...]
+    order: tuple[Value, ...]
     slots: Slots
     is_dataclass: bool = False
 
@@ -162,6 +185,9 @@ class Instance:
     slots: Slots
     span: Span | None = None
     opaque: bool = False
+
+    def __post_init__(self) -> None:
+        self.slots = OwnSlots(self.slots)
 
 
 @dataclass(frozen=True, slots=True)
