@@ -584,9 +584,6 @@ class Evaluator:
             return
         if isinstance(owner.cls, Class) and "__setattr__" in owner.cls.slots:
             value = UNKNOWN
-        if name not in owner.slots and (self.unsure or self.tries):
-            if not isinstance(of_class, Unknown):  # else the attribute of the class counts
-                value = one_of([value, of_class])
         self.heap.set(owner.slots, name, value)
 
     def _set_item(self, owner: Value, index: Value, value: Value) -> None:

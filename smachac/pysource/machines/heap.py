@@ -151,6 +151,7 @@ class Heap:
         for which, (slots, key) in written.items():
             now = slots.get(key, ABSENT)
             values = [state[which][2] if which in state else now for state in states]
+            values = [_present(slots, key, value) for value in values]
             self.work += sum(len(v.added) for v in values if isinstance(v, Children)) // 16
             whole = joined(values)
             if whole is ABSENT:
@@ -171,7 +172,15 @@ class Watch:
             return
         which = id(slots), key
         known = self.changes[which][2] if which in self.changes else before
+        known = _present(slots, key, known)
         self.changes[which] = slots, key, joined([known, value])
+
+
+def _present(slots: Slots, key: Any, value: Any) -> Any:
+    """A value; for an attribute that an object lacks, that of its class."""
+    if value is ABSENT and isinstance(slots, OwnSlots):
+        return slots.inherited(key, ABSENT)
+    return value
 
 
 def joined(values: Iterable[Any]) -> Any:

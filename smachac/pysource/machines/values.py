@@ -28,13 +28,23 @@ _BIRTHS = itertools.count()
 
 class OwnSlots(dict[Any, Any]):
     """The slots of an object that the code makes; of two objects, the later one has the larger
-    `born`."""
+    `born`. `cls` is the class whose attributes count where the object has none."""
 
-    __slots__ = ("born",)
+    __slots__ = ("born", "cls")
 
-    def __init__(self, contents: Mapping[Any, Any]) -> None:
+    def __init__(self, contents: Mapping[Any, Any], cls: Class | None = None) -> None:
         super().__init__(contents)
         self.born = next(_BIRTHS)
+        self.cls = cls
+
+    def inherited(self, key: Any, default: Any) -> Any:
+        """The attribute of the class; a method is not known, as it would have to be bound."""
+        for cls in (self.cls, *self.cls.order) if self.cls is not None else ():
+            if isinstance(cls, Unknown):
+                return UNKNOWN
+            if isinstance(cls, Class) and key in cls.slots:
+                return UNKNOWN if isinstance(cls.slots[key], Function) else cls.slots[key]
+        return default
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -187,7 +197,7 @@ class Instance:
     opaque: bool = False
 
     def __post_init__(self) -> None:
-        self.slots = OwnSlots(self.slots)
+        self.slots = OwnSlots(self.slots, self.cls if isinstance(self.cls, Class) else None)
 
 
 @dataclass(frozen=True, slots=True)
