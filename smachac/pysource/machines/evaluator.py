@@ -186,6 +186,7 @@ class Evaluator:
         self.regions.clear()
         self.calls.clear()
         self.unsure = self.tries = 0
+        self.heap.reset()
 
     def load(self, body: Sequence[ast.stmt], frame: Frame) -> bool:
         """Evaluates a module that another one imports; whether it ends with an error. What it
@@ -200,6 +201,7 @@ class Evaluator:
     def begin(self) -> None:
         """Begins the evaluation of a file, with all steps left. What the code of the one before
         has changed in modules that both import is undone."""
+        self.heap.reset()
         self.heap.undo(0)
         self.made.clear()
         self.faults.clear()
@@ -228,8 +230,9 @@ class Evaluator:
             else:
                 states.append(self.heap.undo(mark))
         self.unsure -= 1
+        self.heap.join(states)
+        self.heap.release(mark)
         if states:
-            self.heap.join(states)
             return None
         return ("raise", NONE) if last is None or last[0] == "raise" else _left(last)
 
@@ -256,6 +259,7 @@ class Evaluator:
         kinds = {"call": "return", "loop": "break", "turn": "continue"}
         own = end is not None and end[0] == kinds[kind]
         if not region.left:
+            self.heap.release(region.mark)
             return end
         values = [value for value, _ in region.left]
         states = [state for _, state in region.left]
@@ -267,6 +271,7 @@ class Evaluator:
             states.append(now)
             values.append(end[1] if end is not None else NONE)
         self.heap.join(states)
+        self.heap.release(region.mark)
         return ("return", one_of(values)) if kind == "call" else None
 
     def _for(
@@ -367,6 +372,7 @@ class Evaluator:
         run()
         self.unsure -= 1
         changed = self.heap.undo(mark)
+        self.heap.release(mark)
         del self.made[made:], self.faults[faults:]
         self.orphans, self.opened[:] = orphans, opened
         for region, count in zip(self.regions, left, strict=True):
@@ -444,8 +450,9 @@ class Evaluator:
                 end = left if end is None or end[0] == "raise" else end
         self.unsure -= 1
         self.heap.undo(mark)
+        self.heap.join(states)
+        self.heap.release(mark)
         if states:
-            self.heap.join(states)
             return None
         return end if end is None or end[0] == "raise" else _left(end)
 
@@ -1265,13 +1272,7 @@ class Evaluator:
             case Method(function=inner, me=me):
                 return self.call(inner, arguments.with_first(me), node, frame)
             case Partial(function=inner, arguments=before):
-                whole = Arguments(
-                    (*before.positional, *arguments.positional),
-                    (*(p for p in before.named if p[0] not in dict(arguments.named)),
-                     *arguments.named),
-                    before.open or arguments.open,
-                )  # fmt: skip
-                return self.call(inner, whole, node, frame)
+                return self.call(inner, before.followed_by(arguments), node, frame)
             case Function():
                 return self.run(function, arguments)
             case Class() | LibraryClass():
@@ -1282,6 +1283,13 @@ class Evaluator:
                     return self.call(inner, arguments, node, frame)
         self._escape(arguments, function)
         return function if isinstance(function, Unknown) and function.reason else UNKNOWN
+
+    def partial(self, function: Value, arguments: Arguments) -> Value:
+        """`functools.partial`; that of another one is one with the arguments of both."""
+        if isinstance(function, Partial):
+            function, arguments = function.function, function.arguments.followed_by(arguments)
+        self.steps += len(arguments.positional) // 4
+        return Partial(function, arguments)
 
     def _escape(self, arguments: Arguments, function: Value) -> None:
         """Values that unknown code gets can be changed by it."""
@@ -1306,7 +1314,7 @@ class Evaluator:
             case Const(value=str() as text):
                 self.steps += len(text) // 256
             case TupleValue(items=items):
-                self.steps += len(items) // 16
+                self.steps += len(items) // 4
             case ListValue() | DictValue():
                 contents = value.items
                 self.steps += len(contents) // 4 if isinstance(contents, tuple | Mapping) else 0

@@ -63,7 +63,7 @@ _DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef
 
 _SEVERAL = LibraryClass("smach.State")
 
-MOST_LEVELS, MOST_NODES = 60, 20_000
+MOST_LEVELS, MOST_NODES = 60, 10_000
 """The deepest nesting of containers, and the most states of a machine: a container can be added at
 several places, and each of them is a state."""
 

@@ -60,8 +60,8 @@ class Heap:
     def __init__(self) -> None:
         self.log: list[tuple[Slots, Any, Any]] = []
         self.work = 0
-        self._logged: dict[tuple[int, Any], int] = {}
-        self._mark = 0
+        self._logged: dict[tuple[int, Any], list[int]] = {}
+        self._marks = [0]
         self._watches: list[Watch] = []
 
     def set(self, slots: Slots, key: Any, value: Any) -> None:
@@ -80,14 +80,15 @@ class Heap:
 
     def _note(self, slots: Slots, key: Any, before: Any) -> None:
         """Logs a write, but only the first one since the last mark."""
-        which = id(slots), key
-        at = self._logged.get(which, -1)
-        if self._mark <= at < len(self.log):
-            owner, name, _ = self.log[at]
-            if owner is slots and name == key:
-                return
-        self._logged[which] = len(self.log)
-        self.log.append((slots, key, before))
+        places = self._logged.setdefault((id(slots), key), [])
+        while places and not self._is_at(places[-1], slots, key):
+            places.pop()
+        if not places or places[-1] < self._marks[-1]:
+            places.append(len(self.log))
+            self.log.append((slots, key, before))
+
+    def _is_at(self, at: int, slots: Slots, key: Any) -> bool:
+        return at < len(self.log) and self.log[at][0] is slots and self.log[at][1] == key
 
     def watch(self, run: Callable[[], T]) -> tuple[T, Changes]:
         """Runs a part of code that can end anywhere: its result, and of each slot of an object that
@@ -102,16 +103,31 @@ class Heap:
 
     def apart(self, run: Callable[[], T]) -> T:
         """Runs code whose writes stay, whatever is undone later: modules are loaded once."""
-        kept = self.log, self._logged, self._mark, self._watches
-        self.log, self._logged, self._mark, self._watches = [], {}, 0, []
+        kept = self.log, self._logged, self._marks, self._watches
+        self.log, self._logged, self._marks, self._watches = [], {}, [0], []
         try:
             return run()
         finally:
-            self.log, self._logged, self._mark, self._watches = kept
+            self.log, self._logged, self._marks, self._watches = kept
 
     def mark(self) -> int:
-        self._mark = len(self.log)
-        return self._mark
+        """A place in the log to which writes can be undone, until it is released."""
+        self._marks.append(len(self.log))
+        return len(self.log)
+
+    def release(self, mark: int) -> None:
+        """Gives up the last mark: of each slot, the log keeps the first write since the mark
+        before it."""
+        self._marks.pop()
+        since = self.log[mark:]
+        del self.log[mark:]
+        for slots, key, before in since:
+            self._note(slots, key, before)
+
+    def reset(self) -> None:
+        """Gives up all marks."""
+        self._marks[1:] = []
+        self._watches.clear()
 
     def changes(self, mark: int) -> Changes:
         """The slots that were written since a mark, with their present values."""
@@ -129,7 +145,6 @@ class Heap:
             else:
                 slots[key] = before
         del self.log[mark:]
-        self._mark = mark
         return found
 
     def apply(self, changes: Changes) -> None:

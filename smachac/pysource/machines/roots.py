@@ -90,6 +90,7 @@ def _built(
         if evaluator.orphans == orphans:
             yield read(_roots(evaluator, before, file, closed=False, complete=complete))
         evaluator.heap.undo(mark)
+        evaluator.heap.release(mark)
         del evaluator.made[before:]
 
 

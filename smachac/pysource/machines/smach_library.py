@@ -449,7 +449,8 @@ def _cb_interface(evaluator: Interpreter, arguments: Arguments, span: Span | Non
 def _partial(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     if not arguments.positional:
         return UNKNOWN
-    return Partial(arguments.positional[0], arguments.without_first())
+    function, more = arguments.positional[0], arguments.without_first()
+    return evaluator.partial(function, more)
 
 
 def _copy(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:

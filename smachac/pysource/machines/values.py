@@ -266,6 +266,14 @@ class Arguments:
     def without_first(self) -> Arguments:
         return Arguments(self.positional[1:], self.named, self.open)
 
+    def followed_by(self, more: Arguments) -> Arguments:
+        """These arguments and others, whose named ones replace those of the same name."""
+        named = {**dict(self.named), **dict(more.named)}
+        positional = () if self.open else more.positional
+        return Arguments(
+            (*self.positional, *positional), tuple(named.items()), self.open or more.open
+        )
+
     def with_first(self, value: Value) -> Arguments:
         return Arguments((value, *self.positional), self.named, self.open)
 
@@ -289,6 +297,7 @@ class Interpreter(Protocol):
     def update(self, owner: DictValue, value: Value) -> None: ...
     def new_list(self, items: Sequence[Value], kind: str = "list") -> ListValue: ...
     def classes(self, cls: Value) -> list[Value]: ...
+    def partial(self, function: Value, arguments: Arguments) -> Value: ...
 
 
 class Heap(Protocol):
