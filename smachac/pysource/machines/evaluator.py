@@ -13,7 +13,7 @@ from typing import Any, Literal, Protocol
 
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.builtins import BUILTINS, attribute_of_value, is_pure
-from smachac.pysource.machines.heap import Changes, Children, Heap
+from smachac.pysource.machines.heap import ABSENT, Changes, Children, Heap, present
 from smachac.pysource.machines.operations import (
     LONGEST_TEXT,
     MOST_BITS,
@@ -220,9 +220,11 @@ class Evaluator:
         mark = self.heap.mark()
         states: list[Changes] = []
         last: Completion | None = None
+        opened = [*self.opened]
         self.unsure += 1
         for branch in branches:
             end = branch()
+            self.opened[:] = opened
             if end is not None:
                 self._leave(end)
                 last = end if last is None or last[0] == "raise" else last
@@ -355,8 +357,9 @@ class Evaluator:
             changed = self._changes_of(some)
             new = False
             for slots, key, value in changed.values():
-                if key in slots and not _grows(slots[key]) and not _grows(value):
-                    new = new or slots[key] is not UNKNOWN
+                now = present(slots, key, slots.get(key, ABSENT))
+                if now is not ABSENT and not _grows(now) and not _grows(value):
+                    new = new or now is not UNKNOWN
                     self.heap.set(slots, key, UNKNOWN)
             if not new:
                 break
@@ -1335,14 +1338,12 @@ class Evaluator:
         me = arguments.positional[0] if arguments.positional else None
         frame = Frame(slots, function.frame.module, function.frame, function, me)
         self.calls.append(function)
-        opened = [*self.opened]
         try:
             if isinstance(node, ast.Lambda):
                 return self.value(node.body, frame)
             end = self._region("call", lambda: self.block(node.body, frame))
         finally:
             self.calls.pop()
-        self.opened[:] = opened
         if end is None:
             return NONE
         return end[1] if end[0] == "return" and end[1] is not LEFT else UNKNOWN

@@ -166,7 +166,7 @@ class Heap:
         for which, (slots, key) in written.items():
             now = slots.get(key, ABSENT)
             values = [state[which][2] if which in state else now for state in states]
-            values = [_present(slots, key, value) for value in values]
+            values = [present(slots, key, value) for value in values]
             self.work += sum(len(v.added) for v in values if isinstance(v, Children)) // 16
             whole = joined(values)
             if whole is ABSENT:
@@ -187,11 +187,11 @@ class Watch:
             return
         which = id(slots), key
         known = self.changes[which][2] if which in self.changes else before
-        known = _present(slots, key, known)
+        known = present(slots, key, known)
         self.changes[which] = slots, key, joined([known, value])
 
 
-def _present(slots: Slots, key: Any, value: Any) -> Any:
+def present(slots: Slots, key: Any, value: Any) -> Any:
     """A value; for an attribute that an object lacks, that of its class."""
     if value is ABSENT and isinstance(slots, OwnSlots):
         return slots.inherited(key, ABSENT)
@@ -232,14 +232,20 @@ def _joined_pairs(values: list[Mapping[Any, tuple[Value, Value]]]) -> Any:
 
 
 def _joined_children(values: list[Children]) -> Children:
+    """The states of all; those that one of the containers lacks are possible."""
+    lists = [value.added for value in values]
+    same = 0
+    for row in zip(*lists, strict=False):
+        if any(added is not row[0] for added in row):
+            break
+        same += 1
     found: dict[int, Added] = {}
     counts: Counter[int] = Counter()
-    for value in values:
-        for added in value.added:
-            found[id(added)] = added
-            counts[id(added)] += 1
-    whole = (
+    for added in (added for some in lists for added in some[same:]):
+        found[id(added)] = added
+        counts[id(added)] += 1
+    rest = (
         added if counts[which] == len(values) else replace(added, possible=True)
         for which, added in found.items()
     )
-    return Children(tuple(whole), all(value.complete for value in values))
+    return Children((*lists[0][:same], *rest), all(value.complete for value in values))

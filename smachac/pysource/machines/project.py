@@ -87,7 +87,9 @@ class Repository:
             return found
         path = PurePath(file)
         folder = ".".join(part for part in path.parent.parts if part not in (path.anchor, ".."))
-        name = "__main__" if main else f"{folder}.{path.stem}".strip(".")
+        name = folder if path.name == "__init__.py" else f"{folder}.{path.stem}".strip(".")
+        if main:
+            name = "__main__"
         module = ModuleValue(name, {}, text, folder, file=file)
         module.slots["__name__"] = Const(name)
         module.slots["__file__"] = Const(file)

@@ -67,6 +67,7 @@ def machines_of(
     except (BudgetError, RecursionError):
         complete = False
         evaluator.reset()
+    evaluator.opened.clear()
     found = [read(_roots(evaluator, before, file, closed=True, complete=complete))]
     if isinstance(module, ModuleValue):
         found += _built(evaluator, module, file, read, variants=False)
@@ -87,6 +88,7 @@ def _built(
         except (BudgetError, RecursionError):
             complete = False
             evaluator.reset()
+        evaluator.opened.clear()
         if evaluator.orphans == orphans:
             yield read(_roots(evaluator, before, file, closed=False, complete=complete))
         evaluator.heap.undo(mark)
