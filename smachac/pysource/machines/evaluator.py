@@ -1429,7 +1429,7 @@ class Evaluator:
             self.call(after, Arguments(), None, frame)
 
 
-_BINDING = ("globals", "exec", "setattr", "sys.modules", "vars(", "locals(", "__dict__")
+_BINDING = ("globals", "exec(", "setattr", "sys.modules", "vars(", "locals(", "__dict__")
 """The words in a module that can bind names which its assignments do not show."""
 
 LEFT: Value = Unknown(reason="left")
