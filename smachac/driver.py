@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
 from smachac import checks
 from smachac.analysis.context import Context
-from smachac.checks import check_machine
+from smachac.checks import CODE_RULES, check_machine
 from smachac.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -28,26 +29,20 @@ from smachac.diagnostics.source import Source, Span
 from smachac.frontend.errors import python_machines, references, suppressions
 from smachac.frontend.errors import script as script_errors
 from smachac.frontend.files import disk_library, read_source
-from smachac.frontend.loader import ROS_VERSIONS, Library
+from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import Script
 from smachac.frontend.script.kept import Kept
 from smachac.frontend.script.lower import KeptNodes, lower
 from smachac.frontend.script.resolve import resolve
 from smachac.frontend.text.suppressions import Suppression, suppress
-from smachac.ir.nodes import Checked, Machine
+from smachac.ir.nodes import Checked, Machine, StateType
 from smachac.ir.recursion import deep_recursion
+from smachac.pysource.ros_names import ROS_VERSIONS
+from smachac.pysource.user_code import Declared, ProjectCode
 from smachac.records import dataclass, field
 from smachac.targets import BuildContext, Files, Target, errors, load_target
 from smachac.targets.hiding_files import hiding_files
-from smachac.targets.interface_check import (
-    OF_CLASSES,
-    code_faults,
-    missing_templates,
-    target_faults,
-)
 from smachac.targets.runtime_files import runtime_files
-from smachac.targets.template_imports import template_imports
-from smachac.targets.undefined_names import undefined_names
 
 Folders: TypeAlias = "Sequence[str | PathLike[str]]"
 
@@ -68,6 +63,10 @@ CODES: Mapping[str, Code] = {
     )
 }
 """All codes, those of problems and those of rules, in order."""
+
+OF_CLASSES = ("SM608", "SM609")
+"""The codes of faults for which a check reports an error and only a build for the language of the
+class fails: other targets do not need the class."""
 
 TEMPLATE_CODES = ("SM605", "SM606", "SM607")
 """The codes of findings in templates of the user, which exist only once they are rendered."""
@@ -169,12 +168,9 @@ def _analysis(
         script = parse_and_resolve(source, library, report, kept)
         nodes = previous.nodes if previous is not None else None
         machine = lower(script, nodes) if script is not None else None
-        context = _context(machine, previous)
+        context = _context(machine, library, previous)
         if machine is not None and context is not None:
             report.extend(check_machine(machine, context=context))
-            report.extend(code_faults(machine, library, load_target))
-            report.extend(template_imports(machine, library))
-            report.extend(undefined_names(context, library))
             report.extend(extra(machine) if extra is not None else ())
             report.extend(version_faults(machine, library) if render else ())
             if render and not has_errors(without_class_errors(report)):
@@ -199,11 +195,20 @@ def _analysis(
     )
 
 
-def _context(machine: Machine | None, previous: Previous | None) -> Context | None:
+def _context(
+    machine: Machine | None, library: Library, previous: Previous | None
+) -> Context | None:
     """The context of a machine, with the facts of the previous one that still hold. It becomes the
     previous context."""
     known = previous.context if previous is not None else None
-    context = Context(machine, known) if machine is not None else None
+    load = cache(load_target)
+
+    def declared(language: str, type_: StateType) -> Declared | None:
+        target = load(language)
+        return target.declared(type_, library) if target is not None else None
+
+    project = ProjectCode(library=library, declared=declared)
+    context = Context(machine, known, project) if machine is not None else None
     if previous is not None:
         previous.context = context
     return context
@@ -246,12 +251,13 @@ def version_faults(machine: Machine, library: Library) -> Report:
 def template_faults(machine: Machine, library: Library) -> Report:
     """The findings in templates of the user, which are rendered as for the Python program. Code for
     the other version of ROS is a warning, see `version_faults`."""
+    from smachac.pysource.template_sources import uses_own_templates
     from smachac.targets.python import TARGET
+    from smachac.targets.python.missing_templates import missing_templates
     from smachac.targets.python.ros import needs_other_version
-    from smachac.targets.python.template_sources import uses_own_templates
 
     if not uses_own_templates(machine, library):
-        return missing_templates(machine, library)
+        return [*missing_templates(machine, library)]
     found: Report = []
     lacking: Report = []
     for ros in dict.fromkeys((library.ros, *ROS_VERSIONS)):
@@ -339,14 +345,22 @@ def build(
     files: Files = {}
     try:
         with deep_recursion():
-            found = [*target_faults(machine, library, target)]
-            if target.name == "python":
-                found += template_imports(machine, library)
+            found = code_faults(machine, target, library)
             files = target.emit(machine, context, found)
     except MemoryError:
         found = [_out_of_memory(machine.root.span.source)]
     report.extend(in_order(found))
     return {} if has_errors(report) else files
+
+
+def code_faults(machine: Machine, target: Target, library: Library) -> Report:
+    """The faults in the code of state types that a program of a target contains, as errors."""
+    project = ProjectCode(
+        library=library,
+        declared=lambda _, type_: target.declared(type_, library),
+        target=target.name,
+    )
+    return check_machine(machine, CODE_RULES, Context(machine, project=project))
 
 
 def merged(report: Report, built: Report) -> Report:

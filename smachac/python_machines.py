@@ -21,10 +21,11 @@ from smachac.ir.traversal import walk
 from smachac.pysource.machines.class_facts import ClassReader
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
-from smachac.pysource.machines.project import Repository
+from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
-from smachac.pysource.source import python_text, syntax_error
+from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
+from smachac.pysource.source import syntax_error
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
@@ -38,8 +39,8 @@ IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
 one can have other transitions."""
 
-MOST_FILES = 20_000
-"""The most Python files of a repository that are searched for modules."""
+MOST_FILES, MOST_ENTRIES = 20_000, 200_000
+"""The most Python files, and files and folders, of a repository that are searched for modules."""
 
 SUFFIX = ".py"
 
@@ -87,7 +88,7 @@ class PythonProject:
         library = disk_library(path, report, disk=self.disk, codes=CODES)
         if source is None:
             return PythonFile(path=path, source=None, graphs=(), report=report)
-        if python_text(source, template=False) is None:
+        if module_text(source) is None:
             report.append(_unreadable(source))
             found = grouped(apply_severities(in_order(report), library.policy))
             return PythonFile(path=path, source=source, graphs=(), report=found)
@@ -131,8 +132,8 @@ class PythonProject:
 
 
 def repository_of(path: Path) -> Path:
-    """The folder in which the modules of a file are searched: that of its git repository, or of its
-    package of ROS, or its own."""
+    """The folder in which the modules of a file are searched: that of its git repository, or that
+    of its package of ROS and of the packages beside it, or its own."""
     folder = path.parent
     above = [folder, *Path(os.path.abspath(folder)).parents]  # noqa: PTH100
     for parent in above:
@@ -140,7 +141,8 @@ def repository_of(path: Path) -> Path:
             return _as_given(parent)
     for parent in above[:8]:
         if (parent / "package.xml").is_file():
-            return _as_given(parent)
+            beside = len([*parent.parent.glob("*/package.xml")])
+            return _as_given(parent.parent if beside > 1 else parent)
     return folder
 
 
@@ -150,13 +152,16 @@ def _as_given(folder: Path) -> Path:
 
 
 def python_files(folder: Path) -> Iterator[Path]:
-    """The Python files below a folder, sorted."""
-    count = 0
+    """The Python files below a folder, sorted; of a very large one only the first ones."""
+    count = visited = 0
     for top, folders, names in os.walk(folder):
         folders[:] = [name for name in sorted(folders)
                       if not name.startswith(".") and name not in _SKIPPED]  # fmt: skip
+        visited += 1 + len(names)
+        if visited > MOST_ENTRIES or count >= MOST_FILES:
+            return
         for name in sorted(names):
-            if name.endswith(SUFFIX) and count < MOST_FILES:
+            if name.endswith(SUFFIX):
                 count += 1
                 yield Path(top, name)
 
@@ -180,13 +185,16 @@ def builds_machines(source: Source) -> bool:
 
 
 def _unreadable(source: Source) -> Diagnostic:
+    if looks_like_python2(source) and not is_installed():
+        span = Span(source, 0, 0)
+        return errors.unreadable_module(span, "this is code for Python 2", INSTALL)
     word = syntax_error(source)
     if word is None:
         span = Span(source, 0, 0)
         help = "split the file, or end its lines with a line feed"
         return errors.unreadable_module(span, "this file is too long or too deeply nested", help)
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
-    help = "correct the code at the mark; code for Python 2 is not read"
+    help = "correct the code at the mark"
     return errors.unreadable_module(word.span, message, help)
 
 

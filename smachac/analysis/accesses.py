@@ -15,8 +15,8 @@ from smachac.ir import nodes
 from smachac.ir.code_places import python_tree
 from smachac.ir.leaf import default_outcome, functions, key_names, variable_of
 from smachac.ir.nodes import Container, Expression, Leaf, Node, Struct, VariableRole
-from smachac.ir.outcome_names import fails
-from smachac.ir.traversal import PREEMPTED, remapping
+from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.ir.traversal import remapping
 
 NONE: frozenset[str] = frozenset()
 

@@ -32,6 +32,7 @@ from smachac.ir import nodes, script_paths, traversal
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
 from smachac.ir.secret_keys import SecretKeys, secret_keys
+from smachac.pysource.user_code import CodeFacts, ProjectCode
 
 if TYPE_CHECKING:
     from smachac.analysis.properties import Judgement
@@ -51,10 +52,17 @@ class Context:
     shared, so nobody may change them.
     """
 
-    def __init__(self, machine: Machine, previous: Context | None = None) -> None:
+    def __init__(
+        self,
+        machine: Machine,
+        previous: Context | None = None,
+        project: ProjectCode | None = None,
+    ) -> None:
         """`previous` is the context of the machine before a change. Its facts about a container
-        are used for this machine if the container is the same object."""
+        are used for this machine if the container is the same object. `project` is the code of the
+        user around the machine; without it, the rules about that code find nothing."""
         self.machine = machine
+        self.project = project
         self._scopes = previous.corrected_flow.scopes if previous is not None else {}
         self._known = previous._facts if previous is not None else {}
         self._facts: Facts = {}
@@ -317,6 +325,22 @@ class Context:
         from smachac.analysis.properties import judge
 
         return tuple(judge(self.machine.properties, self.machine.root, self.claims))
+
+    @cached_property
+    def code_facts(self) -> CodeFacts:
+        """The facts about the classes and templates of the user; none without such code."""
+        if self.project is None:
+            return CodeFacts()
+        own = self.project.library.own_template
+        if not any(
+            type_.class_facts is not None or own(file) is not None
+            for name, type_ in self.machine.state_types.items()
+            for file in (f"{name}.yml", type_.code.get("python", name))
+        ):
+            return CodeFacts()
+        from smachac.analysis.state_code import code_facts
+
+        return code_facts(self.machine, self.project)
 
     @cached_property
     def failures(self) -> tuple[Failure, ...]:

@@ -43,7 +43,8 @@ from smachac.ir.nodes import (
     Node,
     OutcomeRule,
 )
-from smachac.ir.traversal import PREEMPTED, containers, ends_preempted, outcome_names, remapping
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import containers, ends_preempted, outcome_names, remapping
 from smachac.records import dataclass
 
 T = TypeVar("T")

@@ -12,13 +12,12 @@ from smachac.analysis.type_lattice import Misfit, MisfitKind
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges
 from smachac.ir.nodes import Leaf, Node, StateMachine
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import outputs_to
 from smachac.ir.types import ANY
 
 MOST_VISITS = 1_000_000
 """States looked at in one run; beyond them a value is taken to arrive."""
-
-PREEMPTED = "preempted"
 
 
 def reaching_clashes(clashes: Iterable[Clash]) -> dict[MisfitKind, list[Clash]]:

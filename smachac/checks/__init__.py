@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from itertools import groupby
 
 from smachac.analysis.context import Context
-from smachac.checks.classes import class_code
-from smachac.checks.code import code_slots, expressions
+from smachac.checks.classes import class_code, interfaces, template_blocks, unusable_code
+from smachac.checks.code import callables, expressions, undefined_names
 from smachac.checks.concurrence import concurrence, races
 from smachac.checks.names import names
 from smachac.checks.outcomes import failures, outcomes, reachability
@@ -30,7 +31,7 @@ from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnost
 from smachac.ir.nodes import Machine
 from smachac.ir.script_paths import steps_in_script
 
-RULES: tuple[Rule, ...] = (
+MACHINE_RULES: tuple[Rule, ...] = (
     expressions.bad_expression,
     names.unknown_target,
     names.unknown_outcome,
@@ -68,9 +69,9 @@ RULES: tuple[Rule, ...] = (
     initial_values.overruled_value,
     unset_outputs.unwritten_output,
     class_code.never_returned,
-    code_slots.not_a_function,
-    code_slots.wrong_arguments,
-    code_slots.wrong_result,
+    callables.not_a_function,
+    callables.wrong_arguments,
+    callables.wrong_result,
     stale_keys.stale_key,
     stores.dead_store,
     initial_values.secret_in_script,
@@ -102,7 +103,20 @@ RULES: tuple[Rule, ...] = (
     properties.unknown_event,
     properties.property_undecided,
 )
-"""All rules, in the order of their codes."""
+"""The rules that need the machine alone, in the order of their codes."""
+
+CODE_RULES: tuple[Rule, ...] = (
+    interfaces.interfaces_differ,
+    interfaces.stale_code,
+    template_blocks.unprinted_parts,
+    unusable_code.code_not_found,
+    unusable_code.unusable_class,
+)
+"""The rules about the code of state types, in the order of their codes. A build runs them too."""
+
+RULES = (*MACHINE_RULES, *CODE_RULES, undefined_names.undefined_name)
+"""All rules. Those that need the code of the project (`Context.project`) come last: a report lists
+the files in the order of their first finding."""
 
 PROBLEMS = workspace.PROBLEMS
 
@@ -112,10 +126,22 @@ def check_machine(
 ) -> Report:
     """The findings of all rules over a machine, in the order of the rules. `context`: the context
     of the machine, for a caller that keeps the facts which the rules need."""
-    return list(_diagnostics(context or Context(machine), rules))
+    context = context or Context(machine)
+    found: Report = []
+    for about_code, some in groupby(rules, CODE_RULES.__contains__):
+        part = _diagnostics(context, some)
+        found += _in_order_of_use(part, context) if about_code else part
+    return found
 
 
-def _diagnostics(context: Context, rules: tuple[Rule, ...]) -> Iterator[Diagnostic]:
+def _in_order_of_use(found: Iterable[Diagnostic], context: Context) -> Report:
+    """The findings about code, those in the file of the first state first: a report lists the files
+    in the order of their first finding."""
+    ranks = {file: rank for rank, file in enumerate(context.code_facts.files)}
+    return sorted(found, key=lambda item: ranks.get(item.span.source, len(ranks)))
+
+
+def _diagnostics(context: Context, rules: Iterable[Rule]) -> Iterator[Diagnostic]:
     for rule in rules:
         for finding in rule.function(context):
             plain = context.plain_paths

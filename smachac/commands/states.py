@@ -67,9 +67,9 @@ def _known_types(templates: list[Path]) -> list[Known]:
     from smachac.frontend.files import disk_library
     from smachac.frontend.schema import CONTAINERS
     from smachac.frontend.types.state_types import find_state_type
+    from smachac.pysource.user_code import languages
     from smachac.report.state_types import Known, container_type
     from smachac.targets import load_target, target_names
-    from smachac.targets.interface_check import languages
 
     found: Report = []
     library = disk_library(Path("main.yml"), found, templates=templates)

@@ -13,7 +13,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
-from smachac.frontend.loader import DEFAULT_ROS, ROS_VERSIONS, Ros
+from smachac.pysource.ros_names import DEFAULT_ROS, ROS_VERSIONS, Ros
 from smachac.records import dataclass, field
 
 SETTINGS: Mapping[str, str] = {

@@ -28,9 +28,10 @@ from smachac.frontend.config import (
     read_project,
 )
 from smachac.frontend.errors.script import too_big, unreadable_file
-from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library, Ros
+from smachac.frontend.loader import ROBOT_FILES, SUFFIXES, Library
 from smachac.frontend.text.yaml_mends import parse_mended
 from smachac.frontend.text.yaml_tree import Tree
+from smachac.pysource.ros_names import Ros
 from smachac.robots import xacro_files
 from smachac.robots.encodings import EncodingError, decoded
 from smachac.robots.files import Packages, find_mesh, installed_packages

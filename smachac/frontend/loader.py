@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
 
 from smachac.diagnostics.diagnostic import (
     Report,
@@ -17,12 +16,6 @@ from smachac.records import dataclass, field
 from smachac.robots.files import Packages
 from smachac.robots.xacro_files import EXPAND, XacroError
 from smachac.robots.xacro_files import SUFFIX as XACRO_SUFFIX
-
-Ros = Literal[1, 2]
-"""A major version of ROS, for which programs are generated."""
-
-ROS_VERSIONS: tuple[Ros, ...] = (1, 2)
-DEFAULT_ROS: Ros = 2
 
 SUFFIXES = ("", ".yml", ".yaml")
 """What a script may leave out at the end of the name of a sub-script, in the order of search."""
@@ -46,12 +39,12 @@ class Library(UserCode):
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders; `definition_names(folder)` the
     names of the files in all folders with a path, such as `std_srvs/srv`; `folders_with(files)` the
     folders below that of the main script that have one of these files. The lists of folders and
-    names are for messages. `ros` and `policy` are the version of ROS and the severities of the
-    project. `parse` may return one tree for all scripts that share a text. `robot(file)` returns a
-    description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
-    packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
-    `expand(file, arguments, packages)` returns the URDF text of a xacro file; it raises XacroError.
-    `settings_read` is False if the project file or its search folders could not be read.
+    names are for messages. `policy` are the severities of the project. `parse` may return one tree
+    for all scripts that share a text. `robot(file)` returns a description or URDF file of a
+    built-in robot, or a file of PyBullet's data. `mesh(name, urdf, packages)` returns the path of a
+    mesh that a URDF file names (`find_mesh`); no mesh is opened. `expand(file, arguments,
+    packages)` returns the URDF text of a xacro file; it raises XacroError. `settings_read` is False
+    if the project file or its search folders could not be read.
     """
 
     script: Callable[[str, str], Source | None]
@@ -62,9 +55,7 @@ class Library(UserCode):
     template_folders: Callable[[], Sequence[str]] = lambda: ()
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
     robot_names: Callable[[str], Sequence[str]] = lambda caller: ()
-    template_names: Callable[[], Sequence[str]] = lambda: ()
     parse: Callable[[Source, Report], Tree | None] = parse
-    ros: Ros = DEFAULT_ROS
     policy: Policy = field(default_factory=Policy)
     robot: Callable[[str], Source | None] = lambda file: None
     mesh: Callable[[str, str, Packages], Path | None] = lambda name, urdf, packages: Path(name)

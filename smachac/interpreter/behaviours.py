@@ -9,7 +9,8 @@ from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata, call_function, python_data
 from smachac.ir.leaf import default_outcome, variable, variable_of
 from smachac.ir.nodes import Expression, Leaf, Struct, VariableRole
-from smachac.ir.traversal import PREEMPTED, outcome_names, own_outcomes
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import outcome_names, own_outcomes
 
 
 def builtin_behaviour(seed: int = 0) -> Behaviour:

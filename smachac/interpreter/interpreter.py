@@ -50,9 +50,10 @@ from smachac.ir.nodes import (
     Node,
     StateMachine,
 )
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.secret_keys import secret_keys
-from smachac.ir.traversal import PREEMPTED, containers, leads_to_child, outcome_names, walk
+from smachac.ir.traversal import containers, leads_to_child, outcome_names, walk
 from smachac.records import dataclass
 from smachac.runtime.tracing.gate import Gate
 from smachac.runtime.tracing.writer import SECRET

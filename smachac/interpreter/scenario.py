@@ -19,8 +19,9 @@ from smachac.interpreter.result import Behaviour
 from smachac.interpreter.userdata import BehaviourError, Userdata
 from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Iterator, Leaf, Machine
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import walk_script
-from smachac.ir.traversal import PREEMPTED, enclosing, outcome_names, walk
+from smachac.ir.traversal import enclosing, outcome_names, walk
 from smachac.records import dataclass
 
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
-from smachac.ir.traversal import PREEMPTED, ends_preempted, leads_to_child, outcome_names
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
 if TYPE_CHECKING:
     import networkx as nx

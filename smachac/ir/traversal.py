@@ -18,7 +18,6 @@ from smachac.ir.nodes import (
     Value,
 )
 from smachac.ir.nodes import Iterator as IteratorNode
-from smachac.ir.outcome_names import PREEMPTED as PREEMPTED
 
 
 def walk(node: Node, path: str = "") -> Iterator[tuple[str, Node]]:

@@ -17,12 +17,15 @@ from importlib.util import find_spec
 from inspect import isfunction, ismethoddescriptor
 from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
-from smachac.pysource.modules import Module, OwnClass
 from smachac.pysource.user_code import UserCode
+
+if TYPE_CHECKING:
+    from smachac.pysource.modules import Module, OwnClass
 
 NO_ATTRIBUTE = FaultKind(
     name="no attribute",

@@ -10,6 +10,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.wording import listed
 from smachac.ir.class_facts import ANY, ClassFault, FaultKind
 from smachac.ir.code_slips import texts_of
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.pysource.functions import is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function
 from smachac.pysource.path_ends import PathEnds
@@ -36,8 +37,6 @@ NO_VALUE = FaultKind(
     effect="the code raises UnboundLocalError when it runs: the machine stops",
     accepted=True,
 )
-
-PREEMPTED = "preempted"
 
 _Nested = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda
 _Parts = ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp

@@ -31,8 +31,8 @@ from smachac.ir.nodes import (
     Transition,
 )
 from smachac.ir.nodes import Sequence as SequenceNode
-from smachac.ir.outcome_names import good_first, is_failure
-from smachac.ir.traversal import PREEMPTED, leads_to_child, outcome_names, walk
+from smachac.ir.outcome_names import PREEMPTED, good_first, is_failure
+from smachac.ir.traversal import leads_to_child, outcome_names, walk
 from smachac.ir.types import Type
 from smachac.refactor.cst import Collection, Item
 from smachac.refactor.edited_script import EditedScript, HasErrorsError

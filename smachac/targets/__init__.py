@@ -13,8 +13,8 @@ from keyword import iskeyword
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
+from smachac.pysource.user_code import Declared
 from smachac.records import dataclass, field
-from smachac.targets.interface_check import Declared
 from smachac.version import __version__
 
 GROUP = "smachac.targets"

@@ -8,12 +8,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import PurePosixPath
 
 from smachac.diagnostics.diagnostic import Diagnostic
-from smachac.frontend.loader import ROS_VERSIONS
 from smachac.ir.nodes import Machine
 from smachac.ir.python_code import parse_module
+from smachac.pysource.ros_names import MESSAGES, ROS_VERSIONS, importable
 from smachac.targets import stem
 from smachac.targets.errors import hiding_file
-from smachac.targets.python.imports import MESSAGES, importable
 
 _COMMON = {
     "smachac",

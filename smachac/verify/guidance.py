@@ -9,7 +9,8 @@ from smachac.analysis.outcome_rules import Combination, Domains, Rules, Undecide
 from smachac.ir import nodes
 from smachac.ir.graph import START, Edge, Vertex, edges, exit_vertex
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
-from smachac.ir.traversal import PREEMPTED, containers, outcome_names, walk
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import containers, outcome_names, walk
 
 Goals = Mapping[str, "str | Mapping[str, str]"]
 """By path of a container: its required outcome, or the required outcomes of its children by

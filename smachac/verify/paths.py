@@ -20,7 +20,8 @@ from smachac.ir import nodes
 from smachac.ir.expressions import parse_expression
 from smachac.ir.leaf import default_outcome
 from smachac.ir.nodes import Concurrence, Expression, Leaf, Machine, Node, StateMachine
-from smachac.ir.traversal import PREEMPTED, containers, expressions, outcome_names, walk
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import containers, expressions, outcome_names, walk
 from smachac.records import dataclass, field
 from smachac.verify.coverage import Coverage
 from smachac.verify.guidance import Goals, Planner, possible_leaf_outcomes

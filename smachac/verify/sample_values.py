@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from smachac.analysis.type_inference import infer
 from smachac.ir.nodes import Iterator, Leaf, Machine
-from smachac.ir.traversal import PREEMPTED, containers, remapping, walk
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import containers, remapping, walk
 from smachac.ir.types import ANY, Type
 from smachac.verify.shared_keys import contended_keys
 

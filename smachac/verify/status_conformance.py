@@ -18,8 +18,9 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import quote
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import script_paths
-from smachac.ir.traversal import PREEMPTED, ends_preempted, leads_to_child, outcome_names, walk
+from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names, walk
 from smachac.verify.coverage import Coverage, CoverageItem
 from smachac.verify.guidance import possible_leaf_outcomes
 from smachac.verify.trace_report import JudgedTrace

@@ -17,8 +17,9 @@ from smachac.interpreter.result import Event
 from smachac.ir import nodes
 from smachac.ir.concurrence_rules import outcome_of
 from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, Node, StateMachine
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import script_paths
-from smachac.ir.traversal import PREEMPTED, ends_preempted, leads_to_child, outcome_names, walk
+from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names, walk
 from smachac.records import dataclass, field
 from smachac.runtime.tracing.writer import shown_path
 from smachac.verify.guidance import possible_leaf_outcomes

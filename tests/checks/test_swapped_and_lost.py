@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import pytest
 
+from smachac.repair.search import again, clusters
 from tests.checks.test_first_scripts import reported
 from tests.repair.slips import slip
-from tests.trust.judged_repairs import printed, shown
+from tests.trust.judged_repairs import printed
 from tests.trust.project_text import analysed
 
 Row = tuple[str, str, str | None]
@@ -121,10 +122,11 @@ OUTPUT, OUTCOMES = "output_keys: {part: int}", "outcomes: {found: {}, lost: {fai
 )  # fmt: skip
 def test_a_field_of_an_interface_under_another_name(fields: list[str], at: str, meant: str) -> None:
     files = {"main.yml": LOOK, "templates/Detect.yml": interface(*fields), "cell.py": CLASS}
-    found, repair = shown(analysed(files))
-    assert [each.span.text for each in found][:1] == [at]
-    assert repair is not None
-    assert [(edit.span.text, edit.text) for edit in repair.edits] == [(at, meant)]
+    analysis = analysed(files)
+    first = clusters(analysis, analysis.report, again(analysis))[0]
+    assert first.finding.span.text == at
+    assert first.repair is not None
+    assert [(edit.span.text, edit.text) for edit in first.repair.edits] == [(at, meant)]
 
 
 def test_a_field_that_can_be_several_ones_lists_these() -> None:

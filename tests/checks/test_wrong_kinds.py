@@ -74,22 +74,6 @@ def test_a_remapping_to_an_unset_key_means_the_one_with_the_name_of_the_state() 
     assert help.startswith("write `sample: sponge` or `sample: shell`")
 
 
-def test_an_output_key_that_is_listed_in_place_of_its_remapping() -> None:
-    text = """\
-name: sm
-outcomes: [done]
-states:
-  - A: {template: Look, REMAP output_keys: [part_score], transitions: {good: B}}
-  - B: {template: PrintUserdataState, input_keys: [part_score], transitions: {succeeded: done}}
-"""
-    help = "write `remapping: {score: part_score}` in place of this entry"
-    files = {"main.yml": text.replace("REMAP ", ""), "templates/Look.yml": LOOK}
-    assert reported(files) == [("SM004", "part_score", help)]
-    help = "remove it: the remapping gives `score` the name `part_score`"
-    files["main.yml"] = text.replace("REMAP ", "remapping: {score: part_score}, ")
-    assert reported(files) == [("SM004", "part_score", help)]
-
-
 def test_a_rule_that_is_wrong_and_the_property_about_its_outcome() -> None:
     text = """\
 name: sm
@@ -407,40 +391,6 @@ states:
     if len(expected) == 2:
         ways = [f"add `label: {key}` to the `remapping` of `A`" for key in expected]
         assert finding.help == ", or ".join(ways)
-
-
-def test_another_name_for_the_variable_of_a_meta_block() -> None:
-    template = """\
-{% block meta %}
-name: Find
-type: State
-variables:
-- bin_name: {type: str}
-outcomes: [found]
-{% endblock meta %}
-{% extends "State.tpl.py" %}
-{% block class_defs %}
-class Find(smach.State):
-    def __init__(self, bin_name):
-        super().__init__(outcomes=["found"])
-        self.bin_name = bin_name
-
-    def execute(self, userdata):
-        print(self.bin_name)
-        return "found"
-{% endblock class_defs %}
-{% block body %}
-{{ add(class_name, bin_name) }}
-{% endblock body %}
-"""
-    text = """\
-name: sm
-outcomes: [done]
-states:
-  - A: {template: Find, bin: left, transitions: {found: done}}
-"""
-    found = reported({"main.yml": text, "templates/Find.tpl.py": template})
-    assert found == [("SM003", "bin", "did you mean `bin_name`?")]
 
 
 def test_a_field_of_the_script_by_a_word_of_the_same_meaning() -> None:

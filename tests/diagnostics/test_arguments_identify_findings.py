@@ -16,12 +16,11 @@ import pytest
 from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Finding, Report, Severity, diagnostic
 from smachac.diagnostics.source import Source, Span
-from smachac.driver import CODES, analyse
+from smachac.driver import CODES, analyse, code_faults
 from smachac.frontend.files import disk_library, read_source
 from smachac.frontend.loader import Library, memory_library
 from smachac.report.explain_code import MAIN, explanation
 from smachac.targets import BuildContext, load_target
-from smachac.targets.interface_check import target_faults
 from tests.support.examples import every, seeds
 from tests.trust.mutants import Subject, files_of
 from tests.trust.mutations import MUTATIONS
@@ -78,7 +77,7 @@ def every_finding(source: Source, library: Library, report: Report) -> Report:
         target = load_target(name)
         assert target is not None
         assert analysis.checked is not None
-        report.extend(target_faults(analysis.checked, library, target))
+        report.extend(code_faults(analysis.checked, target, library))
         target.emit(analysis.checked, BuildContext(library=library), report)
     return report
 

@@ -12,7 +12,8 @@ from smachac.interpreter.result import Behaviour, Event, InterpreterResult
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.leaf import default_outcome, variable
 from smachac.ir.nodes import Leaf, Machine, Struct
-from smachac.ir.traversal import PREEMPTED, containers, outcome_names, walk
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import containers, outcome_names, walk
 
 MOST_STEPS = 150
 VALUE = [1, 2]

@@ -10,7 +10,7 @@ from dataclasses import replace
 from smachac.analysis.context import Context
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite
-from smachac.checks.classes.class_values import (
+from smachac.checks.classes.class_value_types import (
     missing_choices,
     wrong_comparisons,
     wrong_operations,

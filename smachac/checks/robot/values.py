@@ -11,7 +11,7 @@ from smachac.analysis.reaching_values import reaching_flows
 from smachac.analysis.type_inference import Cell, TypeFlow
 from smachac.analysis.type_lattice import inside, present, unit_of
 from smachac.analysis.units import FULL_TURN, conversion, other_units
-from smachac.checks.classes.class_values import wrong_operations
+from smachac.checks.classes.class_value_types import wrong_operations
 from smachac.checks.code.operand_findings import doubtful_comparisons
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.robot.joint_limits import joint_faults

@@ -15,7 +15,6 @@ from smachac.analysis.type_inference import TypeFlow
 from smachac.analysis.type_lattice import fits, present
 from smachac.checks.edits import likely, listing, with_input, with_remapping
 from smachac.checks.help_text import calls, did_you_mean
-from smachac.checks.ros.class_messages import faults_in_classes
 from smachac.checks.ros.message_calls import CHECK_FIELDS, call_faults, message_calls
 from smachac.checks.ros.message_keys import TYPE_KEY, lacks_type_key, remapped_field, type_key_meant
 from smachac.checks.ros.message_reads import (
@@ -46,6 +45,7 @@ from smachac.checks.ros.message_values import (
     value_help,
     with_levels,
 )
+from smachac.checks.ros.messages_in_classes import faults_in_classes
 from smachac.checks.rule import rule
 from smachac.checks.types.literals import at
 from smachac.checks.types.value_places import place_of_part

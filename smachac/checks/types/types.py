@@ -9,7 +9,7 @@ from smachac.analysis.expression_errors import kinds
 from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Cell, Clash
 from smachac.analysis.type_lattice import misfit, present, widened
-from smachac.checks.classes.class_values import wrong_loops, wrong_writes
+from smachac.checks.classes.class_value_types import wrong_loops, wrong_writes
 from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place
 from smachac.checks.rule import rule

@@ -614,93 +614,6 @@ def unreadable_file(
     )
 
 
-class NameFix(NamedTuple):
-    """The cure of an undefined name. `why` is the fault, if it is known; `edits` correct it, if
-    that is certain."""
-
-    help: str
-    why: str = ""
-    edits: tuple[Edit, ...] = ()
-
-
-@problem(
-    "SM019",
-    "undefined-name",
-    Severity.ERROR,
-    effect="Python would stop at this name with a NameError",
-)
-def undefined_name(
-    span: Span,
-    name: str,
-    code: str,
-    by_look: bool,
-    fix: NameFix | None = None,
-    *,
-    base: str = "Base",
-    own: bool = False,
-    effect: str | None = None,
-) -> Finding:
-    """An expression of the script uses a name that the generated program does not define.
-
-    The program would stop with a NameError when it builds its machine, or at the first visit of
-    the state. A text that contains a dot or a call is an expression, as in SMACHA; a text that is
-    joined from params can become an expression by accident.
-
-    Exactly: a name is defined if Python or its library has it, if it is a common name of ROS, or if
-    a template of the script contains the word. A name that a common module of Python's library
-    does not have is found too, as in `time.now()`.
-
-    Wrong:
-        name: sm
-        template: Base
-        outcomes: [succeeded]
-        params: {number: 2}
-        userdata: {side: [block_, [params, number], .left]}
-        states:
-          - LOOK: {template: PrintUserdataState, input_keys: [side]}
-
-    Right:
-        name: sm
-        template: Base
-        outcomes: [succeeded]
-        params: {number: 2}
-        userdata: {side: ['block_', [params, number], '.left']}
-        states:
-          - LOOK: {template: PrintUserdataState, input_keys: [side]}
-    """
-    if fix is not None:
-        what = fix.why or f"`{name}` is used here but is not defined"
-        return Finding(
-            span=span,
-            message=what,
-            arguments=(name,),
-            help=fix.help,
-            edits=fix.edits,
-            effect=effect,
-        )
-    if not by_look:
-        line = f"`from MODULE import {name}`"
-        help = f"write {line} in the block `imports` of the template `{base}.tpl.py`"
-        if not own:
-            help = (
-                "write `template: MyBase` at the top of the script, and in"
-                " `templates/MyBase.tpl.py`"
-                f' the lines `{{% extends "{base}.tpl.py" %}}`, `{{% block imports %}}`,'
-                f" `{{{{ super() }}}}`, {line} and `{{% endblock %}}`"
-            )
-        message = f"`{name}` is used here but is not defined"
-        return Finding(span=span, message=message, arguments=(name,), help=help)
-    why = "a call" if code.endswith(")") else "a dot"
-    message = f"`{name}` is not defined: `{code}` is an expression because it contains {why}"
-    if span.text.startswith("[") and code.endswith(")"):
-        help = f"import or define `{name}` in a template of the script, such as that of the base"
-    elif span.text.startswith("["):
-        help = "if it is text, quote a part of it: `['block_', [params, number], '.left']`"
-    else:
-        help = f'if it is text, write `"{code}"`; if not, define `{name}` in the base template'
-    return Finding(span=span, message=message, arguments=(name, code), help=help)
-
-
 PROBLEMS: tuple[Problem[...], ...] = (
     yaml_syntax,
     duplicate_key,
@@ -710,6 +623,5 @@ PROBLEMS: tuple[Problem[...], ...] = (
     too_big,
     unreadable_file,
     bad_type,
-    undefined_name,
 )
 """The problems of this module, in the order of their codes."""

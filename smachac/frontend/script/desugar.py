@@ -38,8 +38,8 @@ from smachac.ir.nodes import (
     Value,
     Variable,
 )
-from smachac.ir.outcome_names import GOOD_OUTCOMES
-from smachac.ir.traversal import PREEMPTED, OuterNames, outcome_names, remapping
+from smachac.ir.outcome_names import GOOD_OUTCOMES, PREEMPTED
+from smachac.ir.traversal import OuterNames, outcome_names, remapping
 from smachac.ir.types import optional
 
 

@@ -88,7 +88,7 @@ from smachac.frontend.text.yaml_tree import (
     Tree,
     known_wrong,
 )
-from smachac.frontend.types.state_types import TEMPLATE_FILES, find_state_type
+from smachac.frontend.types.state_types import find_state_type
 from smachac.frontend.types.type_annotations import (
     TYPED,
     Aliases,
@@ -98,6 +98,7 @@ from smachac.frontend.types.type_annotations import (
 )
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.ir.robot import Robot
+from smachac.pysource.template_sources import TEMPLATE_FILES
 from smachac.records import dataclass, field
 
 MAX_STATES = 1_000_000

@@ -14,7 +14,6 @@ from smachac.diagnostics.source import Span, Word
 from smachac.frontend.loader import Library
 from smachac.frontend.resolved_script import State
 from smachac.frontend.types.smacha_meta import extended
-from smachac.frontend.types.state_types import TEMPLATE_FILES
 from smachac.ir.argument_parts import argument_uses, own_names, result_of
 from smachac.ir.code_places import python_tree
 from smachac.ir.function_facts import FunctionFacts
@@ -23,6 +22,7 @@ from smachac.pysource.flow import Flows
 from smachac.pysource.functions import alternatives, is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function, template_module
 from smachac.pysource.source import name_span
+from smachac.pysource.template_sources import TEMPLATE_FILES
 
 _NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)*")
 

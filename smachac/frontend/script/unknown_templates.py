@@ -151,12 +151,25 @@ def missing_template_help(
     script = next((each for each in scripts if each.casefold() == name.casefold()), None)
     if script is not None:
         return f"add `script: {script}`, or `template: TYPE` if it is no call of that sub-script"
+    kind, field = _only_kind(entries)
+    if kind:
+        return f"add `template: {kind}`: only a {kind} has `{field}`"
     types, used = types_with_the_names(entries, "", names, find)
     if not types:
         return None
     several = len(types) > 1
     has = "these types have" if several else "this type has"
     return f"add {either(f'template: {each}' for each in types)}: {has} {listed(used)}"
+
+
+def _only_kind(entries: Iterable[str]) -> tuple[str, str]:
+    """The only kind of container that has the fields of a state which no other state has, with the
+    first of these fields; empty without one."""
+    rows = {key: row for key in entries if (row := schema.VARIABLES.get(key)) is not None}
+    own = {key: row.owners & schema.CONTAINERS.keys() for key, row in rows.items()
+           if row.owners and not row.owners & {"state", "base"}}  # fmt: skip
+    kinds = set.intersection(*map(set, own.values())) if own else set()
+    return (kinds.pop(), next(iter(own))) if len(kinds) == 1 else ("", "")
 
 
 def missing_template(

@@ -57,10 +57,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.ir.types import ANY, Type, optional
-
-TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
-"""The file names that the Python template of a state type may have."""
-
+from smachac.pysource.template_sources import TEMPLATE_FILES
 
 _SECTIONS = ("variables", "input_keys", "output_keys", "outcomes", "writes", "code")
 """The fields of an interface that are mappings of names."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from collections.abc import Callable, Iterable
@@ -20,7 +21,8 @@ from smachac.pysource.machines.values import (
     Unknown,
     Value,
 )
-from smachac.pysource.source import python_text
+from smachac.pysource.python2 import NotInstalledError, python2_text
+from smachac.pysource.source import PythonText, python_text
 
 
 class Repository:
@@ -80,7 +82,7 @@ class Repository:
         if key in self.loaded:
             return self.loaded[key]
         source = self.read(file)
-        text = python_text(source, template=False) if source is not None else None
+        text = module_text(source) if source is not None else None
         if text is None:
             found = Unknown(reason=file)
             self.loaded[key] = found
@@ -115,6 +117,15 @@ class Repository:
         sets = re.compile(rf"\.{re.escape(name)}\b\s*(?:=[^=]|:)")
         texts = (module.text for module in self.loaded.values() if isinstance(module, ModuleValue))
         return any(text is not None and sets.search(text.source.text) for text in texts)
+
+
+def module_text(source: Source) -> PythonText | None:
+    """The text of a module for Python 3 or 2; None if it cannot be read."""
+    text = python_text(source, template=False)
+    if text is None:
+        with contextlib.suppress(NotInstalledError):
+            text = python2_text(source)
+    return text
 
 
 def _shared(one: tuple[str, ...], other: tuple[str, ...]) -> int:

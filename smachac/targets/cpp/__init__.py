@@ -14,7 +14,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, StateType
 from smachac.targets import BuildContext, Files, Target, stem
 from smachac.targets.cpp.builtin_states import is_built_in
-from smachac.targets.cpp.class_reader import declared
+from smachac.targets.cpp.declared_interface import declared
 from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.plan import Plan, plan
 from smachac.targets.cpp.project import OPTIONS, Project, project, project_files, runtime

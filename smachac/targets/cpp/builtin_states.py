@@ -9,7 +9,8 @@ from typing import Protocol
 from smachac.diagnostics.source import Span
 from smachac.ir.leaf import default_outcome, functions, variable, variable_of
 from smachac.ir.nodes import Data, Expression, Iterator, Leaf, StateType, Struct, VariableRole
-from smachac.ir.traversal import PREEMPTED, own_outcomes
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import own_outcomes
 from smachac.ir.types import Type
 from smachac.records import dataclass
 from smachac.targets.cpp.expressions import (

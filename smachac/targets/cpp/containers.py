@@ -24,13 +24,8 @@ from smachac.ir.nodes import (
     Sequence,
     StateMachine,
 )
-from smachac.ir.traversal import (
-    PREEMPTED,
-    ends_preempted,
-    leads_to_child,
-    own_outcomes,
-    walk,
-)
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import ends_preempted, leads_to_child, own_outcomes, walk
 from smachac.ir.types import Type
 from smachac.records import dataclass
 from smachac.targets.cpp.builtin_states import LeafCode

@@ -13,8 +13,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import words_of
 from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, FaultKind
-from smachac.ir.outcome_names import is_failure
-from smachac.ir.traversal import PREEMPTED
+from smachac.ir.outcome_names import PREEMPTED, is_failure
 from smachac.pysource.cpp_text import Part
 from smachac.targets.cpp.constructors import constructor_faults
 from smachac.targets.cpp.identifiers import identifier

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from smachac.frontend.text.unquoted import parameters
 from smachac.ir.nodes import Data, Key, Leaf, StateType
-from smachac.ir.traversal import PREEMPTED
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.types import Type
 from smachac.records import dataclass
 from smachac.targets.cpp.builtin_states import STOP, LeafCode

@@ -10,12 +10,13 @@ smacha_context.py has their variables.
 from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
-from smachac.frontend.loader import Library, Ros
+from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
+from smachac.pysource.ros_names import Ros
+from smachac.pysource.user_code import Declared
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python import ros
-from smachac.targets.python.class_reader import declared
 from smachac.targets.python.package import package_name
 
 OPTIONS = {
@@ -112,6 +113,15 @@ def has_code(type_: StateType, library: Library) -> bool:
     code = type_.code.get("python", f"{type_.name}.tpl.py")
     in_language = type_.kind == "container" and "python" not in type_.code
     return in_language or ":" in code or library.template(code) is not None
+
+
+def declared(type_: StateType, library: Library) -> Declared | None:
+    """The interface that the class of a state type declares; None where nothing is known."""
+    if type_.class_facts is None:
+        return None
+    from smachac.targets.python import declared_interface
+
+    return declared_interface.declared(type_, type_.class_facts, library)
 
 
 TARGET = Target(

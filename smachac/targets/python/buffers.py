@@ -19,8 +19,8 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.source import Source, Span
 from smachac.diagnostics.spelling import guesser
 from smachac.frontend.errors.references import template_error
-from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Leaf, Node, StateType
+from smachac.pysource.ros_names import Ros
 from smachac.records import dataclass, field
 from smachac.targets import BuildContext
 from smachac.targets.errors import defined_twice, python_2_code

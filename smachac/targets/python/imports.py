@@ -7,52 +7,12 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from textwrap import indent
 
-from smachac.frontend.loader import Ros
 from smachac.ir.nodes import DEFINITION_KINDS, Leaf, Machine
 from smachac.ir.python_code import parse_module
 from smachac.ir.traversal import expressions, walk
+from smachac.pysource.ros_names import MESSAGES, MODULE_OF, ROS_MODULES, Ros, message_module
 from smachac.records import dataclass, field
 from smachac.targets.python.formatter import WIDTH, laid_out, names
-
-ROS_MODULES: Mapping[Ros, tuple[str, ...]] = {
-    1: ("rospy", "roslib", "rospkg", "rostopic", "actionlib", "tf2_ros"),
-    2: ("rclpy", "tf2_ros"),
-}
-"""Modules of ROS that code may use without an import: those that SMACHA's bases imported in every
-program, and their successors."""
-
-MESSAGES = {
-    "geometry_msgs.msg": (
-        "Point Point32 PointStamped Polygon Pose Pose2D PoseArray PoseStamped"
-        " PoseWithCovarianceStamped Quaternion QuaternionStamped Transform TransformStamped Twist"
-        " TwistStamped Vector3 Vector3Stamped Wrench WrenchStamped"
-    ),
-    "sensor_msgs.msg": (
-        "CameraInfo CompressedImage Image Imu JointState Joy LaserScan PointCloud PointCloud2"
-        " PointField Range"
-    ),
-    "std_msgs.msg": (
-        "Bool ColorRGBA Duration Float32 Float64 Float64MultiArray Header Int16 Int32 Int64 Int8"
-        " String UInt16 UInt32 UInt64 UInt8"
-    ),
-    "trajectory_msgs.msg": "JointTrajectory JointTrajectoryPoint",
-    "nav_msgs.msg": "OccupancyGrid Odometry Path",
-    "actionlib_msgs.msg": "GoalID GoalStatus",
-    "actionlib": "ActionClient ActionServer SimpleActionClient SimpleActionServer",
-}
-"""The messages of the common packages of ROS, by module. Scripts call these names to make messages.
-SMACHA's template for actions imported all names of actionlib."""
-
-_MODULE_OF: Mapping[Ros, Mapping[str, str]] = {
-    1: {name: module for module, names in MESSAGES.items() for name in names.split()},
-    2: {
-        name: "builtin_interfaces.msg" if name == "Duration" else module
-        for module, names in MESSAGES.items()
-        if not module.startswith("actionlib")
-        for name in names.split()
-    },
-}
-
 
 FALLBACK = """
 try:
@@ -73,13 +33,6 @@ def with_fallback(text: str, tree: ast.Module) -> str:
                 if lines[node.lineno - 1].strip() == f"import {name}":
                     lines[node.lineno - 1] = FALLBACK.format(name)
     return "".join(lines)
-
-
-def importable(ros: Ros) -> set[str]:
-    """The names that a program may use without importing them. Modules of the other version of ROS
-    are reported as such."""
-    modules = (name for names in ROS_MODULES.values() for name in names)
-    return {"smach", "smach_ros", *modules, *_MODULE_OF[ros]}
 
 
 def import_lines(texts: Iterable[str]) -> str:
@@ -198,18 +151,6 @@ class ProgramNames:
                     self.bound.update(each.asname or each.name.partition(".")[0] for each in names)
 
 
-def message_module(code: ast.Attribute) -> str | None:
-    """The module of the class of a message that code names as `std_msgs.msg.Bool`; None if it is
-    other code."""
-    match code:
-        case ast.Attribute(
-            value=ast.Attribute(value=ast.Name(id=package), attr="msg" | "srv" | "action" as kind),
-            attr=name,
-        ) if name[0].isupper() and package.islower():
-            return f"{package}.{kind}"
-    return None
-
-
 def unbound_names(
     names: ProgramNames, ros: Ros, also: Iterable[str] = (), *, node: bool = False
 ) -> list[str]:
@@ -218,7 +159,7 @@ def unbound_names(
     further modules. `node`: the program is a node of ROS 2. `import *` binds the names in MESSAGES;
     from a module that is not listed there it may bind any message."""
     used, named, bound = names.used, names.named, names.bound
-    known, modules_of = ROS_MODULES[ros], _MODULE_OF[ros]
+    known, modules_of = ROS_MODULES[ros], MODULE_OF[ros]
     modules = sys.stdlib_module_names | {*known, *also}
     found = [f"import {name}" for name in sorted(used - bound) if name in modules]
     found += [

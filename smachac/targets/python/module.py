@@ -10,10 +10,11 @@ from textwrap import indent
 
 from smachac.diagnostics.diagnostic import Report, has_errors
 from smachac.frontend.errors.references import template_error
-from smachac.frontend.loader import Ros
 from smachac.ir.nodes import Machine
 from smachac.ir.python_code import parse_module
 from smachac.ir.traversal import walk
+from smachac.pysource.ros_names import Ros
+from smachac.pysource.template_sources import template_finder, uses_own_templates
 from smachac.targets import BuildContext, made_by
 from smachac.targets.errors import python_2_code
 from smachac.targets.python import structure
@@ -38,7 +39,7 @@ from smachac.targets.python.parameters import (
     ros_parameters,
 )
 from smachac.targets.python.python2 import modern, parsed
-from smachac.targets.python.ros import action_type, is_managed, is_node, template_finder, version
+from smachac.targets.python.ros import action_type, is_managed, is_node, version
 from smachac.targets.python.smacha_context import TESTS, container_variables, filters, plain
 from smachac.targets.python.states import (
     NO_BODY,
@@ -51,7 +52,6 @@ from smachac.targets.python.states import (
     lost,
 )
 from smachac.targets.python.stop_requests import stop_functions, wrappers
-from smachac.targets.python.template_sources import uses_own_templates
 from smachac.targets.templates.engine import BlockError, Blocks
 
 ONE_FUNCTION = {"Program.tpl.py": "Base.tpl.py", "ROSProgram.tpl.py": "ROSBase.tpl.py"}

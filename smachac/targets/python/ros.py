@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from smachac.diagnostics.diagnostic import Diagnostic
-from smachac.diagnostics.source import Source, Span
+from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import either
-from smachac.frontend.loader import ROS_VERSIONS, Library, Ros
+from smachac.frontend.loader import Library
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import expressions, walk
+from smachac.pysource.ros_names import ROS_VERSIONS, Ros
 from smachac.records import dataclass
 from smachac.targets import BuildContext, OptionError
 from smachac.targets.errors import unsupported_by_target
@@ -65,18 +66,6 @@ def action_type(machine: Machine, context: BuildContext) -> RosType | None:
 def is_managed(context: BuildContext) -> bool:
     """Whether the options want a managed node, with a lifecycle."""
     return context.options.get("lifecycle") == "true"
-
-
-def template_finder(library: Library, ros: Ros) -> Callable[[str], Source | None]:
-    """A function that finds templates: those of the user, then those for a version of ROS, then the
-    other built-in ones."""
-
-    def find(name: str) -> Source | None:
-        own = library.own_template(name)
-        beside = library.template(f"ros2/{name}") if ros == 2 and own is None else None
-        return own or beside or library.template(name)
-
-    return find
 
 
 def ros_type(text: str, module: str, ros: Ros) -> RosType | None:

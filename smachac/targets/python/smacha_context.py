@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
-from smachac.frontend.loader import Ros
 from smachac.ir.code_places import python_tree
 from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Node, Struct, Variable
 from smachac.ir.traversal import own_outcomes, remapping
+from smachac.pysource.ros_names import Ros
 from smachac.targets.python import structure
 from smachac.targets.python.formatter import call, docstring, flat, literal, string
 from smachac.targets.python.ros import replaced_names, ros_type

@@ -29,7 +29,6 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.traversal import own_outcomes
 from smachac.records import dataclass, field
-from smachac.targets.interface_check import missing_template
 from smachac.targets.python import structure
 from smachac.targets.python.add_call import NotAddedError, OtherContainerError, adapted
 from smachac.targets.python.buffers import (
@@ -53,6 +52,7 @@ from smachac.targets.python.formatter import (
     names,
 )
 from smachac.targets.python.functions import ITEMS, Function, Use, Uses, variable_name
+from smachac.targets.python.missing_templates import missing_template
 from smachac.targets.python.ros import takes_node
 from smachac.targets.python.smacha_context import (
     adding,

@@ -17,7 +17,8 @@ from smachac.diagnostics.diagnostic import Report, in_order
 from smachac.interpreter.behaviours import is_made_of_functions
 from smachac.interpreter.scenario import PlainStep
 from smachac.ir.nodes import Key, Leaf, Node, Outcome, StateMachine, StateType
-from smachac.ir.traversal import PREEMPTED, containers, own_outcomes, walk
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.traversal import containers, own_outcomes, walk
 from smachac.ir.types import Type
 from smachac.records import dataclass, field
 from smachac.targets.cpp.builtin_states import enumeration

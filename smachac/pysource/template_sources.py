@@ -3,19 +3,33 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from smachac.diagnostics.source import Source
-from smachac.frontend.loader import Library
-from smachac.frontend.types.state_types import TEMPLATE_FILES
 from smachac.ir.nodes import Machine
 from smachac.ir.traversal import walk
-from smachac.targets.python.ros import template_finder
+from smachac.pysource.ros_names import Ros
+from smachac.pysource.user_code import UserCode
+
+TEMPLATE_FILES = ("{}.tpl.py", "{}.tpl")
+"""The file names that the Python template of a state type may have."""
 
 _OTHERS = re.compile(r"\{%[-+]?\s*(?:extends|include|import|from)\s+[\"']([^\"']+)[\"']")
 
 
-def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, Source]]:
+def template_finder(library: UserCode, ros: Ros) -> Callable[[str], Source | None]:
+    """A function that finds templates: those of the user, then those for a version of ROS, then the
+    other built-in ones."""
+
+    def find(name: str) -> Source | None:
+        own = library.own_template(name)
+        beside = library.template(f"ros2/{name}") if ros == 2 and own is None else None
+        return own or beside or library.template(name)
+
+    return find
+
+
+def template_sources(machine: Machine, library: UserCode) -> Iterator[tuple[str, Source]]:
     """The templates of the base and the state types of a machine, and those that they extend,
     include or import: each once, with its file name."""
     find = template_finder(library, library.ros)
@@ -31,7 +45,7 @@ def template_sources(machine: Machine, library: Library) -> Iterator[tuple[str, 
             todo += _OTHERS.findall(source.text)
 
 
-def uses_own_templates(machine: Machine, library: Library) -> bool:
+def uses_own_templates(machine: Machine, library: UserCode) -> bool:
     """Whether the user has templates for the base or a state type of a machine."""
     types = {machine.base, *(node.type for _, node in walk(machine.root))}
     files = (file for name in sorted(types) for file in _files(name, machine))

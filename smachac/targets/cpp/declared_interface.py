@@ -20,6 +20,7 @@ from smachac.pysource.class_reader import NO_EXECUTE
 from smachac.pysource.cpp_text import LONGEST, Part, class_head, outcome_words, without_literals
 from smachac.pysource.modules import CLASS_ELSEWHERE, NO_CLASS
 from smachac.pysource.other_modules import file_with
+from smachac.pysource.user_code import Declared, Difference, Words
 from smachac.records import dataclass
 from smachac.targets.cpp.constructors import (
     EXTRA_PARAMETER,
@@ -36,8 +37,6 @@ from smachac.targets.cpp.user_classes import (
     field_type,
     interface_hash,
 )
-from smachac.targets.errors import Difference
-from smachac.targets.interface_check import Declared, Words
 
 _NOT_FOUND = "the C++ compiler does not find it"
 NO_HEADER = FaultKind(

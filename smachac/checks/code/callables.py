@@ -24,7 +24,7 @@ from smachac.analysis.expression_errors import is_method, kinds, type_text
 from smachac.analysis.expression_types import type_of_call
 from smachac.analysis.function_slots import named_functions
 from smachac.analysis.type_inference import TypeFlow
-from smachac.checks.classes.class_values import none_writes
+from smachac.checks.classes.class_value_types import none_writes
 from smachac.checks.code.function_results import (
     NONE_EFFECTS,
     WAIT_FAILS,

@@ -16,12 +16,11 @@ from typing import NamedTuple
 from smachac.analysis.accesses import USERDATA
 from smachac.analysis.code_slots import accepts, code_slots, free_in, parameters
 from smachac.analysis.context import Context
-from smachac.diagnostics.diagnostic import Diagnostic
+from smachac.checks.rule import rule
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.errors.script import NameFix, undefined_name
-from smachac.frontend.loader import Library
 from smachac.ir.code_places import attribute_place, node_place, python_tree
 from smachac.ir.code_slips import CONSTANTS
 from smachac.ir.expressions import looks_like_expression
@@ -34,7 +33,9 @@ from smachac.pysource.library_names import (
     missing_name,
     only_imported,
 )
-from smachac.pysource.modules import Module, load_module
+from smachac.pysource.ros_names import importable, message_module
+from smachac.pysource.template_sources import template_sources
+from smachac.pysource.user_code import UserCode
 
 FUNCTIONS = tuple(name for name in dir(builtins) if name.islower() and name[0] != "_")
 """The built-in functions and types of Python."""
@@ -47,6 +48,15 @@ _FROM = re.compile(
     r"^[ \t]*from ([\w.]+) import \w+(?: as \w+)?(?:, *\w+(?: as \w+)?)*(?=[ \t]*$)", re.M
 )
 _DEFINED = re.compile(r"^[ \t]*(?:def|class|import|from \S+ import)\s+(\w+)|^[ \t]*(\w+) = ", re.M)
+
+
+class NameFix(NamedTuple):
+    """The fix of an undefined name. `why` is the fault, if it is known; `edits` correct it, if
+    that is certain."""
+
+    help: str
+    why: str = ""
+    edits: tuple[Edit, ...] = ()
 
 
 class _Use(NamedTuple):
@@ -72,32 +82,59 @@ class _Attribute(NamedTuple):
     meant: str
 
 
-def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
-    """The undefined names, each at the place that uses it."""
-    machine = context.machine
+@rule(
+    "SM019",
+    "undefined-name",
+    Severity.ERROR,
+    firm=True,
+    effect="Python would stop at this name with a NameError",
+)
+def undefined_name(context: Context) -> Iterator[Finding]:
+    """An expression of the script uses a name that the generated program does not define.
+
+    The program would stop with a NameError when it builds its machine, or at the first visit of
+    the state. A text that contains a dot or a call is an expression, as in SMACHA; a text that is
+    joined from params can become an expression by accident.
+
+    Exactly: a name is defined if Python or its library has it, if it is a common name of ROS, or if
+    a template of the script contains the word. A name that a common module of Python's library
+    does not have is found too, as in `time.now()`.
+
+    Wrong:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        params: {number: 2}
+        userdata: {side: [block_, [params, number], .left]}
+        states:
+          - LOOK: {template: PrintUserdataState, input_keys: [side]}
+
+    Right:
+        name: sm
+        template: Base
+        outcomes: [succeeded]
+        params: {number: 2}
+        userdata: {side: ['block_', [params, number], '.left']}
+        states:
+          - LOOK: {template: PrintUserdataState, input_keys: [side]}
+    """
+    project = context.project
+    if project is None:
+        return
+    machine, library = context.machine, project.library
     types = machine.state_types
     found = context.at_states(_names_used, types)
-    used = [each for each in found if isinstance(each, _Use)]
-    classes = [each for each in found if isinstance(each, Word)]
-    attributes_used = [each for each in found if isinstance(each, _Attribute)]
+    used = [item for item in found if isinstance(item, _Use)]
+    classes = [item for item in found if isinstance(item, Word)]
+    attributes_used = [item for item in found if isinstance(item, _Attribute)]
     known = _known(machine, library) if used or classes else None
-    own_base = machine.base in types and not types[machine.base].built_in
     own = _own_sources(machine, library) if used else []
     for use in used:
         if use.name.id in USERDATA or (known is not None and use.name.id not in known):
             imported = _imported(use.node, types)
             if use.name.id not in imported and not _lacks_parameter(use, types):
                 fix = _import_fix(use, own, library) or _fix(use, imported) or _own_fix(use, own)
-                by_look = _by_look(use.node, use.code)
-                yield undefined_name(
-                    use.span,
-                    use.name.id,
-                    use.code.text,
-                    by_look,
-                    fix,
-                    base=machine.base,
-                    own=own_base,
-                )
+                yield _fixed(use.span, use.name.id, fix) if fix else _unknown_name(use, machine)
     yield from _missing_attributes(machine, library, attributes_used)
     for word in classes:
         if known is not None and word.text not in known:
@@ -108,12 +145,51 @@ def undefined_names(context: Context, library: Library) -> Iterator[Diagnostic]:
                 why = f"`{word.text}` is a package, not a type"
                 example = _EXAMPLES.get(word.text, "TYPE")
                 help = f"write the type as well, as in `{word.text}/{example}`"
-            yield undefined_name(word.span, word.text, word.text, False, NameFix(help, why))
+            yield _fixed(word.span, word.text, NameFix(help, why))
+
+
+def _fixed(span: Span, name: str, fix: NameFix, effect: str | None = None) -> Finding:
+    """The finding for a name whose meaning is known."""
+    return Finding(
+        span=span,
+        message=fix.why or f"`{name}` is used here but is not defined",
+        arguments=(name,),
+        help=fix.help,
+        edits=fix.edits,
+        effect=effect,
+    )
+
+
+def _unknown_name(use: _Use, machine: Machine) -> Finding:
+    """The finding for a name whose meaning is not known."""
+    span, name, code = use.span, use.name.id, use.code.text
+    if not _by_look(use.node, use.code):
+        base = machine.base
+        line = f"`from MODULE import {name}`"
+        help = f"write {line} in the block `imports` of the template `{base}.tpl.py`"
+        if base not in machine.state_types or machine.state_types[base].built_in:
+            help = (
+                "write `template: MyBase` at the top of the script, and in"
+                " `templates/MyBase.tpl.py`"
+                f' the lines `{{% extends "{base}.tpl.py" %}}`, `{{% block imports %}}`,'
+                f" `{{{{ super() }}}}`, {line} and `{{% endblock %}}`"
+            )
+        message = f"`{name}` is used here but is not defined"
+        return Finding(span=span, message=message, arguments=(name,), help=help)
+    why = "a call" if code.endswith(")") else "a dot"
+    message = f"`{name}` is not defined: `{code}` is an expression because it contains {why}"
+    if span.text.startswith("[") and code.endswith(")"):
+        help = f"import or define `{name}` in a template of the script, such as that of the base"
+    elif span.text.startswith("["):
+        help = "if it is text, quote a part of it: `['block_', [params, number], '.left']`"
+    else:
+        help = f'if it is text, write `"{code}"`; if not, define `{name}` in the base template'
+    return Finding(span=span, message=message, arguments=(name, code), help=help)
 
 
 def _missing_attributes(
-    machine: Machine, library: Library, found: Sequence[_Attribute]
-) -> Iterator[Diagnostic]:
+    machine: Machine, library: UserCode, found: Sequence[_Attribute]
+) -> Iterator[Finding]:
     """The attributes of modules of Python's library that these do not have."""
     if not found:
         return
@@ -127,7 +203,7 @@ def _missing_attributes(
             effect = "Python would stop at this name with an AttributeError"
             place = attribute_place(code, node)
             fix = NameFix(help, why)
-            yield undefined_name(place, node.attr, code.text, False, fix, effect=effect)
+            yield _fixed(place, node.attr, fix, effect)
 
 
 def _names_used(
@@ -244,8 +320,6 @@ def _lacks_parameter(use: _Use, types: Mapping[str, StateType]) -> bool:
 
 def _packages(tree: ast.expr | None) -> set[str]:
     """The packages of messages in code, which a program imports: `std_msgs.msg.Bool()`."""
-    from smachac.targets.python.imports import message_module
-
     attributes = (
         each for each in (ast.walk(tree) if tree else ()) if isinstance(each, ast.Attribute)
     )
@@ -285,20 +359,20 @@ def _fix(use: _Use, imported: list[str]) -> NameFix | None:
     return NameFix(f"did you mean `{near}`?") if near is not None else None
 
 
-def _own_sources(machine: Machine, library: Library) -> list[Source]:
+def _own_sources(machine: Machine, library: UserCode) -> list[Source]:
     """The templates of the user that a machine needs."""
-    from smachac.targets.python.template_sources import template_sources
-
     sources = template_sources(machine, library)
     return [source for file, source in sources if library.own_template(file) is not None]
 
 
-def _import_fix(use: _Use, own: Sequence[Source], library: Library) -> NameFix | None:
+def _import_fix(use: _Use, own: Sequence[Source], library: UserCode) -> NameFix | None:
     """The cure of a name that a module of the project defines from which a template of the user
     imports other names."""
     name = use.name.id
     if name in (*USERDATA, "params") or name in {key.name for key in use.node.inputs}:
         return None
+    from smachac.pysource.modules import Module, load_module
+
     for source in own:
         for line in _FROM.finditer(source.text):
             module = load_module(line[1], library)
@@ -375,12 +449,9 @@ def _functions(leaf: Leaf) -> Iterator[Data]:
             yield from (value for _, value in entries)
 
 
-def _known(machine: Machine, library: Library) -> set[str] | None:
+def _known(machine: Machine, library: UserCode) -> set[str] | None:
     """The defined names: the words of all templates and the names that are imported for them; None
     if a template computes names."""
-    from smachac.targets.python.imports import importable
-    from smachac.targets.python.template_sources import template_sources
-
     known = importable(library.ros)
     for file, source in template_sources(machine, library):
         if library.own_template(file) is None:

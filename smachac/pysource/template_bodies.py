@@ -1,5 +1,5 @@
-"""Faults in the block `body` of a template of SMACHA's kind: the line that makes the state, and
-tests of variables that nothing defines."""
+"""The blocks `body` of the user's templates of SMACHA's kind, and faults of the line in them that
+makes the state."""
 
 from __future__ import annotations
 
@@ -7,24 +7,20 @@ import ast
 import builtins
 import keyword
 import re
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Severity
+from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
-from smachac.frontend.errors.references import template_error
-from smachac.frontend.loader import Library
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.ir.leaf import variable
-from smachac.ir.nodes import Leaf, Machine, StateType
+from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
 from smachac.pysource.base_calls import TOO_MANY_ARGUMENTS
 from smachac.pysource.class_names import UNDEFINED_NAME
-from smachac.pysource.jinja_tags import tags
 from smachac.pysource.modules import template_module
 from smachac.pysource.source import PythonText
-from smachac.targets.errors import class_fault
+from smachac.pysource.user_code import StateFault, TemplateBody, UserCode
 
 ARGUMENT_ORDER = FaultKind(
     name="argument order",
@@ -63,15 +59,12 @@ _ARGUMENT = re.compile(
     r"(?P<quote>['\"]?)\{\{\s*(?P<name>\w+)\s*(?P<filter>\|[\s\w|]+)?\}\}(?P=quote)"
     r"\s*(?P<end>[,)]|(?=\{%))\s*"
 )
-_TEST = re.compile(
-    r"\{%[-+]?\s*if\s+(\w+)\s+is\s+defined\s*[-+]?%\}(.*?)\{%[-+]?\s*endif\b", re.DOTALL
-)
 _CLASS_NAME = r"\{\{-?\s*class_name\s*-?\}\}"
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
-def body_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
-    """The faults in the block `body` of the user's templates, at the first state of each type."""
+def template_bodies(machine: Machine, library: UserCode) -> Iterator[TemplateBody]:
+    """The blocks `body` of the user's templates, at the first state of each type."""
     done = set[str]()
     for _, leaf in walk(machine.root):
         if not isinstance(leaf, Leaf) or leaf.type in done:
@@ -80,81 +73,25 @@ def body_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
         type_ = machine.state_types.get(leaf.type)
         file = type_.code.get("python", "") if type_ is not None else ""
         template = library.own_template(file) if file and ":" not in file else None
-        body = _BODY.search(template.text) if template is not None else None
-        if type_ is None or template is None or body is None:
-            continue
-        yield from _tests(template, body, type_, leaf)
-        yield from _not_printed(template, body, leaf)
-        fault = _call_fault(template, body, leaf, _names(machine, library))
+        block = _BODY.search(template.text) if template is not None else None
+        if type_ is not None and template is not None and block is not None:
+            call = _callee(leaf.type, leaf).search(block[1])
+            yield TemplateBody(template, block, call, type_, leaf)
+
+
+def body_faults(
+    machine: Machine, library: UserCode, bodies: Sequence[TemplateBody]
+) -> Iterator[StateFault]:
+    """The faults of the line that makes the state, in the blocks `body` of a machine."""
+    names = _names(machine, library) if bodies else set()
+    for template, block, _, _, leaf in bodies:
+        fault = _call_fault(template, block, leaf, names)
         if fault is not None:
             used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")
-            yield class_fault(fault[0], "python", leaf.type, fault[1], (used,))
+            yield StateFault(fault[0], "python", leaf.type, fault[1], (used,))
 
 
-def _not_printed(template: Source, body: re.Match[str], leaf: Leaf) -> Iterator[Diagnostic]:
-    """The remapping and the transitions of a state that its template does not print."""
-    inside = body[1]
-    printed = [template.text[start:end] for start, end in tags(template.text, "%{")]
-    in_body = [inside[start:end] for start, end in tags(inside, "%{")]
-    # Code that another template prints can use the names of this one.
-    hidden = any(re.search(r"\bsuper\b|\bself\b|\*\*", each) for each in in_body)
-    hidden = hidden or any(re.search(r"\binclude\b|with context", each) for each in printed)
-    call = _callee(leaf.type, leaf).search(inside)
-    if call is None or hidden:
-        return
-    words = {word for each in (*printed, inside) for word in _WORD.findall(each)}
-    if "name" not in words:
-        return  # the template adds one state of its own
-    leads = [each for each in leaf.transitions
-             if each.origin == "written" and each.target != each.outcome]  # fmt: skip
-    for name, used, effect in (
-        ("remapping", bool(leaf.remaps), "uses its keys under its own names"),
-        ("transitions", bool(leads), "leads to no other state"),
-    ):
-        if not used or name in words:
-            continue
-        start = body.start(1) + call.start()
-        place = Span(template, start, body.start(1) + call.end() - 1)
-        code = f"{{% if {name} is defined %}}, {{{{ render_{name}({name}) }}}}{{% endif %}}"
-        help = f"add `{code}` behind `{call[0]}...)`"
-        if f"render_{name}" not in words:
-            help += f', and import it: `{{% from "Utils.tpl.py" import render_{name} %}}`'
-        message = f"the template does not print the `{name}` that `{leaf.name}` has in the script"
-        fault = template_error(place, message, help, (name, leaf.type))
-        related = (Related(span=leaf.span, message=f"`{leaf.name}` has the `{name}`"),)
-        finding = replace(fault.finding, related=related,
-                          effect=f"the program ignores it: `{leaf.name}` {effect}")  # fmt: skip
-        yield replace(fault, severity=Severity.WARNING, finding=finding)
-
-
-def _tests(
-    template: Source, body: re.Match[str], type_: StateType, leaf: Leaf
-) -> Iterator[Diagnostic]:
-    """Tests `is defined` of a name that stands nowhere else, one slip away from a name that the
-    tested part uses."""
-    words: dict[str, int] = {}
-    for start, end in tags(template.text, "%{"):
-        for word in _WORD.findall(template.text[start + 2 : end - 2]):
-            words[word] = words.get(word, 0) + 1
-    known = {*type_.variables, *(each.name for each in leaf.written)}
-    known |= {each.name for each in leaf.variables}
-    for found in _TEST.finditer(template.text, *body.span(1)):
-        name, inside = found[1], found[2]
-        if words.get(name) != 1 or name in known:
-            continue
-        used = {word for start, end in tags(inside, "%{")
-                for word in _WORD.findall(inside[start + 2 : end - 2])}  # fmt: skip
-        near = guesser(sorted(used)).sure(name)
-        if near is not None:
-            message = f"`{name}` is tested here, but nothing defines it: the part is never printed"
-            place = Span(template, *found.span(1))
-            fault = template_error(place, message, f"did you mean `{near}`?", (name,))
-            effect = f"the program of `{leaf.name}` lacks what the template prints here"
-            finding = replace(fault.finding, effect=effect)
-            yield replace(fault, severity=Severity.WARNING, finding=finding)
-
-
-def _names(machine: Machine, library: Library) -> set[str]:
+def _names(machine: Machine, library: UserCode) -> set[str]:
     """The names that the Python in the user's templates binds."""
     found = {*dir(builtins), *keyword.kwlist}
     for type_ in machine.state_types.values():
@@ -182,11 +119,11 @@ def _call_fault(
     if unknown is not None:
         return ClassFault(kind=UNDEFINED_NAME, name=unknown, near=name), name
     parameters = [each.arg for each in maker.args.args[1:]]
-    callee = _callee(name, leaf)
+    start = _callee(name, leaf)
     unfit = _argument_fault(text, body, name, maker, leaf)
     if unfit is not None:
         return unfit, name
-    calls = [*callee.finditer(template.text, *body.span(1))]
+    calls = [*start.finditer(template.text, *body.span(1))]
     if len(calls) != 1:
         return None
     (call,) = calls
@@ -302,10 +239,10 @@ def _argument_fault(
     return ClassFault(kind=NO_ARGUMENT_HERE, name=Word(missing[0], span)) if missing else None
 
 
-def _only_call(text: PythonText, body: re.Match[str], callee: re.Pattern[str]) -> ast.Call | None:
+def _only_call(text: PythonText, body: re.Match[str], start: re.Pattern[str]) -> ast.Call | None:
     """The only call of a class in the block `body`, also behind an expression of Jinja that prints
     nothing: `{{ '' }}Measure(...)`."""
-    starts = {each.end() - 1 for each in callee.finditer(text.source.text, *body.span(1))}
+    starts = {each.end() - 1 for each in start.finditer(text.source.text, *body.span(1))}
     found = [each for each in ast.walk(text.tree)
              if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
              and text.span(each.func).end in starts]  # fmt: skip

@@ -10,7 +10,7 @@ from smachac.frontend.loader import Library
 from smachac.ir.class_facts import STATE_PARAMETERS, ClassFacts, ClassFault, FaultKind, Parameter
 from smachac.ir.nodes import StateType
 from smachac.pysource.class_reader import NO_OUTCOMES
-from smachac.targets.interface_check import Declared
+from smachac.pysource.user_code import Declared
 from smachac.targets.python.ros import has_node_parameter
 
 NO_PARAMETER = FaultKind(
@@ -48,11 +48,8 @@ RENAMED_PARAMETER = FaultKind(
 )
 
 
-def declared(type_: StateType, library: Library) -> Declared | None:
-    """The interface that the class of a state type declares; None where nothing is known."""
-    facts = type_.class_facts
-    if facts is None:
-        return None
+def declared(type_: StateType, facts: ClassFacts, library: Library) -> Declared:
+    """The interface that the class of a state type declares, from the facts about it."""
     code = type_.code.get("python", "")
     name = code if ":" in code or facts.name is None else facts.name.text
     node = library.ros == 2 and has_node_parameter(type_)

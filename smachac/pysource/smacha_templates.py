@@ -12,13 +12,12 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related
+from smachac.diagnostics.diagnostic import Related
 from smachac.diagnostics.source import Source, Span, Word
-from smachac.frontend.loader import Library
 from smachac.ir.class_facts import ClassFault, FaultKind, StateCall
 from smachac.ir.nodes import Leaf, Machine, StateType
 from smachac.ir.traversal import walk
-from smachac.targets.errors import class_fault
+from smachac.pysource.user_code import StateFault, UserCode
 
 NOT_PASSED = FaultKind(
     name="not passed",
@@ -60,7 +59,7 @@ class _Guard(NamedTuple):
     type: StateType
 
 
-def guard_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
+def guard_faults(machine: Machine, library: UserCode) -> Iterator[StateFault]:
     """The classes that a program lacks because another template has printed its class under the
     same name. The fault is in the template whose class has another name than the guard."""
     first: dict[str, _Guard] = {}
@@ -81,10 +80,10 @@ def guard_faults(machine: Machine, library: Library) -> Iterator[Diagnostic]:
             Related(span=right.word.span, message=f"`{right.class_name}` has this name too"),
             Related(span=wrong.leaf.span, message=f"`{wrong.leaf.name}` is of this type"),
         )
-        yield class_fault(fault, "python", wrong.type.name, wrong.class_name, places)
+        yield StateFault(fault, "python", wrong.type.name, wrong.class_name, places)
 
 
-def _guards(machine: Machine, library: Library) -> Iterator[_Guard]:
+def _guards(machine: Machine, library: UserCode) -> Iterator[_Guard]:
     """The guards of classes in the user's templates, at the first state of each type."""
     left: dict[str, tuple[StateType, Source]] = {}
     for name, type_ in machine.state_types.items():
@@ -110,7 +109,7 @@ CALL_ARGUMENTS = ("outcomes", "input_keys", "output_keys", "callbacks")
 """The fields of a state that `State.tpl.py` passes to its class, if the script has them."""
 
 
-def call_faults(machine: Machine) -> Iterator[Diagnostic]:
+def call_faults(machine: Machine) -> Iterator[StateFault]:
     """The constructors that the call in `State.tpl.py` does not fit, at the first state of a type
     for which it does not."""
     left = {
@@ -129,7 +128,7 @@ def call_faults(machine: Machine) -> Iterator[Diagnostic]:
             del left[leaf.type]
             used = Related(span=leaf.span, message=f"`{leaf.name}` is of the type `{leaf.type}`")
             name = facts.name.text if facts.name is not None else leaf.type
-            yield class_fault(fault, "python", leaf.type, name, (used,))
+            yield StateFault(fault, "python", leaf.type, name, (used,))
 
 
 def _call_fault(call: StateCall, given: set[str]) -> ClassFault | None:
