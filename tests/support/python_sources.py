@@ -47,7 +47,8 @@ class ReadMachine(NamedTuple):
         assert self.complete
         found = {}
         for state in self.states:
-            assert state.label is not None and not state.possible, state
+            assert not state.possible, state
+            assert state.label is not None, state
             assert state.transitions is not None, state
             found[state.label] = {key: _only(value) for key, value in state.transitions.items()}
         return found

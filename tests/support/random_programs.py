@@ -213,7 +213,7 @@ def _run(code: Any, choice: Sequence[bool]) -> tuple[RealState, ...] | None:
 
     builtins = {**vars(__import__("builtins")), "__import__": load}
     try:
-        exec(code, {"__name__": "__main__", "__builtins__": builtins})  # noqa: S102
+        exec(code, {"__name__": "__main__", "__builtins__": builtins})
     except Exception:  # a run that fails builds no machine
         return None
     return tuple(added)

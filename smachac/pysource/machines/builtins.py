@@ -283,9 +283,37 @@ MAKERS: Mapping[str, Callable[[Interpreter, Arguments, Span | None], Value]] = {
 
 
 _TEXT_METHODS = frozenset(
-    "upper lower title capitalize strip lstrip rstrip replace split rsplit partition rpartition"
-    " startswith endswith join format removeprefix removesuffix swapcase zfill isdigit isupper"
-    " islower splitlines count find index casefold isalpha".split()
+    [
+        "upper",
+        "lower",
+        "title",
+        "capitalize",
+        "strip",
+        "lstrip",
+        "rstrip",
+        "replace",
+        "split",
+        "rsplit",
+        "partition",
+        "rpartition",
+        "startswith",
+        "endswith",
+        "join",
+        "format",
+        "removeprefix",
+        "removesuffix",
+        "swapcase",
+        "zfill",
+        "isdigit",
+        "isupper",
+        "islower",
+        "splitlines",
+        "count",
+        "find",
+        "index",
+        "casefold",
+        "isalpha",
+    ]
 )
 
 
@@ -333,7 +361,11 @@ def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], V
             given = [_plain(value) for value in arguments.positional[1:]]
             named = {key: _plain(value) for key, value in arguments.named}
             text = me.value if isinstance(me, Const) else None
-            if arguments.open or not isinstance(text, str) or _is_long([text, *given, *named.values()]):
+            if (
+                arguments.open
+                or not isinstance(text, str)
+                or _is_long([text, *given, *named.values()])
+            ):
                 return UNKNOWN
             if name == "format" and has_width(text):
                 return UNKNOWN

@@ -15,7 +15,6 @@ from smachac.diagnostics.source import Span
 from smachac.pysource.machines.builtins import BUILTINS, attribute_of_value, is_pure
 from smachac.pysource.machines.heap import ABSENT, Changes, Children, Heap, present
 from smachac.pysource.machines.operations import (
-    LONGEST_TEXT,
     MOST_BITS,
     MOST_ITEMS,
     ORDERS,
@@ -685,7 +684,7 @@ class Evaluator:
             value = UNKNOWN
             if isinstance(found, ModuleValue) and alias.name in found.slots:
                 value = found.slots[alias.name]
-            elif isinstance(found, ModuleValue) or isinstance(found, Unknown):
+            elif isinstance(found, ModuleValue | Unknown):
                 inner = self.project.load(self, f"{name}.{alias.name}".strip("."), frame.module)
                 value = inner if not isinstance(inner, Unknown) or not inner.reason else found
                 if isinstance(value, ModuleValue) and value is found:
@@ -1028,9 +1027,9 @@ class Evaluator:
         if isinstance(op, ast.Not):
             known = truth(value)
             return UNKNOWN if known is None else Const(not known)
-        if isinstance(op, ast.USub) and isinstance(value, Const):
-            if isinstance(value.value, int | float):
-                return Const(-value.value, self.span(node, frame))
+        number = value.value if isinstance(value, Const) else None
+        if isinstance(op, ast.USub) and isinstance(number, int | float):
+            return Const(-number, self.span(node, frame))
         return UNKNOWN
 
     def _logical(self, is_and: bool, values: Sequence[ast.expr], frame: Frame) -> Value:
@@ -1105,10 +1104,10 @@ class Evaluator:
             return UNKNOWN
         if isinstance(owner, Class) and isinstance(key, Const) and isinstance(key.value, str):
             return owner.slots.get(key.value, UNKNOWN) if self.is_enumeration(owner) else UNKNOWN
-        found = sequence(owner)
-        if found is not None and isinstance(key, Const) and isinstance(key.value, int):
-            if -len(found) <= key.value < len(found):
-                return found[key.value]
+        found = sequence(owner) or ()
+        match key:
+            case Const(value=int() as at) if -len(found) <= at < len(found):
+                return found[at]
         return UNKNOWN
 
     def _slice(self, owner: Value, index: ast.Slice, frame: Frame) -> Value:
@@ -1138,8 +1137,8 @@ class Evaluator:
         """An attribute of a value; UNKNOWN if it is not known."""
         match owner:
             case OneOf(values=values):
-                some = [part for part in values if not (isinstance(part, Const) and part.value is None)]
-                return one_of(self.attribute(part, name, node, frame) for part in some)
+                objects = (part for part in values if part != NONE)
+                return one_of(self.attribute(part, name, node, frame) for part in objects)
             case Unknown():
                 return owner
             case ModuleValue():
@@ -1181,9 +1180,9 @@ class Evaluator:
         if name == "__class__":
             return owner.cls
         found = self.of_class(owner.cls, name, owner)
-        if isinstance(found, Method) and isinstance(found.function, Function):
-            if found.function.kind == "property":
-                return self.call(found.function, Arguments((owner,)), node, frame)
+        function = found.function if isinstance(found, Method) else None
+        if isinstance(function, Function) and function.kind == "property":
+            return self.call(function, Arguments((owner,)), node, frame)
         return found
 
     def of_class(self, cls: Value, name: str, me: Value | None) -> Value:
@@ -1290,7 +1289,8 @@ class Evaluator:
     def partial(self, function: Value, arguments: Arguments) -> Value:
         """`functools.partial`; that of another one is one with the arguments of both."""
         if isinstance(function, Partial):
-            function, arguments = function.function, function.arguments.followed_by(arguments)
+            arguments = function.arguments.followed_by(arguments)
+            function = function.function
         self.steps += len(arguments.positional) // 4
         return Partial(function, arguments)
 
@@ -1404,12 +1404,10 @@ class Evaluator:
         return made
 
     def _member(self, cls: Class, arguments: Arguments) -> Value:
-        given = arguments.get(0, "value", UNKNOWN)
-        for value in cls.slots.values():
-            if isinstance(value, Instance) and given is not None:
-                if same(value.slots.get("value", UNKNOWN), given):
-                    return value
-        return UNKNOWN
+        given = arguments.get(0, "value", UNKNOWN) or UNKNOWN
+        members = (value for value in cls.slots.values() if isinstance(value, Instance))
+        fitting = (member for member in members if same(member.slots.get("value", UNKNOWN), given))
+        return next(fitting, UNKNOWN)
 
     def _fill(self, made: Instance, cls: Class, arguments: Arguments, frame: Frame) -> None:
         """Sets the fields of a dataclass."""

@@ -183,8 +183,8 @@ class _Builder:
                 connector = made.slots.get("$connector_outcome")
                 return nodes.Sequence(
                     **common, children=built, initial=initial,
-                    connector_outcome=_text(connector) or "", connector_span=_place(connector, span),
-                    initial_span=span,
+                    connector_outcome=_text(connector) or "",
+                    connector_span=_place(connector, span), initial_span=span,
                 )  # fmt: skip
             case "Iterator":
                 return self._iterator(made, common, built, added, span)

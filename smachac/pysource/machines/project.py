@@ -63,7 +63,8 @@ class Repository:
     def file_of(self, name: str, user: ModuleValue) -> str | None:
         """The file of a module."""
         parts = name.split(".")
-        endings = (os.sep.join(parts) + ".py", os.sep.join([*parts, "__init__.py"]))
+        path = PurePath(*parts)
+        endings = (f"{path}.py", str(path / "__init__.py"))
         found = [
             file
             for file in self.by_stem.get(parts[-1], ())
@@ -102,7 +103,7 @@ class Repository:
         else:
             try:
                 module.dynamic = evaluator.load(text.tree.body, frame) or module.dynamic
-            except BudgetError:
+            except (BudgetError, RecursionError):
                 self.loaded[key] = Unknown(reason=file)  # its names are not known as a whole
                 raise
         module.is_loaded = True
@@ -135,4 +136,3 @@ def _shared(one: tuple[str, ...], other: tuple[str, ...]) -> int:
             break
         count += 1
     return count
-

@@ -26,7 +26,6 @@ from smachac.pysource.machines.values import (
     Method,
     ModuleValue,
     Native,
-    OneOf,
     Partial,
     TupleValue,
     Unknown,
@@ -84,10 +83,9 @@ def _names(evaluator: Interpreter, value: Value | None, span: Span | None) -> Va
     """A list of names. Of a text, each letter is a name: a fault."""
     if value is None:
         return TupleValue(())
-    if isinstance(value, Const) and isinstance(value.value, str):
-        if value.value and span is not None:
-            place = value.span or span
-            evaluator.faults.append(UseFault("text as list", place, (value.value,)))
+    if isinstance(value, Const) and isinstance(value.value, str) and value.value and span:
+        place = value.span or span
+        evaluator.faults.append(UseFault("text as list", place, (value.value,)))
     return value
 
 
@@ -101,9 +99,10 @@ def _joined(*values: Value) -> Value:
 def _state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     me = arguments.get(0, "self")
     if isinstance(me, Instance):
-        names = [_names(evaluator, arguments.get(at, name), span or me.span)
-                 for at, name in enumerate(("outcomes", "input_keys", "output_keys", "io_keys"), 1)]  # fmt: skip
-        outcomes, inputs, outputs, both = names
+        outcomes, inputs, outputs, both = (
+            _names(evaluator, arguments.get(at, name), span or me.span)
+            for at, name in enumerate(("outcomes", "input_keys", "output_keys", "io_keys"), 1)
+        )
         _interface(evaluator, me, outcomes, _joined(inputs, both), _joined(outputs, both))
     return NONE
 
@@ -177,16 +176,7 @@ def _ready(name: str) -> Run:
         me = arguments.get(0, "self")
         if not isinstance(me, Instance):
             return NONE
-        given = arguments.without_first()
-        if given.positional and not isinstance(given.positional[0], Const | OneOf):
-            first = given.positional[0]
-            named = {key for key, _ in given.named}
-            if name != "smach_ros.ConditionState" and "node" not in named:
-                if isinstance(first, Unknown | Instance) and not isinstance(first, Const):
-                    node_first = len(given.positional) > 1 and isinstance(
-                        given.positional[1], Const
-                    )
-                    given = given.without_first() if node_first else given
+        given = _without_node(name, arguments.without_first())
         values = {
             parameter: value
             for at, parameter in enumerate(parameters)
@@ -207,6 +197,15 @@ def _ready(name: str) -> Run:
         return NONE
 
     return run
+
+
+def _without_node(name: str, given: Arguments) -> Arguments:
+    """The arguments without the node, which smach_ros of ROS 2 takes first: an object before a
+    name."""
+    match given.positional:
+        case [Unknown() | Instance(), Const(), *_] if name != "smach_ros.ConditionState":
+            return given.without_first()
+    return given
 
 
 def _one(value: Value) -> Value:

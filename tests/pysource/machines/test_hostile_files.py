@@ -57,8 +57,8 @@ TEXTS = {
     "latin-1": "# -*- coding: latin-1 -*-\nimport smach\nx = 'größe'\n".encode("latin-1"),
     "not UTF-8": b"import smach\nx = '\xff\xfe'\n",
     "surrogates": b"import smach\nx = '\xed\xa0\x80'\ny = '\\ud800' + 'a'\n",
-    "surrogate as a name": b"import smach\nsm = smach.StateMachine(outcomes=['\\ud800'])\nwith sm:\n"
-    b"    smach.StateMachine.add('\\udfff', smach.State(outcomes=['a']), {'a': '\\ud800'})\n",
+    "surrogate as a name": b"import smach\nsm = smach.StateMachine(outcomes=['\\ud800'])\n"
+    b"with sm:\n    smach.StateMachine.add('\\udfff', smach.State(outcomes=['a']), {})\n",
     "NUL": b"import smach\nx = '\0'\n",
     "form feed": b"import smach\n\x0csm = smach.StateMachine(outcomes=[])\n",
     "empty": b"",

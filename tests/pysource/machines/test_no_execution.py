@@ -15,8 +15,8 @@ CODE = {
     "new": "class A:\n    def __new__(cls):\n        {mark}\nA()",
     "decorator": "def d(f):\n    {mark}\n    return f\n@d\ndef f():\n    pass",
     "decorator of a class": "def d(f):\n    {mark}\n    return f\n@d\nclass A:\n    pass",
-    "metaclass": "class M(type):\n    def __new__(m, *a):\n        {mark}\n        return type(*a)\n"
-    "class A(metaclass=M):\n    pass",
+    "metaclass": "class M(type):\n    def __new__(m, *a):\n        {mark}\n        return type(*a)"
+    "\nclass A(metaclass=M):\n    pass",
     "default argument": "def f(a={mark}):\n    pass",
     "class item": "class A:\n    def __class_getitem__(cls, key):\n        {mark}\nA[1]",
     "f-string": "x = f'{{{mark}}}'",
@@ -61,4 +61,8 @@ def test_no_file_is_written(name: str, tmp_path: Path) -> None:
     found = PythonProject(Disk()).read(path)
     assert found.source is not None
     assert not trace.exists()
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["machine.py", "other.py", "smach.py"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == [
+        "machine.py",
+        "other.py",
+        "smach.py",
+    ]
