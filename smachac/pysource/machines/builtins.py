@@ -50,10 +50,6 @@ def is_pure(reason: str) -> bool:
     return reason.partition(".")[0] in _PURE
 
 
-def _items_of(value: Value | None) -> tuple[Value, ...] | None:
-    return sequence(value)
-
-
 def _range(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     bounds = [value.value for value in arguments.positional if isinstance(value, Const)]
     if len(bounds) != len(arguments.positional) or not all(isinstance(b, int) for b in bounds):
@@ -103,7 +99,7 @@ def _dict(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Va
 
 
 def _enumerate(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "iterable"))
+    items = sequence(arguments.get(0, "iterable"))
     start = arguments.get(1, "start", Const(0))
     if items is None or not isinstance(start, Const) or not isinstance(start.value, int):
         return UNKNOWN
@@ -120,7 +116,7 @@ def _zip(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Val
 
 
 def _len(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "obj"))
+    items = sequence(arguments.get(0, "obj"))
     return UNKNOWN if items is None else Const(len(items))
 
 
@@ -154,7 +150,7 @@ def _bool(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Va
 
 
 def _sorted(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "iterable"))
+    items = sequence(arguments.get(0, "iterable"))
     if items is None or arguments.named or not all(isinstance(item, Const) for item in items):
         return UNKNOWN
     keyed = [(item.value, item) for item in items if isinstance(item, Const)]
@@ -166,7 +162,7 @@ def _sorted(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> 
 
 
 def _reversed(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "sequence"))
+    items = sequence(arguments.get(0, "sequence"))
     return UNKNOWN if items is None else TupleValue(items[::-1])
 
 
@@ -357,19 +353,15 @@ def _as_value(data: Any, span: Span | None) -> Value:
 def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         me = arguments.positional[0]
+        if not isinstance(me, Const) or not isinstance(me.value, str) or arguments.open:
+            return UNKNOWN
         try:
             given = [_plain(value) for value in arguments.positional[1:]]
             named = {key: _plain(value) for key, value in arguments.named}
-            text = me.value if isinstance(me, Const) else None
-            if (
-                arguments.open
-                or not isinstance(text, str)
-                or _is_long([text, *given, *named.values()])
-            ):
+            long = _is_long([me.value, *given, *named.values()])
+            if long or (name == "format" and has_width(me.value)):
                 return UNKNOWN
-            if name == "format" and has_width(text):
-                return UNKNOWN
-            found = getattr(text, name)(*given, **named)
+            found = getattr(me.value, name)(*given, **named)
         except (ValueError, TypeError, LookupError, AttributeError):
             return UNKNOWN
         if isinstance(found, str) and len(found) > LONGEST_TEXT:

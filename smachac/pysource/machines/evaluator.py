@@ -348,8 +348,12 @@ class Evaluator:
         """Code that runs an unknown number of times: what one run changes is not known in the
         next one."""
 
+        def once() -> Completion | None:
+            end = turn()
+            return None if end is not None and end[0] == "continue" else end
+
         def some() -> Completion | None:
-            end = self._region("loop", turn)
+            end = self._region("loop", once)
             return end if end is not None and end[0] in ("return", "raise") else None
 
         for _ in range(MOST_WIDENINGS):

@@ -43,8 +43,6 @@ CONTAINERS = ("smach.StateMachine", "smach.Sequence", "smach.Concurrence", "smac
 STATIC = frozenset(["add", "add_auto", "set_contained_state"])
 """The methods that add to the container that `with` has opened."""
 
-NO_OUTCOMES: Sequence[str] = ()
-
 _READY = {
     "smach_ros.SimpleActionState": ("succeeded", "aborted", "preempted"),
     "smach_ros.ServiceState": ("succeeded", "aborted", "preempted"),
@@ -145,13 +143,14 @@ def _container(kind: str, inputs_at: int, others: Sequence[tuple[int, str]]) -> 
 def _cb_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     me, function = arguments.get(0, "self"), arguments.get(1, "cb", UNKNOWN)
     if isinstance(me, Instance) and function is not None:
+        here = span or me.span
         own = _of_callback(function)
         given = [arguments.get(at, name) for at, name in
                  ((4, "outcomes"), (5, "input_keys"), (6, "output_keys"))]  # fmt: skip
         both = arguments.get(7, "io_keys") or TupleValue(())
-        outcomes = _joined(_names(evaluator, given[0], span), own[0])
-        inputs = _joined(_names(evaluator, given[1], span), own[1], both)
-        outputs = _joined(_names(evaluator, given[2], span), own[2], both)
+        outcomes = _joined(_names(evaluator, given[0], here), own[0])
+        inputs = _joined(_names(evaluator, given[1], here), own[1], both)
+        outputs = _joined(_names(evaluator, given[2], here), own[2], both)
         _interface(evaluator, me, outcomes, inputs, outputs)
         evaluator.heap.set(me.slots, "$callback", function)
     return NONE
@@ -176,6 +175,7 @@ def _ready(name: str) -> Run:
         me = arguments.get(0, "self")
         if not isinstance(me, Instance):
             return NONE
+        here = span or me.span
         given = _without_node(name, arguments.without_first())
         values = {
             parameter: value
@@ -185,12 +185,12 @@ def _ready(name: str) -> Run:
         callbacks = [values[key] for key in values if key.endswith("_cb") and key != "cond_cb"]
         interfaces = [_of_callback(value) for value in callbacks]
         outcomes: list[Value] = [TupleValue(tuple(Const(text) for text in _READY[name]))]
-        outcomes += [_names(evaluator, values.get("outcomes"), span), *(i[0] for i in interfaces)]
+        outcomes += [_names(evaluator, values.get("outcomes"), here), *(i[0] for i in interfaces)]
         reads = [_one(values[key]) for key in _READ if key in values]
         writes = [_one(values[key]) for key in _WRITTEN if key in values]
-        inputs = [_names(evaluator, values.get("input_keys"), span), *(i[1] for i in interfaces)]
-        outputs = [_names(evaluator, values.get("output_keys"), span), *(i[2] for i in interfaces)]
-        slots = _names(evaluator, values.get("slots"), span)
+        inputs = [_names(evaluator, values.get("input_keys"), here), *(i[1] for i in interfaces)]
+        outputs = [_names(evaluator, values.get("output_keys"), here), *(i[2] for i in interfaces)]
+        slots = _names(evaluator, values.get("slots"), here)
         _interface(evaluator, me, _joined(*outcomes), _joined(*inputs, *reads, slots),
                    _joined(*outputs, *writes, slots))  # fmt: skip
         evaluator.heap.set(me.slots, "$required", _joined(*reads))
