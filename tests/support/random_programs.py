@@ -38,7 +38,27 @@ class Part:
         self.q = value
 
 
-part = Part()
+def take(x, *more, y="y", **named):
+    return (named.get("z") or y or x) + str(len(more))
+
+
+def counter():
+    total = 0
+
+    def count():
+        nonlocal total
+        total += 1
+        return f"n{total}"
+
+    return count
+
+
+def put(label, target, **table):
+    smach.StateMachine.add(label, smach.State(outcomes=["o"]), {"o": target, **table})
+
+
+count = counter()
+other = part = Part()
 sm = smach.StateMachine(outcomes=["end"])
 """
 
@@ -71,7 +91,8 @@ class Writer:
         body = self.block(1, in_loop=False, in_function=True)
         name = f"f{number}"
         self.functions.append(name)
-        lines = [f"def {name}(x, y='default', *rest, **named):", "    global a, b", *body,
+        lines = [f"def {name}(x, y='default', *rest, **named):",
+                 "    global a, b, names, table", *body,
                  f"    return {self.text()}", "", ""]  # fmt: skip
         return "\n".join(lines)
 
@@ -124,7 +145,7 @@ class Writer:
         return lines
 
     def statement(self, depth: int, at: str, in_loop: bool, in_function: bool) -> list[str]:
-        kind = self.pick(16 if depth >= 3 else 23)
+        kind = self.pick(24 if depth >= 3 else 34)
         name = self.name()
         number = self.unknown()
 
@@ -163,24 +184,57 @@ class Writer:
                 return [f"{at}table = {{**table, 'p': {self.text()}}}"]
             case 15:
                 return [f"{at}[names.append(n) for n in vendor.items({number})]"]
-            case 16 | 17:
+            case 16:
+                return [f"{at}{self.change()}"]
+            case 17:
+                return [f"{at}{name}, *_ = [{self.text()}, {self.text()}]"]
+            case 18:
+                return [f"{at}for {name} in table.values():", f"{at}    names.append({name})"]
+            case 19:
+                return [f"{at}if {self.condition()}:", f"{at}    raise vendor.Error"]
+            case 20:
+                return [f"{at}part = {self.one('part', 'Part()', 'other')}"]
+            case 21:
+                return [f"{at}{name} = take({self.text()}, *names, {self.one('y', 'z')}="
+                        f"{self.text()})"]  # fmt: skip
+            case 22:
+                return [f"{at}{name} = count()"]
+            case 23:
+                return [f"{at}with sm:",
+                        f"{at}    put('T', {name}, **table)"]  # fmt: skip
+            case 24 | 25:
                 lines = [f"{at}if {self.condition()}:", *inner()]
                 return [*lines, f"{at}else:", *inner()] if self.pick(2) else lines
-            case 18:
+            case 26 | 27:
                 items = self.one("('a', 'b')", f"vendor.items({number})", "list(names)", "()")
                 lines = [f"{at}for {name} in {items}:", *inner(loop=True)]
                 return [*lines, f"{at}else:", *inner()] if self.pick(3) == 0 else lines
-            case 19:
+            case 28:
                 return [f"{at}while vendor.more({number}):", *inner(loop=True)]
-            case 20 | 21:
+            case 29 | 30:
                 lines = [f"{at}try:", *inner(), f"{at}except vendor.Error:", *inner()]
                 return [*lines, f"{at}finally:", f"{at}    {name} = {name}[:3]"]
-            case 22:
+            case 31:
+                return [f"{at}at_{depth} = 0", f"{at}while at_{depth} < 2:",
+                        f"{at}    at_{depth} += 1", *inner(loop=True)]  # fmt: skip
+            case 32:
+                return [f"{at}try:", *inner(), f"{at}finally:", f"{at}    {name} = {name}[:2]"]
+            case 33:
                 return [f"{at}match {name}:", f"{at}    case 'a' | 'd':",
                         *self.deeper(depth, in_loop, in_function), f"{at}    case 'b':",
                         *self.deeper(depth, in_loop, in_function), f"{at}    case other:",
                         f"{at}        {self.name()} = other"]  # fmt: skip
         return [f"{at}pass"]
+
+    def change(self) -> str:
+        """A call that changes a collection."""
+        return self.one(
+            f"table.update(p={self.text()})", f"table.setdefault('q', {self.text()})",
+            "table.pop('p', None)", "names.reverse()", "names.sort()", "names.extend(names[:1])",
+            f"names.insert(0, {self.text()})", "names.clear()", "del table['o']",
+            "names[0] = 'x' if names else names.append('x')", "vendor.use(names)",
+            f"names = sorted(set(names) | {{{self.text()}}})", "names = [*names, *table]",
+        )  # fmt: skip
 
     def deeper(self, depth: int, in_loop: bool, in_function: bool) -> list[str]:
         return self.block(depth + 2, in_loop=in_loop, in_function=in_function)
@@ -257,7 +311,7 @@ def _vendor(choice: Sequence[bool]) -> types.ModuleType:
         return turns[number] >= 0
 
     vars(module).update(
-        Error=Error, risky=risky, more=more, flag=lambda number: choice[number],
+        Error=Error, risky=risky, use=list.clear, more=more, flag=lambda number: choice[number],
         items=lambda number: ["d", "e"] if choice[number] else [],
     )  # fmt: skip
     return module

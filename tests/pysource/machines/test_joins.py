@@ -36,9 +36,11 @@ def wrong(machine: ReadMachine, real: Sequence[RealState]) -> list[object]:
         for read in machine.states
         if not read.possible and not any(fits(read, one) for one in real)
     ]
+    labels = [read.label for read in machine.states]
     certain = [read.label for read in machine.states if not read.possible]
+    certain = [label for label in certain if labels.count(label) == 1]
     order = [*dict.fromkeys(one.label for one in real if one.label in certain)]
-    if order != [*dict.fromkeys(certain)]:
+    if order != certain:
         found.append(("order", order, certain))
     return found
 
