@@ -114,6 +114,8 @@ class PythonProject:
                         if item.code in CANNOT_WORK and item.severity is Severity.ERROR]  # fmt: skip
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
         report += _of_uses(evaluator.faults, whole)
+        if evaluator.exhausted and not whole:
+            report.append(_too_long(source))
         rest, _, _ = suppress(report, source, (source,), CODES)
         found = grouped(apply_severities(in_order(rest), library.policy))
         return PythonFile(path=path, source=source, graphs=tuple(whole), report=found)
@@ -196,6 +198,12 @@ def _unreadable(source: Source) -> Diagnostic:
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
     help = "correct the code at the mark"
     return errors.unreadable_module(word.span, message, help)
+
+
+def _too_long(source: Source) -> Diagnostic:
+    message = "reading this file takes too many steps, before it has built a machine"
+    help = "build the machine in a function that needs no long loop"
+    return errors.unreadable_module(Span(source, 0, 0), message, help)
 
 
 def _in_file(findings: Report, file: str) -> Report:

@@ -92,7 +92,8 @@ class _Region:
 
 class Evaluator:
     """Evaluates modules, functions and classes; `made` are the objects of SMACH's classes in the
-    order in which they were made, `called` the functions that were called."""
+    order in which they were made, `called` the functions that were called. `exhausted`: a part of
+    the file took too many steps."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -106,6 +107,7 @@ class Evaluator:
         self.unsure = 0
         self.orphans = 0
         self.tries = 0
+        self.exhausted = False
         self.faults: list[UseFault] = []
 
     # --- statements
@@ -185,6 +187,7 @@ class Evaluator:
         self.regions.clear()
         self.calls.clear()
         self.unsure = self.tries = 0
+        self.exhausted = True
         self.heap.reset()
 
     def load(self, body: Sequence[ast.stmt], frame: Frame) -> bool:
@@ -205,6 +208,7 @@ class Evaluator:
         self.made.clear()
         self.faults.clear()
         self.steps = self.heap.work = 0
+        self.exhausted = False
 
     def _branch(
         self, test: ast.expr, body: Sequence[ast.stmt], orelse: Sequence[ast.stmt], frame: Frame

@@ -235,7 +235,9 @@ def test_what_can_work_is_no_finding(name: str, tmp_path: Path) -> None:
 
 def test_files_of_a_repository_do_not_change_each_other(tmp_path: Path) -> None:
     (tmp_path / "names.py").write_text('TARGETS = ["ok"]\n', "utf-8")
-    text = 'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Do(), {"ok": names.T})'
+    text = (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Do(), {"ok": names.T})'
+    )
     text = f"{HEAD}\nimport names\n{text.replace('names.T', 'names.TARGETS[-1]')}\n"
     (tmp_path / "one.py").write_text(f"import names\nnames.TARGETS.append('gone')\n{text}", "utf-8")
     (tmp_path / "two.py").write_text(text, "utf-8")

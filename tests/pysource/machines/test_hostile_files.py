@@ -94,3 +94,40 @@ def test_a_folder_and_a_file_that_nobody_may_read(tmp_path: Path) -> None:
     assert [item.code for item in read(tmp_path / "a.py").report] == []
     for name in ("x.py", "link.py", "loop.py"):
         assert [item.code for item in read(tmp_path / name).report] != []
+
+
+LONG = "def work(n):\n    work(n)\n    work(n)\n\nwork(0)\n"
+
+
+def test_a_file_that_takes_too_many_steps_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(evaluator, "MOST_STEPS", STEPS)
+    path = tmp_path / "machine.py"
+    head = "import smach\nsm = smach.StateMachine(outcomes=['a'])\n"
+    add = "sm.open()\nsm.add('A', smach.State(outcomes=['a']), {'a': 'B'})\n"
+    path.write_text(f"import smach\n{LONG}{head}{add}")
+    assert [item.code for item in read(path).report] == ["SM805"]
+    path.write_text(f"{head}{add}{LONG}")
+    found = read(path)
+    assert [item.code for item in found.report] == []
+    assert "not all of its states are known" in found.coverage
+
+
+def test_a_file_is_read_as_before_after_one_that_takes_too_many_steps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(evaluator, "MOST_STEPS", STEPS)
+    good = "import smach\nimport names\nsm = smach.StateMachine(outcomes=['a'])\nwith sm:\n"
+    good += "    sm.add('A', smach.State(outcomes=['a']), {'a': names.NEXT})\n"
+    (tmp_path / "names.py").write_text("NEXT = 'B'\n")
+    (tmp_path / "good.py").write_text(good)
+    bad = f"import names\nnames.NEXT = 'a'\n{LONG}"
+    (tmp_path / "bad.py").write_text(bad)
+    project = PythonProject(Disk())
+    reports = [project.read(tmp_path / name).report for name in ("good.py", "bad.py", "good.py")]
+    assert [[item.code for item in report] for report in reports] == [
+        ["SM101"],
+        ["SM805"],
+        ["SM101"],
+    ]
