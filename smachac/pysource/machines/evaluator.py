@@ -53,8 +53,9 @@ from smachac.pysource.machines.values import (
 )
 from smachac.records import dataclass, field
 
-MOST_STEPS = 400_000
-"""The most statements and expressions that are evaluated for one file."""
+MOST_STEPS, MOST_TIMES = 400_000, 2
+"""The most statements and expressions that are evaluated for the main part of a file, or for one of
+its functions and classes, and how many times as many for all of them."""
 DEEPEST_CALL, MOST_RECURSIVE = 60, 2
 """The most calls inside one another, and of one function under an unknown condition."""
 MOST_TURNS, MOST_WIDENINGS = 1_000, 8
@@ -99,7 +100,9 @@ class Evaluator:
         self.project = project
         self.heap = Heap()
         self.steps = 0
-        self.calls: list[Function] = []
+        self.limit = MOST_STEPS
+        self.calls: list[tuple[Function, int]] = []
+        self.adds = 0
         self.regions: list[_Region] = []
         self.made: list[Instance] = []
         self.called: set[ast.AST] = set()
@@ -178,8 +181,12 @@ class Evaluator:
 
     def _step(self) -> None:
         self.steps += 1
-        if self.steps + self.heap.work > MOST_STEPS:
+        if self.steps + self.heap.work > self.limit:
             raise BudgetError
+
+    def renew(self) -> None:
+        """Gives the next function or class of a file steps of its own, if the file has steps left."""
+        self.limit = min(self.steps + self.heap.work + MOST_STEPS, MOST_TIMES * MOST_STEPS)
 
     def reset(self) -> None:
         """Ends what is being evaluated after a BudgetError."""
@@ -208,6 +215,7 @@ class Evaluator:
         self.made.clear()
         self.faults.clear()
         self.steps = self.heap.work = 0
+        self.renew()
         self.exhausted = False
 
     def _branch(
@@ -1309,6 +1317,13 @@ class Evaluator:
         for value in (*arguments.positional, *(value for _, value in arguments.named)):
             self._lose(value)
 
+    def _lose_in(self, arguments: Arguments, *, adds: bool) -> None:
+        """Notes what a call can have changed that is not evaluated; `adds`: it can add states."""
+        values = (*arguments.positional, *(value for _, value in arguments.named))
+        for value in (*values, *self.opened):
+            if adds or not isinstance(value, Instance):
+                self._lose(value)
+
     def _lose(self, value: Value) -> None:
         """Notes that unknown code can have changed a value."""
         for part in alternatives(value):
@@ -1335,17 +1350,16 @@ class Evaluator:
         """The result of a call of a function of the project."""
         node = function.node
         self.called.add(node)
-        recursive = self.unsure and sum(called is function for called in self.calls)
-        if len(self.calls) >= DEEPEST_CALL or recursive >= MOST_RECURSIVE:
-            for value in (*self.opened, *arguments.positional, *dict(arguments.named).values()):
-                self._lose(value)
+        before = [adds for called, adds in self.calls if called is function]
+        if len(self.calls) >= DEEPEST_CALL or (self.unsure and len(before) >= MOST_RECURSIVE):
+            self._lose_in(arguments, adds=len(before) < 2 or self.adds > before[0])
             return UNKNOWN
         if isinstance(node, ast.AsyncFunctionDef) or _yields(node):
             return UNKNOWN
         slots = self._parameters(function, arguments)
         me = arguments.positional[0] if arguments.positional else None
         frame = Frame(slots, function.frame.module, function.frame, function, me)
-        self.calls.append(function)
+        self.calls.append((function, self.adds))
         try:
             if isinstance(node, ast.Lambda):
                 return self.value(node.body, frame)

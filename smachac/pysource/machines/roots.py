@@ -83,6 +83,7 @@ def _built(
         mark, before = evaluator.heap.mark(), len(evaluator.made)
         orphans = evaluator.orphans
         complete = True
+        evaluator.renew()
         try:
             candidate()
         except (BudgetError, RecursionError):
@@ -92,7 +93,8 @@ def _built(
         if evaluator.orphans == orphans:
             yield read(_roots(evaluator, before, file, closed=False, complete=complete))
         evaluator.heap.undo(mark)
-        evaluator.heap.release(mark)
+        if complete:  # else all marks are given up
+            evaluator.heap.release(mark)
         del evaluator.made[before:]
 
 

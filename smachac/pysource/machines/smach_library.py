@@ -230,6 +230,7 @@ def _add(kind: str) -> Run:
             final = arguments.get(4, "final_outcome_map")
         else:
             transitions, remapping = arguments.get(2, "transitions"), arguments.get(3, "remapping")
+        evaluator.adds += 1
         if not evaluator.opened:
             evaluator.orphans += 1
             return state or UNKNOWN

@@ -280,10 +280,12 @@ class Arguments:
 
 class Interpreter(Protocol):
     """The part of the evaluator that models of libraries use. `opened` are the containers that
-    `with` has opened; `orphans` counts the states that were added to a container of a caller."""
+    `with` has opened; `adds` counts all states that were added, `orphans` those to a container
+    of a caller."""
 
     opened: list[Value]
     orphans: int
+    adds: int
     faults: list[UseFault]
 
     @property

@@ -429,6 +429,20 @@ with sm:
     assert not machine.complete
 
 
+def test_recursion_that_adds_no_state_leaves_the_container_complete() -> None:
+    machine = read("""
+def size(part):
+    return vendor.flag() and size(part) + size(part)
+
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+    smach.StateMachine.add("A", Do(), {"ok": "B"})
+    size(sm)
+    smach.StateMachine.add("B", Do(), {"ok": "done"})
+""")
+    assert machine.exact == CHAIN
+
+
 def test_positional_arguments_behind_unknown_ones_have_no_known_place() -> None:
     machine = read("""
 def make(name, after):

@@ -131,3 +131,15 @@ def test_a_file_is_read_as_before_after_one_that_takes_too_many_steps(
         ["SM805"],
         ["SM101"],
     ]
+
+
+def test_a_function_is_read_after_one_that_takes_too_many_steps(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(evaluator, "MOST_STEPS", STEPS)
+    build = "    sm = smach.StateMachine(outcomes=['a'])\n    with sm:\n"
+    build += "        sm.add('A', smach.State(outcomes=['a']), {'a': 'B'})\n    return sm\n"
+    work = LONG.replace("work(0)\n", "")
+    path = tmp_path / "machine.py"
+    path.write_text(f"import smach\n{work}\ndef one():\n    work(0)\n{build}\ndef two():\n{build}")
+    assert [item.code for item in read(path).report] == ["SM101"]
