@@ -185,7 +185,7 @@ class Evaluator:
             raise BudgetError
 
     def renew(self) -> None:
-        """Gives the next function or class of a file steps of its own, if the file has steps left."""
+        """Gives the next function or class of a file new steps, if the file has some left."""
         self.limit = min(self.steps + self.heap.work + MOST_STEPS, MOST_TIMES * MOST_STEPS)
 
     def reset(self) -> None:
@@ -369,33 +369,25 @@ class Evaluator:
             return end if end is not None and end[0] in ("return", "raise") else None
 
         for _ in range(MOST_WIDENINGS):
-            changed = self._changes_of(some)
-            new = False
-            for slots, key, value in changed.values():
-                now = present(slots, key, slots.get(key, ABSENT))
-                if now is not ABSENT and not _grows(now) and not _grows(value):
-                    new = new or now is not UNKNOWN
-                    self.heap.set(slots, key, UNKNOWN)
-            if not new:
-                break
+            made, faults = len(self.made), len(self.faults)
+            orphans, opened = self.orphans, [*self.opened]
+            left = [len(region.left) for region in self.regions]
+            mark = self.heap.mark()
+            end = self.choice([some, lambda: None])
+            changed = [(slots, key) for slots, key, before, now in self.heap.since(mark)
+                       if _is_other(present(slots, key, before), now)]  # fmt: skip
+            if not changed:
+                self.heap.release(mark)
+                return end
+            self.heap.undo(mark)
+            self.heap.release(mark)
+            del self.made[made:], self.faults[faults:]
+            self.orphans, self.opened[:] = orphans, opened
+            for region, count in zip(self.regions, left, strict=True):
+                del region.left[count:]
+            for slots, key in changed:
+                self.heap.set(slots, key, UNKNOWN)
         return self.choice([some, lambda: None])
-
-    def _changes_of(self, run: Callable[[], object]) -> Changes:
-        """What code changes; nothing else remains of the run."""
-        mark = self.heap.mark()
-        made, faults = len(self.made), len(self.faults)
-        orphans, opened = self.orphans, [*self.opened]
-        left = [len(region.left) for region in self.regions]
-        self.unsure += 1
-        run()
-        self.unsure -= 1
-        changed = self.heap.undo(mark)
-        self.heap.release(mark)
-        del self.made[made:], self.faults[faults:]
-        self.orphans, self.opened[:] = orphans, opened
-        for region, count in zip(self.regions, left, strict=True):
-            del region.left[count:]
-        return changed
 
     def _with(
         self, items: Sequence[ast.withitem], body: Sequence[ast.stmt], frame: Frame
@@ -1460,9 +1452,12 @@ def _left(end: Completion) -> Completion:
     return end[0], LEFT
 
 
-def _grows(value: object) -> bool:
-    """Whether joining keeps what each of two contents has."""
-    return isinstance(value, Children)
+def _is_other(before: object, now: object) -> bool:
+    """Whether the next turn of a loop can find another value. Of a container, joining keeps the
+    states of both."""
+    if before is ABSENT or before is UNKNOWN or isinstance(before, Children):
+        return False
+    return now is not before and now != before
 
 
 def _yields(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) -> bool:

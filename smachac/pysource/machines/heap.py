@@ -4,7 +4,7 @@ states after the branches of an unknown condition joined."""
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias, TypeVar
 
@@ -135,6 +135,14 @@ class Heap:
             (id(slots), key): (slots, key, slots.get(key, ABSENT))
             for slots, key, _ in self.log[mark:]
         }
+
+    def since(self, mark: int) -> Iterator[tuple[Slots, Any, Any, Any]]:
+        """The slots that were written since a mark, with the values at the mark and now."""
+        seen: set[tuple[int, Any]] = set()
+        for slots, key, before in self.log[mark:]:
+            if (id(slots), key) not in seen:
+                seen.add((id(slots), key))
+                yield slots, key, before, slots.get(key, ABSENT)
 
     def undo(self, mark: int) -> Changes:
         """Restores the state at a mark; the changes since then."""
