@@ -810,7 +810,8 @@ class Evaluator:
         self._step()
         match node:
             case ast.Constant(value=known):
-                if known is Ellipsis or (isinstance(known, int) and known.bit_length() > MOST_BITS):
+                is_large = isinstance(known, int) and known.bit_length() > MOST_BITS
+                if is_large or not isinstance(known, float | complex | int | str | bytes | None):
                     return UNKNOWN
                 return Const(known, self.span(node, frame))
             case ast.Name(id=name):
