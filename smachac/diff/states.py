@@ -86,9 +86,13 @@ def states_of(machine: Machine) -> States:
                     found[parent].children.append(each.plain)
         elif not isinstance(last := known.chain[-1], Leaf) and sugared_child(last) is each.node:
             known.chain.append(each.node)
+    siblings = {
+        path: frozenset(child.name for child in around.children)
+        for path, state in found.items()
+        if not isinstance(around := state.chain[-1], Leaf)
+    }
     for state in found.values():
-        around = found[state.parent].chain[-1] if state.parent is not None else None
-        state.facts = dict(_facts(state, around))
+        state.facts = dict(_facts(state, siblings.get(state.parent or "")))
     found[machine.root.name].facts |= dict(_machine_facts(machine))
     return found
 
@@ -106,7 +110,9 @@ def _machine_facts(machine: Machine) -> Iterator[tuple[Fact, Value]]:
         yield ("field", "robot"), (machine.robot.name,)
 
 
-def _facts(state: State, around: Node | None) -> Iterator[tuple[Fact, Value]]:
+def _facts(state: State, siblings: frozenset[str] | None) -> Iterator[tuple[Fact, Value]]:
+    """The facts of a state; `siblings` are the names of the states of its container, if it is in
+    one."""
     inner, outer = state.chain[-1], state.chain[0]
     yield from _interface(inner, outer)
     for container in state.chain[:-1]:
@@ -117,8 +123,8 @@ def _facts(state: State, around: Node | None) -> Iterator[tuple[Fact, Value]]:
             yield ("variable", variable.name), (print_data(variable.value.data),)
     else:
         yield from _container(inner, state.path)
-    if around is not None and not isinstance(around, Leaf):
-        yield from _transitions(outer, around, state.path)
+    if siblings is not None:
+        yield from _transitions(outer, siblings, state.path)
 
 
 def _interface(inner: Node, outer: Node) -> Iterator[tuple[Fact, Value]]:
@@ -206,8 +212,7 @@ def _loop(container: nodes.Iterator) -> Iterator[tuple[Fact, Value]]:
             yield ("field", name), (text,)
 
 
-def _transitions(outer: Node, around: Container, path: str) -> Iterator[tuple[Fact, Value]]:
-    siblings = frozenset(child.name for child in around.children)
+def _transitions(outer: Node, siblings: frozenset[str], path: str) -> Iterator[tuple[Fact, Value]]:
     seen: set[str] = set()
     for step in outer.transitions:
         if step.outcome in seen:

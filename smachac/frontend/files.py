@@ -561,11 +561,10 @@ def _stems(folders: Sequence[Path], suffixes: Sequence[str]) -> list[str]:
     names = []
     for folder in folders:
         with contextlib.suppress(OSError):
-            for path in sorted(folder.iterdir()):
-                for suffix in suffixes:
-                    if path.name.endswith(suffix):
-                        names.append(path.name.removesuffix(suffix))
-                        break
+            for name in sorted(path.name for path in folder.iterdir()):
+                suffix = next((suffix for suffix in suffixes if name.endswith(suffix)), None)
+                if suffix is not None:
+                    names.append(name.removesuffix(suffix))
     return list(dict.fromkeys(names))
 
 

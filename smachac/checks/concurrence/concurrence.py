@@ -170,6 +170,10 @@ def _example(container: Concurrence) -> str:
     return "STATE: OUTCOME"
 
 
+MOST_COMPARED_RULES = 100
+"""The most rules of a concurrence that are compared with a wrong one for its help."""
+
+
 def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
     """The help for an outcome in a rule that its state does not have."""
     names = outcome_names(child)
@@ -177,9 +181,10 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
     meant = guesser(names).sure(outcome) or outcome_of_one_meaning(child, outcome)
     alike = [each.name for each in container.children
              if each is not child and each.type == child.type]  # fmt: skip
+    is_searched = meant is None and len(container.rules) <= MOST_COMPARED_RULES
     others = {part.outcome: part.child for rule in container.rules for part in rule.when
               if part.child in alike and part.outcome in names
-              and part.outcome != PREEMPTED}  # fmt: skip
+              and part.outcome != PREEMPTED} if is_searched else {}  # fmt: skip
     if meant is None and len(others) == 1:
         ((name, other),) = others.items()
         return f"write `{child.name}: {name}`, as in the rule for `{other}`"

@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from smachac.analysis.property_events import NameFault
 
 
-def name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
+def name_fault(
+    fault: NameFault, given: Property, context: Context, *, is_searched: bool
+) -> Finding:
+    """The finding on the name of an event. `is_searched`: states and properties are searched for
+    what is meant, which takes long for many names."""
     atom = fault.atom
     if fault.kind == "ambiguous":
         return Finding(
@@ -44,8 +48,7 @@ def name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
     subject = what.get(atom.subject, "state with a claim of")
     known: Sequence[str] = fault.known
     if atom.subject == "path":  # without the states that a retry or a time limit adds
-        written = [each.plain.rpartition("/")[2] for each in walk_script(context.machine.root)
-                   if not each.added]  # fmt: skip
+        written = context.of_machine(_written)
         known = [name for name in known if name in written]
     beside = _beside(given.form, atom) if atom.subject == "path" else ()
     known = [name for name in known if all(name != each.name for each in beside)]
@@ -62,11 +65,40 @@ def name_fault(fault: NameFault, given: Property, context: Context) -> Finding:
         or _as_failure(atom, known, alike, context)
         or did_you_mean(atom.name, alike)
         or _by_words(atom, alike)
-        or _of_same_work(beside, known, context)
-        or _unnamed(alike, context)
-        or _led_to(given, atom, alike, context)
+        or (_searched(given, atom, beside, known, alike, context) if is_searched else None)
         or (f"use one of {names}" if names else _nothing_known(atom)),
         edits=edits,
+    )
+
+
+def _written(context: Context) -> frozenset[str]:
+    """The names of the states of the script."""
+    return frozenset(
+        each.plain.rpartition("/")[2]
+        for each in walk_script(context.machine.root)
+        if not each.added
+    )
+
+
+def _named(context: Context) -> frozenset[str]:
+    """The names of states that properties have."""
+    return frozenset(
+        atom.name.rpartition("/")[2]
+        for each in context.machine.properties
+        for atom in atoms(each.form)
+        if atom.subject == "path"
+    )
+
+
+def _searched(
+    given: Property, atom: Atom, beside: Atoms, known: Sequence[str], alike: Sequence[str],
+    context: Context,
+) -> str | None:  # fmt: skip
+    """The help for an unknown event that its place among states and properties gives."""
+    return (
+        _of_same_work(beside, known, context)
+        or _unnamed(alike, context)
+        or _led_to(given, atom, alike, context)
     )
 
 
@@ -104,8 +136,7 @@ def _of_same_work(beside: Atoms, known: Sequence[str], context: Context) -> str 
 
 def _unnamed(known: Sequence[str], context: Context) -> str | None:
     """The help for an unknown event: the only state that no property names."""
-    named = {atom.name.rpartition("/")[2] for each in context.machine.properties
-             for atom in atoms(each.form) if atom.subject == "path"}  # fmt: skip
+    named = context.of_machine(_named)
     root = context.machine.root.name
     left = [name for name in known if name not in named and name != root]
     return f"write `{left[0]}`, the only state that no property names" if len(left) == 1 else None
@@ -116,8 +147,7 @@ def _led_to(given: Property, atom: Atom, known: Sequence[str], context: Context)
     states of the property lead; of several the only one to which they lead after a failure."""
     if atom.subject != "path":
         return None
-    named = {each.name.rpartition("/")[2] for one in context.machine.properties
-             for each in atoms(one.form) if each.subject == "path"}  # fmt: skip
+    named = context.of_machine(_named)
     others = {each.name.rpartition("/")[2] for each in atoms(given.form) if each is not atom}
     found: dict[str, str] = {}
     failed: dict[str, str] = {}

@@ -16,7 +16,7 @@ from smachac.checks.properties.property_turns import Turn
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import Span, assert_never
-from smachac.diagnostics.spelling import written_name
+from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
 from smachac.ir.graph import reachable
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
@@ -499,8 +499,9 @@ def unknown_event(context: Context) -> Iterator[Finding]:
     for given, fault in faults:
         which = fault.kind, fault.atom.subject, fault.atom.name, fault.atom.outcome or ""
         alike.setdefault(which, []).append((given, fault))
-    for first, *others in alike.values():
-        found = name_fault(first[1], first[0], context)
+    for number, (first, *others) in enumerate(alike.values()):
+        is_searched = number < MOST_EXPLAINED
+        found = name_fault(first[1], first[0], context, is_searched=is_searched)
         spans = [*dict.fromkeys(fault.atom.span for _, fault in others)][:_MOST_ALIKE]
         more = [part for span in spans for part in other_place(span, "and here")]
         yield replace(found, related=(*found.related, *more))

@@ -379,11 +379,11 @@ def _with_implicit(child: Node, outcomes: frozenset[str]) -> Node:
 
 def _concurrence(state: State, fields: dict[str, Any], children: tuple[Node, ...]) -> Concurrence:
     default = state.default_outcome or Word("", state.name.span)
-    pairs = [pair for _, conditions in state.outcome_map for pair in conditions]
-    children = tuple(
-        _with_error(child, [ending for name, ending in pairs if name.text == child.name])
-        for child in children
-    )
+    endings: dict[str, list[Word]] = {}
+    for _, conditions in state.outcome_map:
+        for name, ending in conditions:
+            endings.setdefault(name.text, []).append(ending)
+    children = tuple(_with_error(child, endings.get(child.name, [])) for child in children)
     return Concurrence(
         **fields,
         children=children,

@@ -664,12 +664,16 @@ class _Resolver:
         if found is None:
             searched, names = self.known_templates()
             known = [*names, *([] if role else schema.CONTAINERS)]
-            other = self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
             near = guesser_of(tuple(known)).sure(word.text)
             is_known = word.text in self.unknown or len(self.unknown) >= MOST_EXPLAINED
+            other = (
+                ""
+                if is_known
+                else self.library.folder_with(word.text, (".yml", ".tpl.py"), searched)
+            )
             read = {} if role or is_known else entries
             self.unknown.add(word.text)
-            called = [] if role else self.library.script_names(around.source.name)
+            called = [] if role or is_known else self.library.script_names(around.source.name)
             found_in = Searched(searched, names, known, called, other)
             self.not_found(word.text, unknown_template(word, read, found_in, self.other_type))
             meant = schema.CONTAINERS.get(near or "")

@@ -23,6 +23,7 @@ from smachac.ir.nodes import (
     OutcomeRule,
     Sequence,
     StateMachine,
+    Transition,
 )
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import ends_preempted, leads_to_child, own_outcomes, walk
@@ -323,11 +324,12 @@ def _part(plan: ContainerPlan, children: tuple[Node, ...], ended: str) -> _Part:
     caught: Lines = []
     calls: list[ChildCall] = []
     here = frozenset(child.name for child in children)
-    codes = {
-        (child.name, name): _outcome(plan, child, name, ended, here)
-        for child in children
-        for name in all_results(child)
-    }
+    codes: dict[tuple[str, str], OutcomeCode] = {}
+    for child in children:
+        edges = {edge.outcome: edge for edge in reversed(child.transitions)}
+        for name in all_results(child):
+            code = _outcome(plan, child, name, edges.get(name), ended, here)
+            codes[child.name, name] = code
     labels = {codes[child.name, name].label for child in children for name in results(child)}
     for child in children:
         lines: Lines = []
@@ -388,12 +390,12 @@ def _dispatch(count: int) -> Lines:
 
 
 def _outcome(
-    plan: ContainerPlan, child: Node, name: str, ended: str, here: AbstractSet[str]
-) -> OutcomeCode:
+    plan: ContainerPlan, child: Node, name: str, edge: Transition | None, ended: str,
+    here: AbstractSet[str],
+) -> OutcomeCode:  # fmt: skip
     """The transition of a state of a machine for an outcome; `ended` as in `_part`. `here` are the
     states of the same function."""
     text = cpp_literal(name)
-    edge = next((edge for edge in child.transitions if edge.outcome == name), None)
     if edge is None:
         return OutcomeCode(statements=[f"run.undeclared(places, state, {text});"])
     if leads_to_child(edge, plan.names):
