@@ -107,11 +107,12 @@ class PythonProject:
             if any(item.code in IN_ALL for item in findings):
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                findings += [item for graph in variants for item in check_machine(graph.machine)
-                             if item.code in IN_ALL and item.span.source.name == str(path)]  # fmt: skip
+                more = (item for graph in variants for item in check_machine(graph.machine))
+                own = _in_file([*more], str(path))
+                findings += [item for item in own if item.code in IN_ALL]
         if not everything:
-            findings = [item for item in findings
-                        if item.code in CANNOT_WORK and item.severity is Severity.ERROR]  # fmt: skip
+            certain = (item for item in findings if item.code in CANNOT_WORK)
+            findings = [item for item in certain if item.severity is Severity.ERROR]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
         report += _of_uses(evaluator.faults, whole)
         if evaluator.exhausted and not whole:
