@@ -98,10 +98,13 @@ class PythonProject:
             if any(item.code in IN_ALL and (everything or _cannot_work(item)) for item in findings):
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                findings += [item for graph in variants for item in check_machine(graph.machine)
-                             if item.code in IN_ALL and item.span.source.name == str(path)]  # fmt: skip
+                more = (item for graph in variants for item in check_machine(graph.machine))
+                own = _in_file([*more], str(path))
+                findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
         report += _of_uses(evaluator.faults, whole)
+        if evaluator.exhausted and not whole:
+            report.append(_too_long(source))
         self.disk.searched.update(repository.files_of(str(path)))
         rest, _, _ = suppress([*map(_of_python, report)], source, (source,), CODES)
         if not everything:  # afterwards, as a comment can be about any finding
@@ -207,6 +210,12 @@ def _of_python(item: Diagnostic) -> Diagnostic:
     can be allowed and be in a baseline, as no program is generated."""
     finding = replace(item.finding, edits=(), repairs=())
     return replace(item, kind=replace(item.kind, firm=False), finding=finding)
+
+
+def _too_long(source: Source) -> Diagnostic:
+    message = "reading this file takes too many steps, before it has built a machine"
+    help = "build the machine in a function that needs no long loop"
+    return errors.unreadable_module(Span(source, 0, 0), message, help)
 
 
 def _in_file(findings: Report, file: str) -> Report:

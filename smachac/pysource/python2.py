@@ -12,7 +12,7 @@ from importlib.util import find_spec
 
 from smachac.diagnostics.source import Source, Span
 from smachac.ir.python_code import parse_module
-from smachac.pysource.source import LONGEST, PythonText
+from smachac.pysource.source import PythonText, is_readable
 from smachac.records import dataclass
 
 FIXERS = ("print", "except", "raise", "repr", "ne", "numliterals", "exec")
@@ -58,11 +58,13 @@ def looks_like_python2(source: Source) -> bool:
 
 def python2_text(source: Source) -> PythonText | None:
     """A text for Python 2; None if it is not valid. Raises NotInstalledError."""
-    if len(source.text) > LONGEST:
+    if not is_readable(source.text):
         return None
     text = _TABS.sub(lambda found: found.group().expandtabs(8), source.text)
     try:
-        tree = parse_module(text)  # only its tabs were wrong
+        tree = parse_module(text)
+        if text == source.text:  # Python 3 refuses it, but not because of its tabs
+            return None
     except SyntaxError:
         converted = _converted(text)
         if converted is None or converted.count("\n") != text.count("\n"):

@@ -55,10 +55,15 @@ class PythonText:
         ]
 
 
+def is_readable(text: str) -> bool:
+    """Whether a text is short enough, and its lines are the same for Python and for `Source`."""
+    return len(text) <= LONGEST and not _NOT_PORTABLE_LINES.search(text)
+
+
 def python_text(source: Source, *, template: bool) -> PythonText | None:
     """A text of Python; None if it is not valid, or nested too deeply."""
     text = source.text
-    if len(text) > LONGEST or _NOT_PORTABLE_LINES.search(text):
+    if not is_readable(text):
         return None
     filled: tuple[tuple[int, int], ...] = ()
     if template:
@@ -109,7 +114,7 @@ def _with_statements(text: str, template: str, filled: tuple[tuple[int, int], ..
 def syntax_error(source: Source) -> Word | None:
     """The first syntax error of a text, with the message of the parser; None if there is none."""
     text = source.text
-    if len(text) > LONGEST or _NOT_PORTABLE_LINES.search(text):
+    if not is_readable(text):
         return None
     try:
         parse_module(text)

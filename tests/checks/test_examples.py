@@ -11,8 +11,9 @@ from smachac.analysis import properties
 from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Code, Diagnostic, Report, Severity
 from smachac.driver import CODES, analyse, build
-from smachac.frontend.files import disk_library, read_source
-from smachac.report.explain_code import MAIN, explanation
+from smachac.frontend.files import Disk, disk_library, read_source
+from smachac.python_machines import PythonProject
+from smachac.report.explain_code import MAIN, MAIN_IN_PYTHON, explanation
 from smachac.targets import load_target
 from smachac.targets.hiding_files import hiding_files
 
@@ -25,7 +26,7 @@ TARGETS = {"SM601": "cpp", "SM602": "cpp", "SM604": "cpp"}
 
 IN_THE_MESSAGE = {
     "SM105", "SM204", "SM207", "SM210", "SM308", "SM402",
-    "SM606", "SM610", "SM701", "SM704",
+    "SM606", "SM610", "SM701", "SM704", "SM804",
 }  # fmt: skip
 """Codes whose messages contain what happens if the fault is left."""
 
@@ -36,6 +37,8 @@ def judged(files: Mapping[str, str], folder: Path, target_name: str = "python") 
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, "utf-8")
+    if MAIN_IN_PYTHON in files:
+        return PythonProject(Disk()).read(folder / MAIN_IN_PYTHON).report
     main = folder / MAIN
     report: Report = []
     library = disk_library(main, report)

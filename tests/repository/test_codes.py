@@ -8,13 +8,14 @@ from pathlib import Path
 from smachac import checks
 from smachac.checks.classes import template_blocks
 from smachac.driver import CODES
-from smachac.frontend.errors import references, script, suppressions
+from smachac.frontend.errors import python_machines, references, script, suppressions
 from smachac.targets import errors
 
 PROBLEMS = (
     script.PROBLEMS,
     references.PROBLEMS,
     suppressions.PROBLEMS,
+    python_machines.PROBLEMS,
     checks.PROBLEMS,
     errors.PROBLEMS,
 )

@@ -13,6 +13,7 @@ ALLOWED = {
     "interpreter/behaviours.py": "their behaviour in the interpreter",
     "targets/cpp/builtin_states.py": "their code in C++",
     "frontend/resolved_script.py": "the timer, which sugar adds to a machine",
+    "pysource/machines/smach_library.py": "the classes of SMACH of the same names",
     "refactor/smacha/template_differences.py": "the templates that templates of SMACHA extend",
 }
 

@@ -58,52 +58,26 @@ def shared_transitions(span: Span, outcome: str, first: Span | None) -> Finding:
     Wrong:
         import smach
 
-        class Grip(smach.State):
-            def __init__(self):
-                smach.State.__init__(self, outcomes=["ok", "failed"])
-
-            def execute(self, userdata):
-                return "ok"
-
-        class Lift(smach.State):
-            def __init__(self):
-                smach.State.__init__(self, outcomes=["ok"])
-
-            def execute(self, userdata):
-                return "ok"
-
         table = {"ok": "done"}
         sm = smach.StateMachine(outcomes=["done", "failed"])
         with sm:
-            smach.StateMachine.add("LIFT_FIRST", Lift(), {"ok": "GRIP"})
-            smach.StateMachine.add("GRIP", Grip(), table)
-            smach.StateMachine.add("LIFT", Lift(), table)
-        sm.set_initial_state(["LIFT"])
+            smach.StateMachine.add(
+                "CHECK", smach.State(outcomes=["far", "near"]), {"far": "GRIP", "near": "LIFT"}
+            )
+            smach.StateMachine.add("GRIP", smach.State(outcomes=["ok", "failed"]), table)
+            smach.StateMachine.add("LIFT", smach.State(outcomes=["ok"]), table)
 
     Right:
         import smach
 
-        class Grip(smach.State):
-            def __init__(self):
-                smach.State.__init__(self, outcomes=["ok", "failed"])
-
-            def execute(self, userdata):
-                return "ok"
-
-        class Lift(smach.State):
-            def __init__(self):
-                smach.State.__init__(self, outcomes=["ok"])
-
-            def execute(self, userdata):
-                return "ok"
-
         table = {"ok": "done"}
         sm = smach.StateMachine(outcomes=["done", "failed"])
         with sm:
-            smach.StateMachine.add("LIFT_FIRST", Lift(), {"ok": "GRIP"})
-            smach.StateMachine.add("GRIP", Grip(), dict(table))
-            smach.StateMachine.add("LIFT", Lift(), dict(table))
-        sm.set_initial_state(["LIFT_FIRST"])
+            smach.StateMachine.add(
+                "CHECK", smach.State(outcomes=["far", "near"]), {"far": "GRIP", "near": "LIFT"}
+            )
+            smach.StateMachine.add("GRIP", smach.State(outcomes=["ok", "failed"]), dict(table))
+            smach.StateMachine.add("LIFT", smach.State(outcomes=["ok"]), dict(table))
     """
     related = (Related(span=first, message="SMACH adds the outcome here"),) if first else ()
     return Finding(
@@ -220,6 +194,8 @@ def repeated_key(word: Word, first: Span | None) -> Finding:
 @problem("SM805", "unreadable-module", Severity.WARNING)
 def unreadable_module(span: Span, message: str, help: str) -> Finding:
     """A Python file with machines cannot be read, so that nothing in it is checked.
+
+    Python 3 would refuse the file with a SyntaxError, or the file is too long or nested too deeply.
 
     Wrong:
         import smach

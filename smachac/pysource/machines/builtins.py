@@ -3,10 +3,18 @@ collections."""
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.machines.operations import (
+    LONGEST_TEXT,
+    MOST_BITS,
+    MOST_ITEMS,
+    bounded,
+    has_width,
+)
 from smachac.pysource.machines.values import (
     NONE,
     UNKNOWN,
@@ -31,19 +39,15 @@ from smachac.pysource.machines.values import (
     truth,
 )
 
-_LONGEST, _MOST = 100_000, 10_000
-
-_PURE = ("rospy", "rclpy", "logging", "time", "tf", "tf2_ros", "math", "os", "sys", "json", "re")
+_PURE = ("rospy", "rclpy", "logging", "time", "tf", "tf2_ros", "math", "os", "sys", "json", "re",
+         "threading", "signal", "actionlib", "smach_viewer", "roslaunch", "argparse", "random",
+         "copy", "numpy", "typing", "datetime", "pprint")  # fmt: skip
 """Packages whose functions do not change lists and dictionaries that they get."""
 
 
 def is_pure(reason: str) -> bool:
     """Whether an unknown value belongs to a package whose functions change no argument."""
     return reason.partition(".")[0] in _PURE
-
-
-def _items_of(value: Value | None) -> tuple[Value, ...] | None:
-    return sequence(value)
 
 
 def _range(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
@@ -54,7 +58,7 @@ def _range(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> V
         found = range(*bounds)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return UNKNOWN
-    return UNKNOWN if len(found) > _MOST else TupleValue(tuple(Const(n) for n in found))
+    return UNKNOWN if len(found) > MOST_ITEMS else TupleValue(tuple(Const(n) for n in found))
 
 
 def _made(kind: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
@@ -95,7 +99,7 @@ def _dict(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Va
 
 
 def _enumerate(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "iterable"))
+    items = sequence(arguments.get(0, "iterable"))
     start = arguments.get(1, "start", Const(0))
     if items is None or not isinstance(start, Const) or not isinstance(start.value, int):
         return UNKNOWN
@@ -112,7 +116,7 @@ def _zip(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Val
 
 
 def _len(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "obj"))
+    items = sequence(arguments.get(0, "obj"))
     return UNKNOWN if items is None else Const(len(items))
 
 
@@ -128,10 +132,12 @@ def _text(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Va
 def _number(make: Callable[[Any], Any]) -> Callable[[Interpreter, Arguments, Span | None], Value]:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         value = arguments.get(0, "x")
-        if not isinstance(value, Const) or len(str(value.value)) > 300:
+        if not isinstance(value, Const) or len(arguments.positional) > 1 or arguments.named:
+            return UNKNOWN
+        if isinstance(value.value, str) and len(value.value) > MOST_BITS // 4:
             return UNKNOWN
         try:
-            return Const(make(value.value), span)
+            return bounded(make(value.value), span)
         except (TypeError, ValueError, OverflowError):
             return UNKNOWN
 
@@ -144,7 +150,7 @@ def _bool(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Va
 
 
 def _sorted(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "iterable"))
+    items = sequence(arguments.get(0, "iterable"))
     if items is None or arguments.named or not all(isinstance(item, Const) for item in items):
         return UNKNOWN
     keyed = [(item.value, item) for item in items if isinstance(item, Const)]
@@ -156,13 +162,11 @@ def _sorted(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> 
 
 
 def _reversed(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    items = _items_of(arguments.get(0, "sequence"))
+    items = sequence(arguments.get(0, "sequence"))
     return UNKNOWN if items is None else TupleValue(items[::-1])
 
 
 def _getattr(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
-    import ast
-
     owner, name = arguments.get(0, "object"), arguments.get(1, "name")
     if owner is None or not isinstance(name, Const) or not isinstance(name.value, str):
         return UNKNOWN
@@ -245,6 +249,8 @@ BUILTINS: Mapping[str, Value] = {
         "repr": _unknown, "format": _unknown, "hasattr": _unknown, "any": _unknown, "all": _unknown,
         "id": _unknown, "hash": _unknown, "type": _unknown, "open": _unknown, "next": _unknown,
         "callable": _unknown, "issubclass": _unknown, "round": _unknown, "vars": _unknown,
+        "filter": _unknown, "chr": _unknown, "ord": _unknown, "dir": _unknown, "divmod": _unknown,
+        "pow": _unknown, "eval": _unknown, "globals": _unknown, "locals": _unknown,
         "exit": _nothing, "quit": _nothing,
     }.items()},
     **{name: LibraryClass(f"builtins.{name}") for name in (
@@ -347,30 +353,28 @@ def _as_value(data: Any, span: Span | None) -> Value:
 def _text_method(name: str) -> Callable[[Interpreter, Arguments, Span | None], Value]:
     def run(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
         me = arguments.positional[0]
+        if not isinstance(me, Const) or not isinstance(me.value, str) or arguments.open:
+            return UNKNOWN
         try:
             given = [_plain(value) for value in arguments.positional[1:]]
             named = {key: _plain(value) for key, value in arguments.named}
-            if arguments.open or not isinstance(me, Const) or _is_long(me.value, given, named):
+            long = _is_long([me.value, *given, *named.values()])
+            if long or (name == "format" and has_width(me.value)):
                 return UNKNOWN
-            found = getattr(str(me.value), name)(*given, **named)
+            found = getattr(me.value, name)(*given, **named)
         except (ValueError, TypeError, LookupError, AttributeError):
             return UNKNOWN
-        if isinstance(found, str) and len(found) > _LONGEST:
+        if isinstance(found, str) and len(found) > LONGEST_TEXT:
             return UNKNOWN
         return _as_value(found, span or me.span)
 
     return run
 
 
-def _is_long(text: object, given: list[Any], named: Mapping[str, Any]) -> bool:
-    """Whether the result of a method can be a long text: `format` can have a width."""
-    import re
-
-    texts = [text, *given, *named.values()]
-    sizes = sum(len(str(part)) for part in texts)
-    wide = re.search(r"\{[^}]*:[^}]*\d{3}", str(text))
-    numbers = any(isinstance(part, int) and abs(part) > 1_000 for part in given)
-    return sizes > 10_000 or bool(wide) or numbers
+def _is_long(parts: list[Any]) -> bool:
+    """Whether the result of a method with these texts, lists and numbers can be long."""
+    numbers = any(isinstance(part, int) and abs(part) > 1_000 for part in parts)
+    return numbers or sum(len(str(part)) for part in parts) > MOST_ITEMS
 
 
 def _changed(run: Callable[[list[Value], Arguments], Any]) -> Any:
@@ -389,7 +393,7 @@ def _changed(run: Callable[[list[Value], Arguments], Any]) -> Any:
         except (ValueError, IndexError, TypeError):
             evaluator.heap.set(me.slots, "items", UNKNOWN)
             return UNKNOWN
-        evaluator.heap.set(me.slots, "items", tuple(copy) if len(copy) <= _MOST else UNKNOWN)
+        evaluator.heap.set(me.slots, "items", tuple(copy) if len(copy) <= MOST_ITEMS else UNKNOWN)
         return found if found is not None else NONE
 
     return method

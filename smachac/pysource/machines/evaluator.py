@@ -7,14 +7,22 @@ state, and the states are joined. `try` is such a condition: its handlers may ru
 from __future__ import annotations
 
 import ast
-import operator
-import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Literal, Protocol
 
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.builtins import BUILTINS, attribute_of_value, is_pure
-from smachac.pysource.machines.heap import Changes, Children, Heap
+from smachac.pysource.machines.heap import ABSENT, Changes, Children, Heap, present
+from smachac.pysource.machines.operations import (
+    MOST_BITS,
+    MOST_ITEMS,
+    ORDERS,
+    calculated,
+    filled_in,
+    formatted,
+    same,
+)
 from smachac.pysource.machines.values import (
     NONE,
     UNKNOWN,
@@ -45,12 +53,14 @@ from smachac.pysource.machines.values import (
 )
 from smachac.records import dataclass, field
 
-MOST_STEPS = 400_000
-"""The most statements and expressions that are evaluated for one file."""
-DEEPEST_CALL, MOST_RECURSIVE = 60, 4
-"""The most calls inside one another, and of one function."""
-LONGEST_TEXT, MOST_ITEMS = 100_000, 10_000
-"""The longest text, in characters, and the most items of a collection."""
+MOST_STEPS, MOST_TIMES = 400_000, 2
+"""The most statements and expressions that are evaluated for the main part of a file, or for one of
+its functions and classes, and how many times as many for all of them."""
+DEEPEST_CALL, MOST_RECURSIVE = 60, 2
+"""The most calls inside one another, and of one function under an unknown condition."""
+MOST_TURNS, MOST_WIDENINGS = 1_000, 8
+"""The most turns of a `while` loop, and the most times that a loop with an unknown number of turns
+is evaluated until a turn changes nothing more."""
 
 Completion = tuple[Literal["return", "break", "continue", "raise"], Value]
 """The end of a block other than after its last statement."""
@@ -68,6 +78,7 @@ class Project(Protocol):
     def new_object(
         self, evaluator: Evaluator, cls: LibraryClass, arguments: Arguments
     ) -> Value: ...
+    def may_set(self, name: str) -> bool: ...
 
 
 @dataclass(slots=True)
@@ -82,13 +93,16 @@ class _Region:
 
 class Evaluator:
     """Evaluates modules, functions and classes; `made` are the objects of SMACH's classes in the
-    order in which they were made, `called` the functions that were called."""
+    order in which they were made, `called` the functions that were called. `exhausted`: a part of
+    the file took too many steps."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
         self.heap = Heap()
         self.steps = 0
-        self.calls: list[Function] = []
+        self.limit = MOST_STEPS
+        self.calls: list[tuple[Function, int]] = []
+        self.adds = 0
         self.regions: list[_Region] = []
         self.made: list[Instance] = []
         self.called: set[ast.AST] = set()
@@ -96,6 +110,7 @@ class Evaluator:
         self.unsure = 0
         self.orphans = 0
         self.tries = 0
+        self.exhausted = False
         self.faults: list[UseFault] = []
 
     # --- statements
@@ -112,6 +127,8 @@ class Evaluator:
         match node:
             case ast.Expr(value=value):
                 self.value(value, frame)
+                if _exits(value):
+                    return "raise", NONE
             case ast.Assign(targets=targets, value=value):
                 found = self.value(value, frame)
                 for target in targets:
@@ -151,6 +168,8 @@ class Evaluator:
                 self._import_from(node, frame)
             case ast.Global(names=names):
                 frame.global_names |= frozenset(names)
+            case ast.Nonlocal(names=names):
+                frame.outer_names |= frozenset(names)
             case ast.Delete(targets=targets):
                 for target in targets:
                     self._delete(target, frame)
@@ -162,8 +181,42 @@ class Evaluator:
 
     def _step(self) -> None:
         self.steps += 1
-        if self.steps > MOST_STEPS:
+        if self.steps + self.heap.work > self.limit:
             raise BudgetError
+
+    def renew(self) -> None:
+        """Gives the next function or class of a file new steps, if the file has some left."""
+        self.limit = min(self.steps + self.heap.work + MOST_STEPS, MOST_TIMES * MOST_STEPS)
+
+    def reset(self) -> None:
+        """Ends what is being evaluated after a BudgetError."""
+        self.opened.clear()
+        self.regions.clear()
+        self.calls.clear()
+        self.unsure = self.tries = 0
+        self.exhausted = True
+        self.heap.reset()
+
+    def load(self, body: Sequence[ast.stmt], frame: Frame) -> bool:
+        """Evaluates a module that another one imports; whether it ends with an error. What it
+        writes stays, also if the import is under a condition."""
+        around = self.opened, self.regions, self.unsure
+        self.opened, self.regions, self.unsure = [], [], 0
+        try:
+            return self.heap.apart(lambda: self.block(body, frame)) is not None
+        finally:
+            self.opened, self.regions, self.unsure = around
+
+    def begin(self) -> None:
+        """Begins the evaluation of a file, with all steps left. What the code of the one before
+        has changed in modules that both import is undone."""
+        self.heap.reset()
+        self.heap.undo(0)
+        self.made.clear()
+        self.faults.clear()
+        self.steps = self.heap.work = 0
+        self.renew()
+        self.exhausted = False
 
     def _branch(
         self, test: ast.expr, body: Sequence[ast.stmt], orelse: Sequence[ast.stmt], frame: Frame
@@ -178,23 +231,28 @@ class Evaluator:
         mark = self.heap.mark()
         states: list[Changes] = []
         last: Completion | None = None
+        opened = [*self.opened]
         self.unsure += 1
         for branch in branches:
             end = branch()
+            self.opened[:] = opened
             if end is not None:
                 self._leave(end)
-                last = end
+                last = end if last is None or last[0] == "raise" else last
                 self.heap.undo(mark)
             else:
                 states.append(self.heap.undo(mark))
         self.unsure -= 1
+        self.heap.join(states)
+        self.heap.release(mark)
         if states:
-            self.heap.join(states)
             return None
         return ("raise", NONE) if last is None or last[0] == "raise" else _left(last)
 
     def _leave(self, end: Completion) -> None:
         """Notes the state in which an unknown condition may leave a function or a loop."""
+        if end[1] is LEFT:
+            return
         kinds = {"return": "call", "break": "loop", "continue": "turn"}
         for region in reversed(self.regions):
             if region.kind == kinds.get(end[0]):
@@ -214,10 +272,11 @@ class Evaluator:
         kinds = {"call": "return", "loop": "break", "turn": "continue"}
         own = end is not None and end[0] == kinds[kind]
         if not region.left:
+            self.heap.release(region.mark)
             return end
         values = [value for value, _ in region.left]
         states = [state for _, state in region.left]
-        if end is not None and not own and end[1] is not LEFT:
+        if end is not None and not own:
             self._leave(end)
         now = self.heap.undo(region.mark)
         reaches = end is None or (own and end[1] is not LEFT)
@@ -225,6 +284,7 @@ class Evaluator:
             states.append(now)
             values.append(end[1] if end is not None else NONE)
         self.heap.join(states)
+        self.heap.release(region.mark)
         return ("return", one_of(values)) if kind == "call" else None
 
     def _for(
@@ -236,10 +296,13 @@ class Evaluator:
         frame: Frame,
     ) -> Completion | None:
         known = sequence(items)
-        if known is None or len(known) > MOST_ITEMS:
-            return self._unknown_loop(
-                lambda: self.assign(target, UNKNOWN, frame), body, orelse, frame
-            )
+        if known is None:
+
+            def turn() -> Completion | None:
+                self.assign(target, UNKNOWN, frame)
+                return self._region("turn", lambda: self.block(body, frame))
+
+            return self._unknown_loop(turn, body, orelse, frame)
 
         def loop() -> Completion | None:
             for item in known:
@@ -255,17 +318,22 @@ class Evaluator:
     def _while(
         self, test: ast.expr, body: Sequence[ast.stmt], orelse: Sequence[ast.stmt], frame: Frame
     ) -> Completion | None:
-        turns = 0
+
+        def turn() -> Completion | None:
+            end = self._region("turn", lambda: self.block(body, frame))
+            if end is None or end[0] == "continue":
+                self.value(test, frame)
+            return end
 
         def loop() -> Completion | None:
-            nonlocal turns
+            turns = 0
             while True:
                 known = truth(self.value(test, frame))
-                if known is None or turns > 1_000:
-                    return self._unknown_loop(lambda: None, body, orelse, frame)
+                turns += 1
+                if known is None or turns > MOST_TURNS:
+                    return self._unknown_loop(turn, body, orelse, frame)
                 if not known:
                     return self.block(orelse, frame)
-                turns += 1
                 end = self._region("turn", lambda: self.block(body, frame))
                 if end is not None and end[0] != "continue":
                     return end
@@ -275,51 +343,73 @@ class Evaluator:
 
     def _unknown_loop(
         self,
-        begin: Callable[[], None],
+        turn: Callable[[], Completion | None],
         body: Sequence[ast.stmt],
         orelse: Sequence[ast.stmt],
         frame: Frame,
     ) -> Completion | None:
-        """A loop with an unknown number of turns: what a turn changes is not known in the next."""
+        """A loop with an unknown number of turns, of which `turn` runs one."""
+        end = self.maybe_repeated(turn)
+        if end is not None:
+            return end
+        if not orelse or not any(isinstance(part, ast.Break) for part in _parts(body)):
+            return self.block(orelse, frame)
+        return self.choice([lambda: self.block(orelse, frame), lambda: None])
 
-        def turn() -> Completion | None:
-            begin()
-            return self._region("turn", lambda: self.block(body, frame))
+    def maybe_repeated(self, turn: Callable[[], Completion | None]) -> Completion | None:
+        """Code that runs an unknown number of times: what one run changes is not known in the
+        next one."""
 
-        mark = self.heap.mark()
-        made, faults = len(self.made), len(self.faults)
-        left = [len(region.left) for region in self.regions]
-        self._region("loop", turn)
-        changed = self.heap.undo(mark)
-        del self.made[made:], self.faults[faults:]
-        for region, count in zip(self.regions, left, strict=True):
-            del region.left[count:]
-        for slots, key, value in changed.values():
-            if key in slots and not _grows(slots[key]) and not _grows(value):
-                self.heap.set(slots, key, UNKNOWN)
+        def once() -> Completion | None:
+            end = turn()
+            return None if end is not None and end[0] == "continue" else end
 
         def some() -> Completion | None:
-            end = self._region("loop", turn)
+            end = self._region("loop", once)
             return end if end is not None and end[0] in ("return", "raise") else None
 
-        return self.choice([some, lambda: None]) or self.block(orelse, frame)
+        for _ in range(MOST_WIDENINGS):
+            made, faults = len(self.made), len(self.faults)
+            orphans, opened = self.orphans, [*self.opened]
+            left = [len(region.left) for region in self.regions]
+            mark = self.heap.mark()
+            end = self.choice([some, lambda: None])
+            changed = [(slots, key) for slots, key, before, now in self.heap.since(mark)
+                       if _is_other(present(slots, key, before), now)]  # fmt: skip
+            if not changed:
+                self.heap.release(mark)
+                return end
+            self.heap.undo(mark)
+            self.heap.release(mark)
+            del self.made[made:], self.faults[faults:]
+            self.orphans, self.opened[:] = orphans, opened
+            for region, count in zip(self.regions, left, strict=True):
+                del region.left[count:]
+            for slots, key in changed:
+                self.heap.set(slots, key, UNKNOWN)
+        return self.choice([some, lambda: None])
 
     def _with(
         self, items: Sequence[ast.withitem], body: Sequence[ast.stmt], frame: Frame
     ) -> Completion | None:
-        opened = 0
+        opened = len(self.opened)
+        leave: list[Value] = []
         for item in items:
             found = self.value(item.context_expr, frame)
             container = self._opens(found)
+            bound = UNKNOWN if container is None else found
             if container is not None:
                 self.opened.append(container)
-                opened += 1
+            elif isinstance(found, Instance):
+                enter = self.of_class(found.cls, "__enter__", found)
+                bound = self.call(enter, Arguments(), None, frame)
+                leave.append(self.of_class(found.cls, "__exit__", found))
             if item.optional_vars is not None:
-                bound = found if container is not None else UNKNOWN
                 self.assign(item.optional_vars, bound, frame)
         end = self.block(body, frame)
-        if opened:
-            del self.opened[-opened:]
+        for method in reversed(leave):
+            self.call(method, Arguments((NONE, NONE, NONE)), None, frame)
+        del self.opened[opened:]
         return end
 
     def _opens(self, value: Value) -> Value | None:
@@ -329,35 +419,37 @@ class Evaluator:
         return UNKNOWN if isinstance(value, OneOf) else None
 
     def _try(self, node: ast.Try | ast.TryStar, frame: Frame) -> Completion | None:
-        raised = False
+        end = self._tried(node, frame) if node.handlers else self.block(node.body, frame)
+        if not node.handlers and end is None:
+            end = self.block(node.orelse, frame)
+        return self.block(node.finalbody, frame) or end
 
-        def whole() -> Completion | None:
-            nonlocal raised
+    def _tried(self, node: ast.Try | ast.TryStar, frame: Frame) -> Completion | None:
+        """A body whose statements can fail, each of them: the handlers may run after any."""
+
+        def body() -> Completion | None:
             self.tries += 1
             end = self.block(node.body, frame)
             self.tries -= 1
-            raised = end is not None and end[0] == "raise"
-            return end or self.block(node.orelse, frame)
-
-        if not node.handlers:
-            self.tries -= 1
-            end = whole()
-            self.tries += 1
-            return end or self.block(node.finalbody, frame)
-        mark = self.heap.mark()
-        end = whole()
-        if end is not None and not raised:
-            self.block(node.finalbody, frame)
             return end
+
+        mark, opened = self.heap.mark(), [*self.opened]
+        end, between = self.heap.watch(body)
+        at_end = self.heap.changes(mark)
+        raised = end is not None and end[0] == "raise"
         states: list[Changes] = []
-        ends: list[Completion] = []
-        if not raised:
+        if end is None:
+            end = self.block(node.orelse, frame)
+        if end is None:
             states.append(self.heap.changes(mark))
-        after = self.heap.changes(mark)
+        elif not raised:
+            self._leave(end)
         self.unsure += 1
         for handler in node.handlers:
             self.heap.undo(mark)
-            self.heap.apply(after)
+            self.heap.apply(at_end)
+            self.heap.apply(between)
+            self.opened[:] = opened
             if handler.name is not None:
                 self.bind(handler.name, UNKNOWN, frame)
             left = self.block(handler.body, frame)
@@ -365,30 +457,35 @@ class Evaluator:
                 states.append(self.heap.changes(mark))
             elif left[0] != "raise":
                 self._leave(left)
-                ends.append(left)
+                end = left if end is None or end[0] == "raise" else end
         self.unsure -= 1
         self.heap.undo(mark)
-        if not states:
-            self.heap.apply(after)
-            return self.block(node.finalbody, frame) or (
-                _left(ends[-1]) if ends else ("raise", NONE)
-            )
         self.heap.join(states)
-        return self.block(node.finalbody, frame)
+        self.heap.release(mark)
+        if states:
+            return None
+        return end if end is None or end[0] == "raise" else _left(end)
 
     def _match(
         self, subject: Value, cases: Sequence[ast.match_case], frame: Frame
     ) -> Completion | None:
         branches: list[Callable[[], Completion | None]] = []
+
+        def branch(case: ast.match_case) -> Callable[[], Completion | None]:
+            def run() -> Completion | None:
+                self._capture(subject, case.pattern, frame)
+                if case.guard is not None:
+                    self.value(case.guard, frame)
+                return self.block(case.body, frame)
+
+            return run
+
         for case in cases:
             found = self._fits(subject, case.pattern, frame)
-            if case.guard is not None and found is not False:
-                found = None
             if found is False:
                 continue
-            body = case.body
-            branches.append(lambda body=body: self.block(body, frame))  # type: ignore[misc]
-            if found:
+            branches.append(branch(case))
+            if found and case.guard is None:
                 break
         else:
             branches.append(lambda: None)
@@ -396,26 +493,34 @@ class Evaluator:
 
     def _fits(self, subject: Value, pattern: ast.pattern, frame: Frame) -> bool | None:
         match pattern:
-            case ast.MatchAs(pattern=None, name=name):
-                if name is not None:
-                    self.bind(name, subject, frame)
+            case ast.MatchAs(pattern=None):
                 return True
             case ast.MatchValue(value=value):
                 return truth(self._compare(subject, ast.Eq(), self.value(value, frame)))
             case ast.MatchOr(patterns=patterns):
                 found = [self._fits(subject, part, frame) for part in patterns]
                 return True if True in found else None if None in found else False
+        return None
+
+    def _capture(self, subject: Value, pattern: ast.pattern, frame: Frame) -> None:
+        """Binds the names of a pattern."""
         for part in ast.walk(pattern):
             name = getattr(part, "name", None) or getattr(part, "rest", None)
             if isinstance(name, str):
-                self.bind(name, UNKNOWN, frame)
-        return None
+                self.bind(name, subject if part is pattern else UNKNOWN, frame)
 
     # --- names
 
     def bind(self, name: str, value: Value, frame: Frame) -> None:
         if name in frame.global_names:
             self.heap.set(frame.module.slots, name, value)
+            return
+        if name in frame.outer_names:
+            outer = frame.around
+            while outer is not None and (name not in outer.slots or outer.kind == "class"):
+                outer = outer.around
+            if outer is not None:
+                self.heap.set(outer.slots, name, value)
             return
         if (
             isinstance(value, Instance)
@@ -428,7 +533,7 @@ class Evaluator:
     def look_up(self, name: str, frame: Frame, node: ast.expr | None = None) -> Value:
         at: Frame | None = frame
         while at is not None:
-            if name in at.slots and (at is frame or not at.is_class):
+            if name in at.slots and (at is frame or at.kind != "class"):
                 found: Value = at.slots[name]
                 return found
             at = at.around
@@ -481,11 +586,22 @@ class Evaluator:
                     own_name = isinstance(value, Instance) and "$children" in value.slots
                     if own_name and isinstance(value, Instance) and "$name" not in value.slots:
                         self.heap.set(value.slots, "$name", Const(name))
-                    self.heap.set(part.slots, name, value if sure else UNKNOWN)
+                    self._set_own(part, name, value if sure else UNKNOWN)
                 case Class() | ModuleValue():
                     self.heap.set(part.slots, name, value if sure else UNKNOWN)
                 case DictValue() if part.slots.get("$userdata"):
                     self._set_item(part, Const(name), value)
+
+    def _set_own(self, owner: Instance, name: str, value: Value) -> None:
+        """Sets an attribute of an object, with the setter of its class if it has one."""
+        of_class = self.of_class(owner.cls, name, None)
+        if isinstance(of_class, Function) and of_class.kind == "property":
+            if of_class.setter is not None:
+                self.run(of_class.setter, Arguments((owner, value)))
+            return
+        if isinstance(owner.cls, Class) and "__setattr__" in owner.cls.slots:
+            value = UNKNOWN
+        self.heap.set(owner.slots, name, value)
 
     def _set_item(self, owner: Value, index: Value, value: Value) -> None:
         match owner, index:
@@ -576,7 +692,7 @@ class Evaluator:
             value = UNKNOWN
             if isinstance(found, ModuleValue) and alias.name in found.slots:
                 value = found.slots[alias.name]
-            elif isinstance(found, ModuleValue) or isinstance(found, Unknown):
+            elif isinstance(found, ModuleValue | Unknown):
                 inner = self.project.load(self, f"{name}.{alias.name}".strip("."), frame.module)
                 value = inner if not isinstance(inner, Unknown) or not inner.reason else found
                 if isinstance(value, ModuleValue) and value is found:
@@ -611,7 +727,12 @@ class Evaluator:
                 if isinstance(value, Function):
                     value.kind = kind
                     return value
-            case ast.Attribute(attr="setter" | "getter" | "deleter"):
+            case ast.Attribute(value=ast.Name(id=name), attr="setter"):
+                getter = frame.slots.get(name)
+                if isinstance(getter, Function) and isinstance(value, Function):
+                    return replace(getter, setter=value)
+                return UNKNOWN
+            case ast.Attribute(attr="getter" | "deleter"):
                 return UNKNOWN
         found = self.value(decorator, frame)
         if isinstance(found, Native):
@@ -619,24 +740,43 @@ class Evaluator:
         return self.call(found, Arguments((value,)), decorator, frame)
 
     def _class(self, node: ast.ClassDef, frame: Frame) -> Value:
-        bases = tuple(self.value(base, frame) for base in node.bases)
+        bases = [self.value(base, frame) for base in node.bases]
+        for keyword in node.keywords:
+            meta = self.value(keyword.value, frame)
+            if not isinstance(meta, Unknown) or meta.reason.partition(".")[0] != "abc":
+                bases.append(UNKNOWN)  # a metaclass can change all
         slots: Slots = {}
-        made = Class(node, frame, bases, slots)
-        inner = Frame(slots, frame.module, frame, frame.function, frame.me, is_class=True)
+        made = Class(node, frame, self._order(bases), slots)
+        inner = Frame(slots, frame.module, frame, frame.function, frame.me, kind="class")
         self.block(node.body, inner)
         for value in slots.values():
-            if isinstance(value, Function) and value.owner is None:
-                value.owner = made
+            for function in (value, getattr(value, "setter", None)):
+                if isinstance(function, Function) and function.owner is None:
+                    function.owner = made
         found: Value = made
         for decorator in reversed(node.decorator_list):
-            name = decorator.func if isinstance(decorator, ast.Call) else decorator
-            if ast.unparse(name) in ("dataclass", "dataclasses.dataclass"):
+            if _is_dataclass(decorator):
                 made.is_dataclass = True
             else:
                 found = self._decorated(decorator, found, frame)
         if self.is_enumeration(made):
             self._make_members(made)
         return found
+
+    def _order(self, bases: Sequence[Value]) -> tuple[Value, ...]:
+        """The classes in which Python searches a name after the class with these bases: C3, as in
+        "A Monotonic Superclass Linearization for Dylan" (Barrett et al., 1996)."""
+        known = [base if isinstance(base, Class | LibraryClass) else UNKNOWN for base in bases]
+        rows = [[base, *self.classes(base)[1:]] for base in known] + [[*known]]
+        found: list[Value] = []
+        while rows := [row for row in rows if row]:
+            tails = [base for row in rows for base in row[1:]]
+            head = next((row[0] for row in rows if row[0] not in tails), None)
+            if head is None or len(found) > MOST_ITEMS:
+                return (*found, UNKNOWN)
+            found.append(head)
+            rows = [row[1:] if row[0] == head else row for row in rows]
+        return tuple(found)
 
     def is_enumeration(self, cls: Class) -> bool:
         return any(
@@ -658,18 +798,7 @@ class Evaluator:
     def classes(self, cls: Value) -> list[Value]:
         """The classes in which an attribute is searched, the derived one first. A base class that
         is not known is UNKNOWN."""
-        found: list[Value] = []
-
-        def visit(at: Value, depth: int = 0) -> None:
-            if any(at is known or (not isinstance(at, Class) and at == known) for known in found):
-                found[:] = [k for k in found if k is not at]
-            found.append(at)
-            if isinstance(at, Class) and depth < DEEPEST_CALL:
-                for base in at.bases:
-                    visit(base, depth + 1)
-
-        visit(cls)
-        return found
+        return [cls, *cls.order] if isinstance(cls, Class) else [cls]
 
     # --- expressions
 
@@ -681,7 +810,8 @@ class Evaluator:
         self._step()
         match node:
             case ast.Constant(value=known):
-                if known is Ellipsis:
+                is_large = isinstance(known, int) and known.bit_length() > MOST_BITS
+                if is_large or not isinstance(known, float | complex | int | str | bytes | None):
                     return UNKNOWN
                 return Const(known, self.span(node, frame))
             case ast.Name(id=name):
@@ -729,7 +859,10 @@ class Evaluator:
                 return self._dict_of_pairs(items)
             case ast.NamedExpr(target=target, value=inner):
                 found = self.value(inner, frame)
-                self.assign(target, found, frame)
+                around = frame
+                while around.kind == "comprehension" and around.around is not None:
+                    around = around.around
+                self.assign(target, found, around)
                 return found
             case ast.Starred(value=inner):
                 return self.value(inner, frame)
@@ -807,40 +940,48 @@ class Evaluator:
     def _comprehended(
         self, generators: Sequence[ast.comprehension], element: ast.expr, frame: Frame
     ) -> tuple[Value, ...] | None:
+        """The items of a comprehension; None: not known."""
         found: list[Value] = []
-        inner = Frame({}, frame.module, frame, frame.function, frame.me)
+        inner = Frame({}, frame.module, frame, frame.function, frame.me, kind="comprehension")
+        is_known = True
 
-        def visit(at: int) -> bool:
+        def visit(at: int) -> None:
+            nonlocal is_known
             if at == len(generators):
                 found.append(self.value(element, inner))
-                return len(found) <= MOST_ITEMS
-            items = sequence(self.value(generators[at].iter, inner))
+                return
+            items = sequence(self.value(generators[at].iter, inner if at else frame))
             if items is None:
-                return False
-            for item in items:
-                self.assign(generators[at].target, item, inner)
-                tests = [truth(self.value(test, inner)) for test in generators[at].ifs]
-                if None in tests:
-                    return False
-                if all(tests) and not visit(at + 1):
-                    return False
-            return True
+                is_known = False
+                self.maybe_repeated(lambda: turn(at, UNKNOWN))
+            for item in items or ():
+                turn(at, item)
 
-        return tuple(found) if visit(0) else None
+        def turn(at: int, item: Value) -> None:
+            nonlocal is_known
+            self.assign(generators[at].target, item, inner)
+            for test in generators[at].ifs:
+                known = truth(self.value(test, inner))
+                if known is None:
+                    is_known = False
+                    self.choice([lambda: visit(at + 1), lambda: None])
+                if not known:
+                    return
+            visit(at + 1)
+
+        visit(0)
+        return tuple(found) if is_known and len(found) <= MOST_ITEMS else None
 
     def _formatted(self, parts: Sequence[ast.expr], node: ast.expr, frame: Frame) -> Value:
-        texts: list[str] = []
+        found: list[Value] = []
         for part in parts:
             if isinstance(part, ast.FormattedValue):
-                found = self.value(part.value, frame)
+                value = self.value(part.value, frame)
                 plain = part.format_spec is None and part.conversion == -1
-                if not isinstance(found, Const) or not plain:
-                    return UNKNOWN
-                texts.append(str(found.value))
-            elif isinstance(part, ast.Constant):
-                texts.append(str(part.value))
-        text = "".join(texts)
-        return Const(text, self.span(node, frame)) if len(text) <= LONGEST_TEXT else UNKNOWN
+                found.append(value if plain else UNKNOWN)
+            else:
+                found.append(self.value(part, frame))
+        return self._spent(formatted(found, self.span(node, frame)))
 
     def _sum(self, node: ast.BinOp, frame: Frame) -> Value:
         """A sum of many terms is read in a loop: Python's own parser reads thousands."""
@@ -865,9 +1006,9 @@ class Evaluator:
                 for b in alternatives(right)
             )
         if isinstance(left, Const) and isinstance(op, ast.Mod) and isinstance(left.value, str):
-            return _percent(left.value, right, span)
+            return self._spent(filled_in(left.value, right, span))
         if isinstance(left, Const) and isinstance(right, Const):
-            return _calculated(left, op, right, span)
+            return self._spent(calculated(left, op, right, span))
         own, other = sequence(left), sequence(right)
         lists = isinstance(left, ListValue | TupleValue) and isinstance(
             right, ListValue | TupleValue
@@ -897,21 +1038,21 @@ class Evaluator:
         if isinstance(op, ast.Not):
             known = truth(value)
             return UNKNOWN if known is None else Const(not known)
-        if isinstance(op, ast.USub) and isinstance(value, Const):
-            if isinstance(value.value, int | float):
-                return Const(-value.value, self.span(node, frame))
+        number = value.value if isinstance(value, Const) else None
+        if isinstance(op, ast.USub) and isinstance(number, int | float):
+            return Const(-number, self.span(node, frame))
         return UNKNOWN
 
     def _logical(self, is_and: bool, values: Sequence[ast.expr], frame: Frame) -> Value:
-        found: list[Value] = []
-        for at, node in enumerate(values):
-            value = self.value(node, frame)
-            known = truth(value)
-            if at == len(values) - 1 or known is (not is_and):
-                return one_of([*found, value])
-            if known is None:
-                found.append(value)
-        return UNKNOWN
+        first = self.value(values[0], frame)
+        known = truth(first)
+        if len(values) == 1 or known is (not is_and):
+            return first
+        if known is is_and:
+            return self._logical(is_and, values[1:], frame)
+        rest: list[Value] = []
+        self.choice([lambda: rest.append(self._logical(is_and, values[1:], frame)), lambda: None])
+        return one_of([*(v for v in alternatives(first) if truth(v) is not is_and), *rest])
 
     def _comparison(self, node: ast.Compare, frame: Frame) -> Value:
         left = self.value(node.left, frame)
@@ -928,9 +1069,11 @@ class Evaluator:
             case ast.Is() | ast.Eq() if isinstance(left, Instance) and isinstance(right, Instance):
                 return Const(left is right) if self.is_member(left) else UNKNOWN
             case ast.Is() | ast.IsNot() | ast.Eq() | ast.NotEq():
-                same = _same(left, right)
+                known = same(left, right)
+                if isinstance(op, ast.Is | ast.IsNot) and known and _are_other_types(left, right):
+                    known = False
                 negated = isinstance(op, ast.IsNot | ast.NotEq)
-                return UNKNOWN if same is None else Const(same is not negated)
+                return UNKNOWN if known is None else Const(known is not negated)
             case ast.In() | ast.NotIn():
                 if isinstance(left, Const) and isinstance(right, Const):
                     if isinstance(left.value, str) and isinstance(right.value, str):
@@ -940,12 +1083,12 @@ class Evaluator:
                 items = sequence(right)
                 if items is None:
                     return UNKNOWN
-                found = [_same(left, item) for item in items]
+                found = [same(left, item) for item in items]
                 inside_ = True if True in found else None if None in found else False
                 return (
                     UNKNOWN if inside_ is None else Const(inside_ is not isinstance(op, ast.NotIn))
                 )
-        compare = _ORDERS.get(type(op))
+        compare = ORDERS.get(type(op))
         if compare is not None and isinstance(left, Const) and isinstance(right, Const):
             try:
                 return Const(bool(compare(left.value, right.value)))
@@ -972,10 +1115,10 @@ class Evaluator:
             return UNKNOWN
         if isinstance(owner, Class) and isinstance(key, Const) and isinstance(key.value, str):
             return owner.slots.get(key.value, UNKNOWN) if self.is_enumeration(owner) else UNKNOWN
-        found = sequence(owner)
-        if found is not None and isinstance(key, Const) and isinstance(key.value, int):
-            if -len(found) <= key.value < len(found):
-                return found[key.value]
+        found = sequence(owner) or ()
+        match key:
+            case Const(value=int() as at) if -len(found) <= at < len(found):
+                return found[at]
         return UNKNOWN
 
     def _slice(self, owner: Value, index: ast.Slice, frame: Frame) -> Value:
@@ -1005,7 +1148,8 @@ class Evaluator:
         """An attribute of a value; UNKNOWN if it is not known."""
         match owner:
             case OneOf(values=values):
-                return one_of(self.attribute(part, name, node, frame) for part in values)
+                objects = (part for part in values if part != NONE)
+                return one_of(self.attribute(part, name, node, frame) for part in objects)
             case Unknown():
                 return owner
             case ModuleValue():
@@ -1038,7 +1182,9 @@ class Evaluator:
         inner = self.project.load(self, f"{owner.package}.{name}".strip("."), owner)
         if owner.file.endswith("__init__.py") and not isinstance(inner, Unknown):
             return  # any import of a module binds its name in its package
-        if "__getattr__" not in owner.slots and "globals" not in owner.text.source.text:  # type: ignore[union-attr]
+        text = owner.text.source.text if owner.text is not None else ""
+        binds = any(word in text for word in _BINDING)
+        if "__getattr__" not in owner.slots and not binds and not self.project.may_set(name):
             place = Span(span.source, span.end - len(name), span.end)
             self.faults.append(UseFault("missing member", place, (name, owner.file)))
 
@@ -1048,9 +1194,9 @@ class Evaluator:
         if name == "__class__":
             return owner.cls
         found = self.of_class(owner.cls, name, owner)
-        if isinstance(found, Method) and isinstance(found.function, Function):
-            if found.function.kind == "property":
-                return self.call(found.function, Arguments((owner,)), node, frame)
+        function = found.function if isinstance(found, Method) else None
+        if isinstance(function, Function) and function.kind == "property":
+            return self.call(function, Arguments((owner,)), node, frame)
         return found
 
     def of_class(self, cls: Value, name: str, me: Value | None) -> Value:
@@ -1088,9 +1234,10 @@ class Evaluator:
             if isinstance(part, ast.Starred):
                 items = sequence(self.value(part.value, frame))
                 is_open = is_open or items is None
-                positional.extend(items or ())
             else:
-                positional.append(self.value(part, frame))
+                items = (self.value(part, frame),)
+            if not is_open:
+                positional.extend(items or ())
         for keyword in node.keywords:
             found = self.value(keyword.value, frame)
             if keyword.arg is not None:
@@ -1137,17 +1284,11 @@ class Evaluator:
                 self.choice([branch(part) for part in values])
                 return one_of(found)
             case Native():
-                return function.run(self, arguments, span)
+                return self._spent(function.run(self, arguments, span))
             case Method(function=inner, me=me):
                 return self.call(inner, arguments.with_first(me), node, frame)
             case Partial(function=inner, arguments=before):
-                whole = Arguments(
-                    (*before.positional, *arguments.positional),
-                    (*(p for p in before.named if p[0] not in dict(arguments.named)),
-                     *arguments.named),
-                    before.open or arguments.open,
-                )  # fmt: skip
-                return self.call(inner, whole, node, frame)
+                return self.call(inner, before.followed_by(arguments), node, frame)
             case Function():
                 return self.run(function, arguments)
             case Class() | LibraryClass():
@@ -1159,37 +1300,70 @@ class Evaluator:
         self._escape(arguments, function)
         return function if isinstance(function, Unknown) and function.reason else UNKNOWN
 
+    def partial(self, function: Value, arguments: Arguments) -> Value:
+        """`functools.partial`; that of another one is one with the arguments of both."""
+        if isinstance(function, Partial):
+            arguments = function.arguments.followed_by(arguments)
+            function = function.function
+        self.steps += len(arguments.positional) // 4
+        return Partial(function, arguments)
+
     def _escape(self, arguments: Arguments, function: Value) -> None:
         """Values that unknown code gets can be changed by it."""
         if isinstance(function, Unknown) and is_pure(function.reason):
             return
         for value in (*arguments.positional, *(value for _, value in arguments.named)):
-            if isinstance(value, ListValue | DictValue) and not value.slots.get("$userdata"):
-                self.heap.set(value.slots, "items", UNKNOWN)
-            if isinstance(value, Instance) and "$userdata" in value.slots:
-                self.heap.set(value.slots, "$exposed", Const(True))
+            self._lose(value)
+
+    def _lose_in(self, arguments: Arguments, *, adds: bool) -> None:
+        """Notes what a call can have changed that is not evaluated; `adds`: it can add states."""
+        values = (*arguments.positional, *(value for _, value in arguments.named))
+        for value in (*values, *self.opened):
+            if adds or not isinstance(value, Instance):
+                self._lose(value)
+
+    def _lose(self, value: Value) -> None:
+        """Notes that unknown code can have changed a value."""
+        for part in alternatives(value):
+            match part:
+                case DictValue() | ListValue():
+                    self.heap.set(part.slots, "items", UNKNOWN)
+                case Instance() if isinstance(children := part.slots.get("$children"), Children):
+                    self.heap.set(part.slots, "$exposed", Const(True))
+                    self.heap.set(part.slots, "$children", Children(children.added, False))
+
+    def _spent(self, value: Value) -> Value:
+        """A new value, whose size counts as steps."""
+        match value:
+            case Const(value=str() as text):
+                self.steps += len(text) // 256
+            case TupleValue(items=items):
+                self.steps += len(items) // 4
+            case ListValue() | DictValue():
+                contents = value.items
+                self.steps += len(contents) // 4 if isinstance(contents, tuple | Mapping) else 0
+        return value
 
     def run(self, function: Function, arguments: Arguments) -> Value:
         """The result of a call of a function of the project."""
         node = function.node
         self.called.add(node)
-        recursive = sum(called is function for called in self.calls)
-        if len(self.calls) >= DEEPEST_CALL or recursive >= (2 if self.unsure else MOST_RECURSIVE):
+        before = [adds for called, adds in self.calls if called is function]
+        if len(self.calls) >= DEEPEST_CALL or (self.unsure and len(before) >= MOST_RECURSIVE):
+            self._lose_in(arguments, adds=len(before) < 2 or self.adds > before[0])
             return UNKNOWN
         if isinstance(node, ast.AsyncFunctionDef) or _yields(node):
             return UNKNOWN
         slots = self._parameters(function, arguments)
         me = arguments.positional[0] if arguments.positional else None
         frame = Frame(slots, function.frame.module, function.frame, function, me)
-        if isinstance(node, ast.Lambda):
-            return self.value(node.body, frame)
-        self.calls.append(function)
-        opened = [*self.opened]
+        self.calls.append((function, self.adds))
         try:
+            if isinstance(node, ast.Lambda):
+                return self.value(node.body, frame)
             end = self._region("call", lambda: self.block(node.body, frame))
         finally:
             self.calls.pop()
-            self.opened[:] = opened
         if end is None:
             return NONE
         return end[1] if end[0] == "return" and end[1] is not LEFT else UNKNOWN
@@ -1242,18 +1416,18 @@ class Evaluator:
         if isinstance(cls, Class) and cls.is_dataclass and "__init__" not in cls.slots:
             self._fill(made, cls, arguments, frame)
             return made
+        if any(isinstance(base, Class) and "__new__" in base.slots for base in order):
+            return UNKNOWN
         maker = self._search(order, "__init__", made)
         if isinstance(maker, Method):
             self.call(maker, arguments, None, frame)
         return made
 
     def _member(self, cls: Class, arguments: Arguments) -> Value:
-        given = arguments.get(0, "value", UNKNOWN)
-        for value in cls.slots.values():
-            if isinstance(value, Instance) and given is not None:
-                if _same(value.slots.get("value", UNKNOWN), given):
-                    return value
-        return UNKNOWN
+        given = arguments.get(0, "value", UNKNOWN) or UNKNOWN
+        members = (value for value in cls.slots.values() if isinstance(value, Instance))
+        fitting = (member for member in members if same(member.slots.get("value", UNKNOWN), given))
+        return next(fitting, UNKNOWN)
 
     def _fill(self, made: Instance, cls: Class, arguments: Arguments, frame: Frame) -> None:
         """Sets the fields of a dataclass."""
@@ -1273,7 +1447,8 @@ class Evaluator:
             self.call(after, Arguments(), None, frame)
 
 
-_WIDTH = re.compile(r"%[^a-zA-Z%]*(?:\d{3}|\*)")
+_BINDING = ("globals", "exec(", "setattr", "sys.modules", "vars(", "locals(", "__dict__")
+"""The words in a module that can bind names which its assignments do not show."""
 
 LEFT: Value = Unknown(reason="left")
 """In place of the value of a completion that was noted already."""
@@ -1283,9 +1458,12 @@ def _left(end: Completion) -> Completion:
     return end[0], LEFT
 
 
-def _grows(value: object) -> bool:
-    """Whether joining keeps what each of two contents has."""
-    return isinstance(value, Children)
+def _is_other(before: object, now: object) -> bool:
+    """Whether the next turn of a loop can find another value. Of a container, joining keeps the
+    states of both."""
+    if before is ABSENT or before is UNKNOWN or isinstance(before, Children):
+        return False
+    return now is not before and now != before
 
 
 def _yields(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) -> bool:
@@ -1300,67 +1478,32 @@ def _yields(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) -> bool:
     return False
 
 
-def _same(left: Value, right: Value) -> bool | None:
-    """Whether two values are equal; None: not known."""
-    if isinstance(left, Const) and isinstance(right, Const):
-        return left.value == right.value
-    if isinstance(left, Unknown | OneOf) or isinstance(right, Unknown | OneOf):
-        return None
-    if left is right:
-        return True
-    none = isinstance(left, Const) and left.value is None
-    if none or (isinstance(right, Const) and right.value is None):
+def _are_other_types(left: Value, right: Value) -> bool:
+    """Whether two equal values are of two types, such as 1 and True."""
+    values = [value.value for value in (left, right) if isinstance(value, Const)]
+    return len({type(value) for value in values}) > 1
+
+
+def _parts(body: Sequence[ast.stmt]) -> Iterator[ast.AST]:
+    for statement in body:
+        yield from ast.walk(statement)
+
+
+def _exits(node: ast.expr) -> bool:
+    """Whether an expression ends the program."""
+    if not isinstance(node, ast.Call):
         return False
-    return None
+    match node.func:
+        case ast.Name(id="exit" | "quit"):
+            return True
+        case ast.Attribute(value=ast.Name(id="sys"), attr="exit"):
+            return True
+        case ast.Attribute(value=ast.Name(id="os"), attr="_exit"):
+            return True
+    return False
 
 
-_ORDERS: Mapping[type[ast.cmpop], Callable[[Any, Any], object]] = {
-    ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge
-}  # fmt: skip
-
-_OPERATIONS: Mapping[type[ast.operator], Callable[[Any, Any], object]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mod: operator.mod,
-    ast.FloorDiv: operator.floordiv, ast.Div: operator.truediv, ast.BitAnd: operator.and_,
-    ast.BitOr: operator.or_,
-}  # fmt: skip
-
-
-def _calculated(left: Const, op: ast.operator, right: Const, span: Span | None) -> Value:
-    one, other = left.value, right.value
-    if isinstance(op, ast.Mult):
-        numbers = isinstance(one, int | float) and isinstance(other, int | float)
-        size = abs(one) * abs(other) if numbers else 0  # type: ignore[arg-type]
-        if isinstance(one, str) and isinstance(other, int):
-            size = len(one) * abs(other)
-        if (
-            not (numbers or (isinstance(one, str) and isinstance(other, int)))
-            or size > LONGEST_TEXT
-        ):
-            return UNKNOWN
-        return Const(one * other, span)  # type: ignore[operator]
-    run = _OPERATIONS.get(type(op))
-    if run is None:
-        return UNKNOWN
-    try:
-        found = run(one, other)
-    except (TypeError, ValueError, ArithmeticError):
-        return UNKNOWN
-    if isinstance(found, str) and len(found) > LONGEST_TEXT:
-        return UNKNOWN
-    return Const(found, span) if isinstance(found, bool | int | float | str) else UNKNOWN
-
-
-def _percent(text: str, right: Value, span: Span | None) -> Value:
-    """A text that `%` fills in."""
-    items = right.items if isinstance(right, TupleValue) else (right,)
-    if not all(isinstance(item, Const) for item in items):
-        return UNKNOWN
-    values = tuple(item.value for item in items if isinstance(item, Const))
-    if any(len(str(value)) > LONGEST_TEXT for value in values) or len(text) > LONGEST_TEXT:
-        return UNKNOWN
-    if _WIDTH.search(text):
-        return UNKNOWN  # the text could be long
-    try:
-        return Const(text % values, span)
-    except (TypeError, ValueError):
-        return UNKNOWN
+def _is_dataclass(decorator: ast.expr) -> bool:
+    node = decorator.func if isinstance(decorator, ast.Call) else decorator
+    name = node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+    return name == "dataclass"

@@ -63,8 +63,9 @@ _DEFINITIONS = ast.FunctionDef | ast.AsyncFunctionDef
 
 _SEVERAL = LibraryClass("smach.State")
 
-MOST_LEVELS = 60
-"""The deepest nesting of containers."""
+MOST_LEVELS, MOST_NODES = 60, 10_000
+"""The deepest nesting of containers, and the most states of a machine: a container can be added at
+several places, and each of them is a state."""
 
 
 class FactReader(Protocol):
@@ -111,6 +112,8 @@ class _Builder:
         self.type_names: dict[tuple[object, ...], str] = {}
         self.unknown: list[tuple[Span, str]] = []
         self.states = 0
+        self.nodes = 0
+        self.path: list[Instance] = []
 
     def graph(self, container: Instance) -> Graph:
         span = container.span or NOWHERE
@@ -138,15 +141,29 @@ class _Builder:
     # --- containers
 
     def container(self, made: Instance, name: str, span: Span, depth: int) -> Container:
-        kind = _text(made.slots.get("$kind")) or "StateMachine"
+        """A container with its states."""
         children = made.slots.get("$children")
         added = children.added if isinstance(children, Children) else ()
         complete = isinstance(children, Children) and children.complete and self.roots.complete
-        if not complete or depth > MOST_LEVELS or self._overrides(made):
+        userdata = made.slots.get("userdata")
+        known = isinstance(userdata, DictValue) and isinstance(userdata.items, Mapping)
+        self.nodes += len(added)
+        inside = made in self.path or depth > MOST_LEVELS or self.nodes > MOST_NODES
+        if not complete or not known or inside or self._overrides(made):
             self.unknown.append((span, "not all of its states are known"))
             complete = False
-        if depth > MOST_LEVELS:
+        if inside:
             added = ()
+        self.path.append(made)
+        node = self._built(made, name, span, depth, added, complete=complete)
+        self.path.pop()
+        return node
+
+    def _built(
+        self, made: Instance, name: str, span: Span, depth: int, added: Sequence[Added], *,
+        complete: bool,
+    ) -> Container:  # fmt: skip
+        kind = _text(made.slots.get("$kind")) or "StateMachine"
         outcomes = self.names(made.slots.get("$outcomes"), span)
         builder = _Children(self, made, kind, outcomes, complete=complete)
         built = builder.build(added, depth)
@@ -168,8 +185,8 @@ class _Builder:
                 connector = made.slots.get("$connector_outcome")
                 return nodes.Sequence(
                     **common, children=built, initial=initial,
-                    connector_outcome=_text(connector) or "", connector_span=_place(connector, span),
-                    initial_span=span,
+                    connector_outcome=_text(connector) or "",
+                    connector_span=_place(connector, span), initial_span=span,
                 )  # fmt: skip
             case "Iterator":
                 return self._iterator(made, common, built, added, span)

@@ -4,19 +4,22 @@ states after the branches of an unknown condition joined."""
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from smachac.pysource.machines.values import (
     UNKNOWN,
     Const,
     OneOf,
+    OwnSlots,
     Slots,
     Value,
     one_of,
 )
 from smachac.records import dataclass
+
+T = TypeVar("T")
 
 ABSENT = object()
 """In place of a slot that does not exist."""
@@ -51,22 +54,80 @@ class Children:
 
 
 class Heap:
-    """The log of all writes: the owner of each slot, its key and its value before."""
+    """The log of all writes: the owner of each slot, its key and its value before. `work` is the
+    size of what was written, in steps of the evaluator: large collections are copied."""
 
     def __init__(self) -> None:
         self.log: list[tuple[Slots, Any, Any]] = []
+        self.work = 0
+        self._logged: dict[tuple[int, Any], list[int]] = {}
+        self._marks = [0]
+        self._watches: list[Watch] = []
 
     def set(self, slots: Slots, key: Any, value: Any) -> None:
-        self.log.append((slots, key, slots.get(key, ABSENT)))
+        before = slots.get(key, ABSENT)
+        self._note(slots, key, before)
+        for watch in self._watches:
+            watch.see(slots, key, before, value)
+        if isinstance(value, tuple | Mapping):
+            self.work += len(value) // 64
         slots[key] = value
 
     def delete(self, slots: Slots, key: Any) -> None:
         if key in slots:
-            self.log.append((slots, key, slots[key]))
+            self._note(slots, key, slots[key])
             del slots[key]
 
+    def _note(self, slots: Slots, key: Any, before: Any) -> None:
+        """Logs a write, but only the first one since the last mark."""
+        places = self._logged.setdefault((id(slots), key), [])
+        while places and not self._is_at(places[-1], slots, key):
+            places.pop()
+        if not places or places[-1] < self._marks[-1]:
+            places.append(len(self.log))
+            self.log.append((slots, key, before))
+
+    def _is_at(self, at: int, slots: Slots, key: Any) -> bool:
+        return at < len(self.log) and self.log[at][0] is slots and self.log[at][1] == key
+
+    def watch(self, run: Callable[[], T]) -> tuple[T, Changes]:
+        """Runs a part of code that can end anywhere: its result, and of each slot of an object that
+        was there before all values that it has had."""
+        watch = Watch()
+        self._watches.append(watch)
+        try:
+            found = run()
+        finally:
+            self._watches.remove(watch)
+        return found, watch.changes
+
+    def apart(self, run: Callable[[], T]) -> T:
+        """Runs code whose writes stay, whatever is undone later: modules are loaded once."""
+        kept = self.log, self._logged, self._marks, self._watches
+        self.log, self._logged, self._marks, self._watches = [], {}, [0], []
+        try:
+            return run()
+        finally:
+            self.log, self._logged, self._marks, self._watches = kept
+
     def mark(self) -> int:
+        """A place in the log to which writes can be undone, until it is released."""
+        self._marks.append(len(self.log))
         return len(self.log)
+
+    def release(self, mark: int) -> None:
+        """Gives up the last mark: of each slot, the log keeps the first write since the mark
+        before it."""
+        self._marks.pop()
+        since = self.log[mark:]
+        del self.log[mark:]
+        for slots, key, before in since:
+            self._note(slots, key, before)
+
+    def reset(self) -> None:
+        """Gives up all marks."""
+        self._marks[1:] = []
+        self._watches.clear()
 
     def changes(self, mark: int) -> Changes:
         """The slots that were written since a mark, with their present values."""
@@ -74,6 +135,14 @@ class Heap:
             (id(slots), key): (slots, key, slots.get(key, ABSENT))
             for slots, key, _ in self.log[mark:]
         }
+
+    def since(self, mark: int) -> Iterator[tuple[Slots, Any, Any, Any]]:
+        """The slots that were written since a mark, with the values at the mark and now."""
+        seen: set[tuple[int, Any]] = set()
+        for slots, key, before in self.log[mark:]:
+            if (id(slots), key) not in seen:
+                seen.add((id(slots), key))
+                yield slots, key, before, slots.get(key, ABSENT)
 
     def undo(self, mark: int) -> Changes:
         """Restores the state at a mark; the changes since then."""
@@ -105,7 +174,36 @@ class Heap:
         for which, (slots, key) in written.items():
             now = slots.get(key, ABSENT)
             values = [state[which][2] if which in state else now for state in states]
-            self.set(slots, key, joined(values))
+            values = [present(slots, key, value) for value in values]
+            self.work += sum(len(v.added) for v in values if isinstance(v, Children)) // 16
+            whole = joined(values)
+            if whole is ABSENT:
+                self.delete(slots, key)
+            else:
+                self.set(slots, key, whole)
+
+
+class Watch:
+    """The values that slots get in a part of code, those before it included."""
+
+    def __init__(self) -> None:
+        self.start = OwnSlots({}).born
+        self.changes: Changes = {}
+
+    def see(self, slots: Slots, key: Any, before: Any, value: Any) -> None:
+        if isinstance(slots, OwnSlots) and slots.born > self.start:
+            return
+        which = id(slots), key
+        known = self.changes[which][2] if which in self.changes else before
+        known = present(slots, key, known)
+        self.changes[which] = slots, key, joined([known, value])
+
+
+def present(slots: Slots, key: Any, value: Any) -> Any:
+    """A value; for an attribute that an object lacks, that of its class."""
+    if value is ABSENT and isinstance(slots, OwnSlots):
+        return slots.inherited(key, ABSENT)
+    return value
 
 
 def joined(values: Iterable[Any]) -> Any:
@@ -115,10 +213,10 @@ def joined(values: Iterable[Any]) -> Any:
     first = values[0]
     if all(value is first or value == first for value in values[1:]):
         return first
-    if any(isinstance(value, Children) for value in values):
-        return _joined_children([v if isinstance(v, Children) else Children() for v in values])
-    if ABSENT in values:  # a name is used only where it has a value
+    if any(value is ABSENT for value in values):  # a name is used only where it has a value
         return joined([value for value in values if value is not ABSENT])
+    if all(isinstance(value, Children) for value in values):
+        return _joined_children(values)
     if all(isinstance(value, tuple) for value in values):
         return OneOf(tuple(values)) if len(values) <= 8 else UNKNOWN  # the items of a list
     if all(isinstance(value, Mapping) for value in values):
@@ -142,14 +240,20 @@ def _joined_pairs(values: list[Mapping[Any, tuple[Value, Value]]]) -> Any:
 
 
 def _joined_children(values: list[Children]) -> Children:
+    """The states of all; those that one of the containers lacks are possible."""
+    lists = [value.added for value in values]
+    same = 0
+    for row in zip(*lists, strict=False):
+        if any(added is not row[0] for added in row):
+            break
+        same += 1
     found: dict[int, Added] = {}
     counts: Counter[int] = Counter()
-    for value in values:
-        for added in value.added:
-            found[id(added)] = added
-            counts[id(added)] += 1
-    whole = (
+    for added in (added for some in lists for added in some[same:]):
+        found[id(added)] = added
+        counts[id(added)] += 1
+    rest = (
         added if counts[which] == len(values) else replace(added, possible=True)
         for which, added in found.items()
     )
-    return Children(tuple(whole), all(value.complete for value in values))
+    return Children((*lists[0][:same], *rest), all(value.complete for value in values))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Callable, Iterable, Mapping
+import re
+from collections.abc import Callable, Iterable
 from pathlib import PurePath
 
 from smachac.diagnostics.source import Source
-from smachac.pysource.machines.evaluator import Evaluator
+from smachac.pysource.machines.evaluator import BudgetError, Evaluator
 from smachac.pysource.machines.smach_library import library_module, method_of, new_object
 from smachac.pysource.machines.values import (
     Arguments,
@@ -40,7 +41,6 @@ class Repository:
             self.by_stem.setdefault(stem, []).append(file)
         self.loaded: dict[str, ModuleValue | Unknown] = {}
         self.libraries: dict[str, ModuleValue] = {}
-        self.missing: dict[str, str] = {}
         self.imported: dict[str, dict[str, None]] = {}
 
     def method_of(self, cls: str, name: str) -> Native | None:
@@ -75,7 +75,8 @@ class Repository:
     def file_of(self, name: str, user: ModuleValue) -> str | None:
         """The file of a module."""
         parts = name.split(".")
-        endings = (os.sep.join(parts) + ".py", os.sep.join([*parts, "__init__.py"]))
+        path = PurePath(*parts)
+        endings = (f"{path}.py", str(path / "__init__.py"))
         found = [
             file
             for file in self.by_stem.get(parts[-1], ())
@@ -101,18 +102,34 @@ class Repository:
             return found
         path = PurePath(file)
         folder = ".".join(part for part in path.parent.parts if part not in (path.anchor, ".."))
-        name = "__main__" if main else f"{folder}.{path.stem}".strip(".")
+        name = folder if path.name == "__init__.py" else f"{folder}.{path.stem}".strip(".")
+        if main:
+            name = "__main__"
         module = ModuleValue(name, {}, text, folder, file=file)
         module.slots["__name__"] = Const(name)
         module.slots["__file__"] = Const(file)
         self.loaded[key] = module
-        around = [*evaluator.opened]
-        evaluator.opened.clear()
         frame = Frame(module.slots, module)
-        evaluator.block(text.tree.body, frame)
-        evaluator.opened[:] = around
+        if main:
+            evaluator.block(text.tree.body, frame)
+        else:
+            try:
+                module.dynamic = evaluator.load(text.tree.body, frame) or module.dynamic
+            except (BudgetError, RecursionError):
+                self.loaded[key] = Unknown(reason=file)  # its names are not known as a whole
+                raise
         module.is_loaded = True
         return module
+
+    def end_of_main(self, file: str) -> None:
+        """Forgets a file that was loaded as the main module."""
+        self.loaded.pop(f"{file}:main", None)
+
+    def may_set(self, name: str) -> bool:
+        """Whether code that was loaded sets an attribute of this name of anything."""
+        sets = re.compile(rf"\.{re.escape(name)}\b\s*(?:=[^=]|:)")
+        texts = (module.text for module in self.loaded.values() if isinstance(module, ModuleValue))
+        return any(text is not None and sets.search(text.source.text) for text in texts)
 
 
 def module_text(source: Source) -> PythonText | None:
@@ -131,10 +148,3 @@ def _shared(one: tuple[str, ...], other: tuple[str, ...]) -> int:
             break
         count += 1
     return count
-
-
-def missing_packages(values: Mapping[str, Value]) -> list[str]:
-    """The packages that a module imports and the repository does not have."""
-    names = {value.reason.partition(".")[0] for value in values.values()
-             if isinstance(value, Unknown) and value.reason}  # fmt: skip
-    return sorted(names)

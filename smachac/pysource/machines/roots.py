@@ -57,20 +57,21 @@ def machines_of(
 ) -> list[T]:
     """What `read` makes of the machines of a file. It is called while the objects are as the code
     has left them; changes by one function are undone before the next one is called."""
-    evaluator.steps = 0
-    found: list[T] = []
+    evaluator.begin()
+    repository.end_of_main(file)
     before = len(evaluator.made)
     complete = True
     module: Value = UNKNOWN
     try:
         module = repository.module(evaluator, file, main=True)
-    except BudgetError:
+    except (BudgetError, RecursionError):
         complete = False
-        evaluator.opened.clear()
-    found.append(read(_roots(evaluator, before, file, closed=True, complete=complete)))
-    if not isinstance(module, ModuleValue):
-        return found
-    return [*found, *_built(evaluator, module, file, read, variants=False)]
+        evaluator.reset()
+    evaluator.opened.clear()
+    found = [read(_roots(evaluator, before, file, closed=True, complete=complete))]
+    if isinstance(module, ModuleValue):
+        found += _built(evaluator, module, file, read, variants=False)
+    return found
 
 
 def _built(
@@ -82,17 +83,18 @@ def _built(
         mark, before = evaluator.heap.mark(), len(evaluator.made)
         orphans = evaluator.orphans
         complete = True
-        evaluator.steps = 0
+        evaluator.renew()
         try:
             candidate()
-        except BudgetError:
+        except (BudgetError, RecursionError):
             complete = False
-            evaluator.opened.clear()
-            evaluator.regions.clear()
-            evaluator.calls.clear()
+            evaluator.reset()
+        evaluator.opened.clear()
         if evaluator.orphans == orphans:
             yield read(_roots(evaluator, before, file, closed=False, complete=complete))
         evaluator.heap.undo(mark)
+        if complete:  # else all marks are given up
+            evaluator.heap.release(mark)
         del evaluator.made[before:]
 
 
@@ -195,7 +197,7 @@ def _builds(node: ast.AST, module: ModuleValue) -> bool:
             return True
         value = module.slots.get(name) if isinstance(part, ast.Name) else None
         if isinstance(value, Class) and any(
-            isinstance(base, LibraryClass) and base.name in CONTAINERS for base in value.bases
+            isinstance(base, LibraryClass) and base.name in CONTAINERS for base in value.order
         ):
             return True
     return False

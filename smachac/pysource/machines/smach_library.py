@@ -26,7 +26,6 @@ from smachac.pysource.machines.values import (
     Method,
     ModuleValue,
     Native,
-    OneOf,
     Partial,
     TupleValue,
     Unknown,
@@ -43,8 +42,6 @@ CONTAINERS = ("smach.StateMachine", "smach.Sequence", "smach.Concurrence", "smac
 
 STATIC = frozenset(["add", "add_auto", "set_contained_state"])
 """The methods that add to the container that `with` has opened."""
-
-NO_OUTCOMES: Sequence[str] = ()
 
 _READY = {
     "smach_ros.SimpleActionState": ("succeeded", "aborted", "preempted"),
@@ -84,10 +81,9 @@ def _names(evaluator: Interpreter, value: Value | None, span: Span | None) -> Va
     """A list of names. Of a text, each letter is a name: a fault."""
     if value is None:
         return TupleValue(())
-    if isinstance(value, Const) and isinstance(value.value, str):
-        if value.value and span is not None:
-            place = value.span or span
-            evaluator.faults.append(UseFault("text as list", place, (value.value,)))
+    if isinstance(value, Const) and isinstance(value.value, str) and value.value and span:
+        place = value.span or span
+        evaluator.faults.append(UseFault("text as list", place, (value.value,)))
     return value
 
 
@@ -101,9 +97,10 @@ def _joined(*values: Value) -> Value:
 def _state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     me = arguments.get(0, "self")
     if isinstance(me, Instance):
-        names = [_names(evaluator, arguments.get(at, name), span or me.span)
-                 for at, name in enumerate(("outcomes", "input_keys", "output_keys", "io_keys"), 1)]  # fmt: skip
-        outcomes, inputs, outputs, both = names
+        outcomes, inputs, outputs, both = (
+            _names(evaluator, arguments.get(at, name), span or me.span)
+            for at, name in enumerate(("outcomes", "input_keys", "output_keys", "io_keys"), 1)
+        )
         _interface(evaluator, me, outcomes, _joined(inputs, both), _joined(outputs, both))
     return NONE
 
@@ -146,13 +143,14 @@ def _container(kind: str, inputs_at: int, others: Sequence[tuple[int, str]]) -> 
 def _cb_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     me, function = arguments.get(0, "self"), arguments.get(1, "cb", UNKNOWN)
     if isinstance(me, Instance) and function is not None:
+        here = span or me.span
         own = _of_callback(function)
         given = [arguments.get(at, name) for at, name in
                  ((4, "outcomes"), (5, "input_keys"), (6, "output_keys"))]  # fmt: skip
         both = arguments.get(7, "io_keys") or TupleValue(())
-        outcomes = _joined(_names(evaluator, given[0], span), own[0])
-        inputs = _joined(_names(evaluator, given[1], span), own[1], both)
-        outputs = _joined(_names(evaluator, given[2], span), own[2], both)
+        outcomes = _joined(_names(evaluator, given[0], here), own[0])
+        inputs = _joined(_names(evaluator, given[1], here), own[1], both)
+        outputs = _joined(_names(evaluator, given[2], here), own[2], both)
         _interface(evaluator, me, outcomes, inputs, outputs)
         evaluator.heap.set(me.slots, "$callback", function)
     return NONE
@@ -177,16 +175,8 @@ def _ready(name: str) -> Run:
         me = arguments.get(0, "self")
         if not isinstance(me, Instance):
             return NONE
-        given = arguments.without_first()
-        if given.positional and not isinstance(given.positional[0], Const | OneOf):
-            first = given.positional[0]
-            named = {key for key, _ in given.named}
-            if name != "smach_ros.ConditionState" and "node" not in named:
-                if isinstance(first, Unknown | Instance) and not isinstance(first, Const):
-                    node_first = len(given.positional) > 1 and isinstance(
-                        given.positional[1], Const
-                    )
-                    given = given.without_first() if node_first else given
+        here = span or me.span
+        given = _without_node(name, arguments.without_first())
         values = {
             parameter: value
             for at, parameter in enumerate(parameters)
@@ -195,18 +185,27 @@ def _ready(name: str) -> Run:
         callbacks = [values[key] for key in values if key.endswith("_cb") and key != "cond_cb"]
         interfaces = [_of_callback(value) for value in callbacks]
         outcomes: list[Value] = [TupleValue(tuple(Const(text) for text in _READY[name]))]
-        outcomes += [_names(evaluator, values.get("outcomes"), span), *(i[0] for i in interfaces)]
+        outcomes += [_names(evaluator, values.get("outcomes"), here), *(i[0] for i in interfaces)]
         reads = [_one(values[key]) for key in _READ if key in values]
         writes = [_one(values[key]) for key in _WRITTEN if key in values]
-        inputs = [_names(evaluator, values.get("input_keys"), span), *(i[1] for i in interfaces)]
-        outputs = [_names(evaluator, values.get("output_keys"), span), *(i[2] for i in interfaces)]
-        slots = _names(evaluator, values.get("slots"), span)
+        inputs = [_names(evaluator, values.get("input_keys"), here), *(i[1] for i in interfaces)]
+        outputs = [_names(evaluator, values.get("output_keys"), here), *(i[2] for i in interfaces)]
+        slots = _names(evaluator, values.get("slots"), here)
         _interface(evaluator, me, _joined(*outcomes), _joined(*inputs, *reads, slots),
                    _joined(*outputs, *writes, slots))  # fmt: skip
         evaluator.heap.set(me.slots, "$required", _joined(*reads))
         return NONE
 
     return run
+
+
+def _without_node(name: str, given: Arguments) -> Arguments:
+    """The arguments without the node, which smach_ros of ROS 2 takes first: an object before a
+    name."""
+    match given.positional:
+        case [Unknown() | Instance(), Const(), *_] if name != "smach_ros.ConditionState":
+            return given.without_first()
+    return given
 
 
 def _one(value: Value) -> Value:
@@ -231,6 +230,7 @@ def _add(kind: str) -> Run:
             final = arguments.get(4, "final_outcome_map")
         else:
             transitions, remapping = arguments.get(2, "transitions"), arguments.get(3, "remapping")
+        evaluator.adds += 1
         if not evaluator.opened:
             evaluator.orphans += 1
             return state or UNKNOWN
@@ -449,7 +449,8 @@ def _cb_interface(evaluator: Interpreter, arguments: Arguments, span: Span | Non
 def _partial(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     if not arguments.positional:
         return UNKNOWN
-    return Partial(arguments.positional[0], arguments.without_first())
+    function, more = arguments.positional[0], arguments.without_first()
+    return evaluator.partial(function, more)
 
 
 def _copy(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:

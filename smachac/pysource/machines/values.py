@@ -7,6 +7,7 @@ only `heap.Heap` writes, so that the two branches of an unknown condition can be
 from __future__ import annotations
 
 import ast
+import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -21,6 +22,29 @@ MOST_ALTERNATIVES = 8
 
 Slots: TypeAlias = "dict[Any, Any]"
 """The contents of an object by name: attributes, items, or names of a module."""
+
+_BIRTHS = itertools.count()
+
+
+class OwnSlots(dict[Any, Any]):
+    """The slots of an object that the code makes; of two objects, the later one has the larger
+    `born`. `cls` is the class whose attributes count where the object has none."""
+
+    __slots__ = ("born", "cls")
+
+    def __init__(self, contents: Mapping[Any, Any], cls: Class | None = None) -> None:
+        super().__init__(contents)
+        self.born = next(_BIRTHS)
+        self.cls = cls
+
+    def inherited(self, key: Any, default: Any) -> Any:
+        """The attribute of the class; a method is not known, as it would have to be bound."""
+        for cls in (self.cls, *self.cls.order) if self.cls is not None else ():
+            if isinstance(cls, Unknown):
+                return UNKNOWN
+            if isinstance(cls, Class) and key in cls.slots:
+                return UNKNOWN if isinstance(cls.slots[key], Function) else cls.slots[key]
+        return default
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +92,9 @@ class ListValue:
     span: Span | None = None
     kind: str = "list"
 
+    def __post_init__(self) -> None:
+        self.slots = OwnSlots(self.slots)
+
     @property
     def items(self) -> tuple[Value, ...] | Unknown | OneOf:
         found: tuple[Value, ...] | Unknown | OneOf = self.slots["items"]
@@ -82,6 +109,9 @@ class DictValue:
     slots: Slots
     span: Span | None = None
     repeated: tuple[Const, ...] = ()
+
+    def __post_init__(self) -> None:
+        self.slots = OwnSlots(self.slots)
 
     @property
     def items(self) -> Mapping[Any, tuple[Value, Value]] | Unknown | OneOf:
@@ -99,7 +129,8 @@ class Frame:
     function: Function | None = None
     me: Value | None = None
     global_names: frozenset[str] = frozenset()
-    is_class: bool = False
+    outer_names: frozenset[str] = frozenset()
+    kind: Literal["", "class", "comprehension"] = ""
 
 
 @dataclass(eq=False, slots=True)
@@ -112,6 +143,7 @@ class Function:
     keyword_defaults: Mapping[str, Value]
     owner: Class | None = None
     kind: str = ""
+    setter: Function | None = None
     interface: Interface | None = None
 
     @property
@@ -130,11 +162,12 @@ class Interface:
 
 @dataclass(eq=False, slots=True)
 class Class:
-    """A class of the project; `slots` are the names in it."""
+    """A class of the project; `slots` are the names in it, `order` the classes in which Python
+    searches a name, without this one. A base class that is not known is UNKNOWN there."""
 
     node: ast.ClassDef
     frame: Frame
-    bases: tuple[Value, ...]
+    order: tuple[Value, ...]
     slots: Slots
     is_dataclass: bool = False
 
@@ -162,6 +195,9 @@ class Instance:
     slots: Slots
     span: Span | None = None
     opaque: bool = False
+
+    def __post_init__(self) -> None:
+        self.slots = OwnSlots(self.slots, self.cls if isinstance(self.cls, Class) else None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,16 +266,26 @@ class Arguments:
     def without_first(self) -> Arguments:
         return Arguments(self.positional[1:], self.named, self.open)
 
+    def followed_by(self, more: Arguments) -> Arguments:
+        """These arguments and others, whose named ones replace those of the same name."""
+        named = {**dict(self.named), **dict(more.named)}
+        positional = () if self.open else more.positional
+        return Arguments(
+            (*self.positional, *positional), tuple(named.items()), self.open or more.open
+        )
+
     def with_first(self, value: Value) -> Arguments:
         return Arguments((value, *self.positional), self.named, self.open)
 
 
 class Interpreter(Protocol):
     """The part of the evaluator that models of libraries use. `opened` are the containers that
-    `with` has opened; `orphans` counts the states that were added to a container of a caller."""
+    `with` has opened; `adds` counts all states that were added, `orphans` those to a container
+    of a caller."""
 
     opened: list[Value]
     orphans: int
+    adds: int
     faults: list[UseFault]
 
     @property
@@ -253,6 +299,7 @@ class Interpreter(Protocol):
     def update(self, owner: DictValue, value: Value) -> None: ...
     def new_list(self, items: Sequence[Value], kind: str = "list") -> ListValue: ...
     def classes(self, cls: Value) -> list[Value]: ...
+    def partial(self, function: Value, arguments: Arguments) -> Value: ...
 
 
 class Heap(Protocol):

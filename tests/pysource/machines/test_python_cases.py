@@ -1,0 +1,69 @@
+"""Python files with machines: the graph that is read and the findings, compared with files.
+
+The text at the top of each `machine.py` states what is expected of it.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from smachac.frontend.files import Disk
+from smachac.ir.nodes import Concurrence, Container, Node
+from smachac.pysource.machines.graph import Graph
+from smachac.pysource.python2 import is_installed
+from smachac.python_machines import PythonProject
+from smachac.report.text import render_text
+from tests.support.golden import compare_file
+
+CASES = Path(__file__).parents[2] / "python_cases"
+NAMES = sorted(path.name for path in CASES.iterdir())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_golden_graph_and_findings(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if name == "python2" and is_installed():
+        pytest.skip("the file shows what is found without the extra `python2`")
+    shutil.copytree(CASES / name, tmp_path / name)  # outside this repository: its own modules
+    monkeypatch.chdir(tmp_path / name)
+    found = PythonProject(Disk()).read(Path("machine.py"))
+    graphs = "\n".join(line for graph in found.graphs for line in graph_lines(graph))
+    coverage = f"{found.coverage}\n" if found.coverage else ""
+    compare_file(f"{graphs}\n{coverage}", CASES / name / "graph.txt")
+    compare_file(render_text(found.report), CASES / name / "report.txt")
+
+
+def graph_lines(graph: Graph) -> Iterator[str]:
+    yield from node_lines(graph.machine.root, "")
+
+
+def node_lines(node: Node, indent: str) -> Iterator[str]:
+    """A state with its type, keys and transitions, and the states in it."""
+    outcomes = ", ".join(outcome.name for outcome in node.outcomes)
+    kind = f"open {node.type}" if getattr(node, "open", False) else node.type
+    keys = "".join(
+        f" {title} {', '.join(key.name for key in some)};"
+        for title, some in (("reads", node.inputs), ("writes", node.outputs))
+        if some
+    )
+    yield f"{indent}{node.name}: {kind} [{outcomes}]{keys}"
+    for transition in node.transitions:
+        yield f"{indent}  - {transition.outcome} -> {transition.target}"
+    for remap in node.remaps:
+        yield f"{indent}  - {remap.key} = {remap.to}"
+    if isinstance(node, Concurrence):
+        yield f"{indent}  ends with {node.join}, else {node.default_outcome}"
+        for rule in node.rules:
+            when = ", ".join(f"{part.child}/{part.outcome}" for part in rule.when)
+            yield f"{indent}  {rule.outcome} after {when}"
+    if isinstance(node, Container):
+        initial = getattr(node, "initial", None)
+        if initial:
+            yield f"{indent}  first {initial}"
+        for child in node.children:
+            yield from node_lines(child, indent + "  ")
