@@ -75,9 +75,11 @@ def check_scripts(
     previous: dict[str, Previous] | None = None,
     *,
     everything: bool = False,
+    cached: bool = False,
 ) -> Batch:
     """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone; and
-    the machines in Python files, with `everything` by all rules.
+    the machines in Python files, with `everything` by all rules. `cached`: what is known of Python
+    files from the last run is used, and kept for the next one.
 
     Templates of the user are rendered, for their findings. `previous` are the results of the last
     analyses by path, which become those of these ones.
@@ -102,7 +104,7 @@ def check_scripts(
                 analyses[str(path)] = analyse_alone(source, library, report, last)
         uses[str(path)] = disk.searched_files()
 
-    python = _python_project(paths, disk)
+    python = _python_project(paths, disk, cached=cached)
     for path in paths:
         disk.searched.clear()
         report: Report = []
@@ -118,6 +120,8 @@ def check_scripts(
             alone.append(path)
         else:
             analyse_path(path, source, report, called=True)
+    if python is not None:
+        python.keep()
     called = frozenset().union(*uses.values())
     alone = [path for path in alone if os.path.realpath(path) not in called]
     for path in alone:
@@ -138,14 +142,14 @@ def check_scripts(
     )
 
 
-def _python_project(paths: Sequence[Path], disk: Disk) -> PythonProject | None:
+def _python_project(paths: Sequence[Path], disk: Disk, *, cached: bool) -> PythonProject | None:
     """The reader of Python files, if there is one among the paths: its modules are imported then
     alone."""
     if all(path.suffix != PYTHON_SUFFIX for path in paths):
         return None
     from smachac.python_machines import PythonProject
 
-    return PythonProject(disk)
+    return PythonProject(disk, cached=cached)
 
 
 def _report_unused_allowances(analyses: Mapping[str, Analysis], reports: dict[str, Report]) -> None:

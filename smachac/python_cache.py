@@ -6,11 +6,13 @@ changed. Only data is stored, as JSON; a file that is damaged counts as empty.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +26,7 @@ from smachac.diagnostics.diagnostic import (
 )
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES
+from smachac.pysource.coverage import Coverage, UnknownPlace
 from smachac.records import dataclass
 from smachac.version import __version__
 
@@ -33,12 +36,10 @@ Reader = Callable[[str], "Source | None"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Known:
-    """What is known of a Python file: its findings, the number of its states, and those that are
-    not known, each with its place and the reason."""
+    """What is known of a Python file: its findings, and how much of its machines was read."""
 
     report: Report
-    states: int
-    unknown: tuple[tuple[Span, str], ...]
+    coverage: Coverage
 
 
 def cache_folder() -> Path | None:
@@ -98,8 +99,9 @@ class Cache:
     def set(self, key: str, known: Known) -> None:
         self.records[key] = {
             "report": [_data(item) for item in known.report],
-            "states": known.states,
-            "unknown": [[_place(span), reason] for span, reason in known.unknown],
+            "states": known.coverage.states,
+            "exact": known.coverage.exact,
+            "unknown": [[_place(span), reason] for span, reason in known.coverage.unknown],
         }
         self.changed = True
 
@@ -114,7 +116,8 @@ class Cache:
             part.write_bytes(text.encode("utf-8", "surrogatepass"))
             part.replace(self.file)
         except OSError:
-            part.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                part.unlink(missing_ok=True)
 
 
 def _place(span: Span) -> list[Any]:
@@ -162,10 +165,9 @@ def _known(record: Mapping[str, Any], read: Reader) -> Known:
         )
         steps = tuple(None if place is None else span(place) for place in data["steps"])
         severity = Severity(data["severity"])
-        return Diagnostic(kind=CODES[data["code"]], severity=severity, finding=finding, steps=steps)
+        kind = replace(CODES[data["code"]], firm=False)
+        return Diagnostic(kind=kind, severity=severity, finding=finding, steps=steps)
 
-    return Known(
-        report=[item(data) for data in record["report"]],
-        states=int(record["states"]),
-        unknown=tuple((span(place), str(reason)) for place, reason in record["unknown"]),
-    )
+    unknown = (UnknownPlace(span(place), str(reason)) for place, reason in record["unknown"])
+    coverage = Coverage(int(record["states"]), int(record["exact"]), tuple(unknown))
+    return Known(report=[item(data) for data in record["report"]], coverage=coverage)

@@ -30,6 +30,7 @@ from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
 from smachac.pysource.source import syntax_error
+from smachac.python_cache import Cache, Known, digest_of
 from smachac.records import dataclass
 
 CANNOT_WORK = frozenset({
@@ -65,10 +66,14 @@ class PythonFile:
 
 
 class PythonProject:
-    """Reads Python files of repositories; modules that several files import are read once."""
+    """Reads Python files of repositories; modules that several files import are read once.
+    `cached`: what is known from the last run is used, without the graphs, and kept for the next
+    one by `keep`."""
 
-    def __init__(self, disk: Disk) -> None:
+    def __init__(self, disk: Disk, *, cached: bool = False) -> None:
         self.disk = disk
+        self.cached = cached
+        self.caches: dict[str, Cache] = {}
         self.repositories: dict[str, tuple[Repository, Evaluator, ClassReader]] = {}
 
     def read(self, path: Path, *, everything: bool = False) -> PythonFile:
@@ -83,6 +88,14 @@ class PythonProject:
             report.append(_unreadable(source))
             found = grouped(apply_severities(in_order(report), library.policy))
             return PythonFile(path=path, source=source, report=found)
+        cache = self._cache(path) if self.cached else None
+        key = f"{path} {everything} {library.policy}"
+        known = cache.get(key, self._text) if cache is not None else None
+        if known is not None:
+            return PythonFile(
+                path=path, source=source, report=[*report, *known.report], coverage=known.coverage
+            )
+        read_before = [*report]
         repository, evaluator, reader = self._repository(path)
         del evaluator.faults[:]
 
@@ -111,9 +124,25 @@ class PythonProject:
             rest = [item for item in rest if _cannot_work(item)]
         found = grouped(apply_severities(in_order(rest), library.policy))
         coverage = coverage_of(whole)
+        if cache is not None and not read_before:
+            cache.set(key, Known(report=found, coverage=coverage))
         return PythonFile(
             path=path, source=source, graphs=tuple(whole), report=found, coverage=coverage
         )
+
+    def keep(self) -> None:
+        """Writes what is known for the next run."""
+        for cache in self.caches.values():
+            cache.write()
+
+    def _cache(self, path: Path) -> Cache:
+        root = repository_of(path)
+        name = os.path.realpath(root)
+        if name not in self.caches:
+            read = ((str(file), self._text(str(file))) for file in python_files(root))
+            texts = ((file, source.text) for file, source in read if source is not None)
+            self.caches[name] = Cache(f"{name} {Path.cwd()}", digest_of(texts))
+        return self.caches[name]
 
     def _repository(self, path: Path) -> tuple[Repository, Evaluator, ClassReader]:
         root = repository_of(path)

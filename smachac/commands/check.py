@@ -86,6 +86,8 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
                         " that build machines for SMACH")  # fmt: skip
     parser.add_argument("--all", action="store_true", help="of Python files, report the findings of"
                         " all rules, not only what cannot work")  # fmt: skip
+    parser.add_argument("--no-cache", action="store_true", help="read all Python files, also those"
+                        " that did not change since the last run")  # fmt: skip
     parser.add_argument("--watch", action="store_true",
                         help="check again when a file changes, until Ctrl-C")  # fmt: skip
     memory_limit(parser)
@@ -154,7 +156,10 @@ def _check_once(
 
     def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
         folders = arguments.scripts, arguments.templates
-        return check_scripts(paths, disk, *folders, sim_rule, previous, everything=arguments.all)
+        cached = not (arguments.no_cache or arguments.watch or arguments.changed_since)
+        return check_scripts(
+            paths, disk, *folders, sim_rule, previous, everything=arguments.all, cached=cached
+        )
 
     whole = check(disk, previous)
     used.update(*whole.uses.values())

@@ -18,6 +18,7 @@ LAYERS = (
     ("analysis", "interpreter", "frontend"),
     ("targets", "checks"),
     ("driver", "report"),
+    ("python_cache",),
     ("python_machines",),
     ("__init__", "batch"),
     ("repair",),
