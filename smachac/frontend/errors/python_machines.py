@@ -157,14 +157,14 @@ def repeated_key(word: Word, first: Span | None) -> Finding:
 
         sm = smach.StateMachine(outcomes=["done", "failed"])
         with sm:
-            smach.StateMachine.add("GRIP", smach.State(outcomes=["ok"]), {"ok": "failed", "ok": "done"})
+            sm.add("GRIP", smach.State(outcomes=["ok"]), {"ok": "failed", "ok": "done"})
 
     Right:
         import smach
 
         sm = smach.StateMachine(outcomes=["done"])
         with sm:
-            smach.StateMachine.add("GRIP", smach.State(outcomes=["ok"]), {"ok": "done"})
+            sm.add("GRIP", smach.State(outcomes=["ok"]), {"ok": "done"})
     """
     related = (Related(span=first, message="the first one, which is not used"),) if first else ()
     return Finding(
