@@ -155,30 +155,16 @@ def repeated_key(word: Word, first: Span | None) -> Finding:
     Wrong:
         import smach
 
-        class Grip(smach.State):
-            def __init__(self):
-                smach.State.__init__(self, outcomes=["ok"])
-
-            def execute(self, userdata):
-                return "ok"
-
         sm = smach.StateMachine(outcomes=["done", "failed"])
         with sm:
-            smach.StateMachine.add("GRIP", Grip(), {"ok": "failed", "ok": "done"})
+            sm.add("GRIP", smach.State(outcomes=["ok"]), {"ok": "failed", "ok": "done"})
 
     Right:
         import smach
 
-        class Grip(smach.State):
-            def __init__(self):
-                smach.State.__init__(self, outcomes=["ok"])
-
-            def execute(self, userdata):
-                return "ok"
-
         sm = smach.StateMachine(outcomes=["done"])
         with sm:
-            smach.StateMachine.add("GRIP", Grip(), {"ok": "done"})
+            sm.add("GRIP", smach.State(outcomes=["ok"]), {"ok": "done"})
     """
     related = (Related(span=first, message="the first one, which is not used"),) if first else ()
     return Finding(
