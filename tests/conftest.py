@@ -63,6 +63,15 @@ def memory_beside_other_tests() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session", autouse=True)
+def own_cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The cache folder of the user is left alone."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
+            patch.setenv(name, str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def work_done_once() -> Iterator[None]:
     """What does not change is done once: the targets are found in the metadata of all installed
     packages, and the templates compiled."""

@@ -86,7 +86,7 @@ WRONG = {
     ),
     "a key that nothing sets": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Use())\n',
-        'SM301 smach.State.__init__(self, outcomes=["ok"], input_keys=["part"])',
+        'SM301 sm.add("A", Use())',
     ),
 }  # fmt: skip
 

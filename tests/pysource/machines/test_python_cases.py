@@ -16,6 +16,7 @@ from smachac.ir.nodes import Concurrence, Container, Node
 from smachac.pysource.machines.graph import Graph
 from smachac.pysource.python2 import is_installed
 from smachac.python_machines import PythonProject
+from smachac.report.coverage import coverage_lines
 from smachac.report.text import render_text
 from tests.support.golden import compare_file
 
@@ -33,8 +34,9 @@ def test_golden_graph_and_findings(
     monkeypatch.chdir(tmp_path / name)
     found = PythonProject(Disk()).read(Path("machine.py"))
     graphs = "\n".join(line for graph in found.graphs for line in graph_lines(graph))
-    coverage = f"{found.coverage}\n" if found.coverage else ""
-    compare_file(f"{graphs}\n{coverage}", CASES / name / "graph.txt")
+    known = {"machine.py": found.coverage} if found.coverage is not None else {}
+    coverage = "\n".join(coverage_lines(known, every=True))
+    compare_file(f"{graphs}\n{coverage}\n", CASES / name / "graph.txt")
     compare_file(render_text(found.report), CASES / name / "report.txt")
 
 
