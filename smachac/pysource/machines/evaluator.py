@@ -434,7 +434,9 @@ class Evaluator:
             return end
 
         mark, opened = self.heap.mark(), [*self.opened]
-        end, between = self.heap.watch(body)
+        end, seen = self.heap.watch(body)
+        # A container that an exception has left half built is not the machine that is meant.
+        between = {which: change for which, change in seen.items() if change[1] != "$children"}
         at_end = self.heap.changes(mark)
         raised = end is not None and end[0] == "raise"
         states: list[Changes] = []
