@@ -267,7 +267,9 @@ def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diag
 
 
 def _of_uses(faults: Sequence[UseFault], found: Sequence[Graph]) -> Iterator[Diagnostic]:
-    """The findings about wrong uses of SMACH."""
+    """The findings about wrong uses of SMACH; the names that a module lacks are one for each file
+    that uses them."""
+    members: dict[tuple[Source, str], list[Word]] = {}
     for fault in dict.fromkeys(faults):
         name = fault.names[0] if fault.names else ""
         match fault.kind:
@@ -276,9 +278,12 @@ def _of_uses(faults: Sequence[UseFault], found: Sequence[Graph]) -> Iterator[Dia
             case "shared transitions":
                 yield errors.shared_transitions(fault.span, name, fault.other)
             case "missing member":
-                yield errors.missing_member(Word(name, fault.span), fault.names[1])
+                which = fault.span.source, fault.names[1]
+                members.setdefault(which, []).append(Word(name, fault.span))
             case "repeated key":
                 yield errors.repeated_key(Word(name, fault.span), fault.other)
+    for (_, module), words in members.items():
+        yield errors.missing_member(module, words)
 
 
 def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:

@@ -2,8 +2,18 @@
 
 from __future__ import annotations
 
-from smachac.diagnostics.diagnostic import Finding, Problem, Related, Severity, problem
+from collections.abc import Sequence
+
+from smachac.diagnostics.diagnostic import (
+    MOST_RELATED,
+    Finding,
+    Problem,
+    Related,
+    Severity,
+    problem,
+)
 from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.wording import listed
 
 
 @problem(
@@ -97,7 +107,7 @@ def shared_transitions(span: Span, outcome: str, first: Span | None) -> Finding:
     firm=False,
     effect="Python raises AttributeError or ImportError: the program stops when it starts",
 )
-def missing_member(word: Word, module: str) -> Finding:
+def missing_member(module: str, words: Sequence[Word]) -> Finding:
     """A module of the repository has no such name.
 
     The module was read as a whole, and nothing in it can bind another name.
@@ -138,11 +148,16 @@ def missing_member(word: Word, module: str) -> Finding:
             def execute(self, userdata):
                 return "ok"
     """
+    first, *others = sorted(words, key=lambda word: word.span.start)
+    more = sorted({word.text for word in others} - {first.text})
     return Finding(
-        span=word.span,
-        message=f"`{module}` has no `{word.text}`",
-        arguments=(module, word.text),
+        span=first.span,
+        message=f"`{module}` has no {listed([first.text, *more])}",
+        arguments=(module, first.text),
         help="correct the name, or define it in the module",
+        related=tuple(
+            Related(span=word.span, message="the same here") for word in others[:MOST_RELATED]
+        ),
     )
 
 
