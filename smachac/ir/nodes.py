@@ -282,7 +282,7 @@ class Leaf(_State):
     variables: tuple[Variable, ...] = ()
     writes: tuple[tuple[str, tuple[str, ...]], ...] = ()
     open: bool = False
-    synthetic: bool = False
+    synthetic: bool = field(default=False, compare=False, repr=False)
     blocking: bool = False
     class_facts: ClassFacts | None = field(default=None, compare=False, repr=False)
     built_in: str = field(default="", compare=False, repr=False)

@@ -17,9 +17,10 @@ from smachac.checks.robot.workspace import unreachable
 from smachac.diagnostics.diagnostic import Finding, Report, Severity, diagnostic
 from smachac.diagnostics.source import Source, Span
 from smachac.driver import CODES, analyse, code_faults
-from smachac.frontend.files import disk_library, read_source
+from smachac.frontend.files import Disk, disk_library, read_source
 from smachac.frontend.loader import Library, memory_library
-from smachac.report.explain_code import MAIN, explanation
+from smachac.python_machines import PythonProject
+from smachac.report.explain_code import MAIN, MAIN_IN_PYTHON, explanation
 from smachac.targets import BuildContext, load_target
 from tests.support.examples import every, seeds
 from tests.trust.mutants import Subject, files_of
@@ -101,8 +102,13 @@ def test_arguments_in_scripts(path: Path) -> None:
     ],
 )
 @pytest.mark.slow
-def test_arguments_in_the_examples_of_a_code(code: str) -> None:
+def test_arguments_in_the_examples_of_a_code(code: str, tmp_path: Path) -> None:
     for files in (explanation(CODES[code]).wrong, explanation(CODES[code]).right):
+        if MAIN_IN_PYTHON in files:
+            for name, text in files.items():
+                (tmp_path / name).write_text(text)
+            check_arguments(PythonProject(Disk()).read(tmp_path / MAIN_IN_PYTHON).report)
+            continue
         library = memory_library(files, BUILT_IN)
         check_arguments(every_finding(Source(MAIN, files[MAIN]), library, []))
 

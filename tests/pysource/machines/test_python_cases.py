@@ -6,6 +6,8 @@ The text at the top of each `machine.py` states what is expected of it.
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,7 +16,6 @@ import pytest
 from smachac.frontend.files import Disk
 from smachac.ir.nodes import Concurrence, Container, Node
 from smachac.pysource.machines.graph import Graph
-from smachac.pysource.python2 import is_installed
 from smachac.python_machines import PythonProject
 from smachac.report.coverage import coverage_lines
 from smachac.report.text import render_text
@@ -28,8 +29,6 @@ NAMES = sorted(path.name for path in CASES.iterdir())
 def test_golden_graph_and_findings(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if name == "python2" and is_installed():
-        pytest.skip("the file shows what is found without the extra `python2`")
     shutil.copytree(CASES / name, tmp_path / name)  # outside this repository: its own modules
     monkeypatch.chdir(tmp_path / name)
     found = PythonProject(Disk()).read(Path("machine.py"))
@@ -69,3 +68,21 @@ def node_lines(node: Node, indent: str) -> Iterator[str]:
             yield f"{indent}  first {initial}"
         for child in node.children:
             yield from node_lines(child, indent + "  ")
+
+
+WITHOUT_FISSIX = """
+import sys
+sys.modules["fissix"] = None  # as if it were not installed
+from smachac.commands.cli import main
+sys.exit(main(["check", "machine.py"]))
+"""
+
+
+def test_python_2_without_the_extra_names_the_command_that_installs_it() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_FISSIX],
+        cwd=CASES / "python2", capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert "warning[SM805]: this is code for Python 2" in done.stdout
+    assert "pip install 'smachac[python2]'" in done.stdout
+    assert done.stderr == ""
