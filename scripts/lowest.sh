@@ -19,7 +19,7 @@ END
 echo "lowest versions: ${lowest[*]}"
 # Installed, because the targets are found through the metadata of the package.
 "$venv/bin/python" -m pip install -q --disable-pip-version-check -e . "${lowest[@]}" \
-  'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20' 'ruff>=0.6' 'mypy>=1.11' 'ipython>=8.12'
+  'fissix>=24.4' 'xacro>=2.1,<2.2' 'pytest>=8' 'pytest-xdist>=3.6' 'hypothesis>=6.100' 'jsonschema>=4.20' 'ruff>=0.6' 'mypy>=1.11' 'ipython>=8.12'
 tests=("$@")
 # What uses PyYAML, networkx and jinja2; of the rules the examples of all codes, which
 # are checked and built. The other tests of rules see only the graph.
