@@ -77,12 +77,6 @@ def _class(module: Module, name: str, library: UserCode) -> tuple[Module, ast.Cl
     return found if plain and shows_all(module, name, *found) else None
 
 
-def enumeration_of(module: Module, name: str, library: UserCode) -> ast.ClassDef | None:
-    """The enumeration of the project that a name is; None for others."""
-    found = find_class(module, name, library) if name in module.names else None
-    return found[1] if isinstance(found, tuple) and _kind(*found) is not None else None
-
-
 def _kind(module: Module, node: ast.ClassDef) -> str | None:
     """The class of the module `enum` that a class is derived from directly; None for others."""
     decorators = {ast.unparse(each).rpartition(".")[2] for each in node.decorator_list}

@@ -70,8 +70,8 @@ def _places(graph: Graph) -> Iterator[tuple[Span, str]]:
 
 
 def _is_made(node: Node) -> bool:
-    """Whether a state is not in the code, but stands for what is not known of a container, or of
-    the target of a transition."""
+    """Whether `graph.py` has made a state: for the unknown part of a container, or for a target
+    that is one of several."""
     return isinstance(node, Leaf) and node.type == ELSEWHERE and (
         node.name == ELSEWHERE or not node.open
     )  # fmt: skip
