@@ -43,8 +43,7 @@ def look(outcomes: str, transitions: str) -> list[tuple[str, str, str | None]]:
          [("preempted", "did you mean `canceled`?")]),
         # the only outcome without a transition
         (ENDS, "succeeded: SAY, aborted: aborted, rejected: preempted",
-         [("rejected", "write `preempted: preempted`: `preempted` is its only outcome without a"
-           " transition")]),
+         [("rejected", "did you mean `preempted`?")]),
         # no outcome is left
         ("[found, lost]", "found: SAY, lost: aborted, preempted: preempted",
          [("preempted", "remove this transition: its outcomes `found` and `lost` have one")]),

@@ -195,13 +195,17 @@ code: {cpp: {header: glue.hpp, class: Glue}}
     ("remapping", "found"),
     [
         ("{seam: seam_a, volume: volume_a}", []),
-        ("{line: seam_a, volume: volume_a}", [("SM302", "line", "did you mean `seam`?")]),
-        ("{seam: seam_a, result: volume_a}", [("SM302", "result", "did you mean `volume`?")]),
+        ("{line: seam_a, volume: volume_a}", [("SM302", "line", "seam")]),
+        ("{seam: seam_a, result: volume_a}", [("SM302", "result", "volume")]),
     ],
 )  # fmt: skip
 def test_the_key_that_an_entry_of_a_remapping_means(remapping: str, found: list[Row]) -> None:
     files = {"main.yml": SEAMS.replace("REMAPPING", remapping), "templates/Glue.yml": GLUE}
-    assert reported(files) == found
+    rows = printed(files)
+    assert [row[:2] for row in rows] == [row[:2] for row in found]
+    assert all(
+        f"did you mean `{name}`?" in row[2] for row, (*_, name) in zip(rows, found, strict=True)
+    )
 
 
 INNER = """\
@@ -336,19 +340,6 @@ def test_the_example_of_a_missing_variable_is_one_that_it_can_have(
     main = USE.replace("force: 600, ", "")
     found = reported({"main.yml": main, "templates/Grip.yml": interface})
     assert found == [("SM005", "GRIP", f"add `force: {example}`")]
-
-
-@pytest.mark.parametrize(
-    ("row", "help"),
-    [
-        ("lamp: [{at_most: {LOOK: 2}}]", "did you mean `properties`?"),
-        ("lamp: true", "did you mean `forever`?"),
-    ],
-)
-def test_an_unknown_variable_of_the_script(row: str, help: str) -> None:
-    text = f"name: sm\n{row}\noutcomes: [done]\nstates:\n  - LOOK: {{template: ScriptedState,"
-    found = reported({"main.yml": f"{text} outcomes: [done]}}\n"})
-    assert found == [("SM003", "lamp", help)]
 
 
 LISTS = """\

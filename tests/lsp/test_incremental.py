@@ -117,12 +117,12 @@ def test_a_sub_script_that_has_not_changed_keeps_its_nodes_and_scopes(tmp_path: 
     session = Session([folder])
     session.check(main)
     part, grasp = (container(session, main, name) for name in ("FIRST", "LAST"))
-    scopes = session.view(main).context.corrected_flow.scopes  # type: ignore[union-attr]
+    scopes = session.view(main).context.absorbed_flow.scopes  # type: ignore[union-attr]
     session.change(wait, texts[wait].replace("max: 2", "max: 3"))
     session.check(main)
     assert container(session, main, "FIRST") is part
     assert container(session, main, "LAST") is not grasp
-    new = session.view(main).context.corrected_flow.scopes  # type: ignore[union-attr]
+    new = session.view(main).context.absorbed_flow.scopes  # type: ignore[union-attr]
     assert new["sm/FIRST"] is scopes["sm/FIRST"]
     assert new["sm"] is not scopes["sm"]
 

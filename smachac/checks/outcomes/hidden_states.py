@@ -37,7 +37,7 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
     """The groups of states that cannot be entered, without those whose cause another rule
     reports; and the finding on a sequence that never continues."""
     missed: set[str] | None = None
-    for (path, container), whole in zip(context.linear, context.corrected, strict=True):
+    for (path, container), whole in zip(context.linear, context.absorbed, strict=True):
         seen = context.of_container(reachable, path, whole)
         hidden = [child for child in written_children(container) if child.name not in seen]
         if not hidden:

@@ -463,21 +463,18 @@ def implicit_exit(context: Context) -> Iterator[Finding]:
     for path, container in context.linear:
         for child in container.children if not container.sugar else ():
             steps = [step for step in child.transitions if step.origin == "implicit"]
-            if steps:
+            if steps and not unknown_outcomes(child):
                 yield from _implicit(path, container, child, steps)
 
 
 def _implicit(
     path: str, container: Linear, child: Node, steps: Iterable[Transition]
 ) -> Iterator[Finding]:
-    misspelt = {meant for _, meant in unknown_outcomes(child)}
     beside = any(
         step.origin == "written" and not fails(child, step.outcome) and step.outcome != PREEMPTED
         for step in child.transitions
     )
     for step in steps:
-        if step.outcome in misspelt:
-            continue
         forgotten = beside and fails(child, step.outcome)
         added = f"`{notation.entry(child, step.outcome, step.target)}`"
         yield Finding(

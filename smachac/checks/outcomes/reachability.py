@@ -256,7 +256,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
     types = {name: each for name, each in context.machine.state_types.items() if each.needs}
     for path, container in context.containers if types else ():
         yield from outcomes_without_variable(path, container, types)
-    linear = iter(context.corrected)
+    linear = iter(context.absorbed)
     again = {found.stop.path for found in context.stop_paths.again}
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
@@ -270,7 +270,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
 
 
 def _possible_outcomes(context: Context, path: str, container: Container) -> frozenset[str] | None:
-    """The outcomes with which a corrected container can end; None where another fault makes that
+    """The outcomes with which an absorbed container can end; None where another fault makes that
     unknown."""
     if not container.children:
         return None

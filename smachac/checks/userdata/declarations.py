@@ -88,7 +88,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {succeeded: held}
     """
-    flow = context.corrected_flow
+    flow = context.absorbed_flow
     in_functions = function_reads(context)
     # A state outside or inside the container needs the key, but does not get it.
     needed = {(lost.keeper.path, lost.written.outer) for lost in context.lost_outputs}
@@ -274,7 +274,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
                     transitions: {succeeded: done}
               transitions: {done: held}
     """
-    flow = context.corrected_flow
+    flow = context.absorbed_flow
     needed = {(missing.other, missing.key) for missing in context.missing_keys("outside")}
     yield from context.at_containers(_unused_in)
     unwritten = context.of_machine(unwritten_keys)
