@@ -170,6 +170,7 @@ def unknown_variable(
     own: Iterable[str] = (),
     anything: bool = False,
     meant: str | None = None,
+    likely: str | None = None,
     outcome: bool = False,
     key: str | None = None,
     certain: str | None = None,
@@ -201,7 +202,8 @@ def unknown_variable(
     names = sorted({*known, *own})
     owned = f"use one of its {owner.part}s{possible(names, fitting)}"
     variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
-    sure = meant or guesser_of(tuple(names)).sure(word.text)
+    spelt = guesser_of(tuple(names)).sure(word.text)
+    sure = meant or spelt or likely
     number = number_before(word)
     if number:
         certain = f"a decimal comma? write `{number}.{word.text}`"
@@ -238,10 +240,14 @@ def unknown_variable(
         message=f"`{word.text}` is not a {owner.part} of {owner.text}",
         arguments=(word.text, owner.name),
         help=foreign or _variable_help(word.text, sure, names, own) or variables,
-        edits=respelt(word, sure),
+        edits=respelt(word, meant or spelt),
         repairs=tuple(
-            Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="write another name")
-            for name in (() if sure else proposed)
+            Repair(
+                edits=edits,
+                certainty=Certainty.LIKELY if sure else Certainty.POSSIBLE,
+                operator="write another name",
+            )
+            for name in ([sure] if sure else proposed)
             if (edits := respelt(word, name))
         ),
         severity=severity,

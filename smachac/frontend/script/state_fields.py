@@ -32,11 +32,6 @@ from smachac.frontend.script.extra_keys import check_interface
 from smachac.frontend.script.missing_outcomes import outcomes_used
 from smachac.frontend.script.params import Scope
 from smachac.frontend.script.sugar import NAMES, is_own, read_sugar
-from smachac.frontend.text.field_shapes import (
-    ends_with_any,
-    fitting_fields,
-    paired_help,
-)
 from smachac.frontend.text.fields import (
     READERS,
     YAML_1_1_BOOLEANS,
@@ -178,15 +173,7 @@ def with_meant_fields(
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
-    if owner == "state" and "default_outcome" in type_.variables:
-        default = [key for key in unknown if "default" in key.split("_")]
-        if len(default) == 1 and isinstance(entries[default[0]].value, Scalar):
-            meant.setdefault("default_outcome", entries[default[0]])
-    found = {name: entry for name, entry in meant.items() if name is not None}
-    if "child_termination_cb" in unknown and ends_with_any(entries, owner):
-        given = entries["child_termination_cb"]  # the help of its finding is `join: any`
-        found["join"] = Entry(given.key, Scalar("any", True, given.key.span.source, 0, 0))
-    return found | entries
+    return {name: entry for name, entry in meant.items() if name is not None} | entries
 
 
 def params_meant(entries: Entries) -> Entry | None:
@@ -263,15 +250,12 @@ def _known_fields(
                 strays.append((word, target))
             as_key = _as_key(word, entry, entries, type_)
             stray = target is not None
-            certain = paired_help(word.text, sure, [*known, *own])
-            fitting = fitting_fields(entry.value, [*known, *own], entries, type_)
-            if sure is None and len(fitting) == 1 and not own:
-                certain = f"did you mean `{fitting[0]}`?"
+            fitting = [name for name in (*known, *own) if name not in entries]
             needed = sure if sure is not None and _is_required(sure, owner, type_) else None
             report.append(
                 unknown_variable(
-                    word, whose, known, own=own, meant=sure, outcome=stray, key=as_key,
-                    certain=certain, fitting=fitting, required=needed,
+                    word, whose, known, own=own, likely=sure, outcome=stray, key=as_key,
+                    fitting=fitting, required=needed,
                 )
             )  # fmt: skip
             if as_key is not None:

@@ -25,7 +25,6 @@ from smachac.frontend.resolved_script import (
     Sugar,
     Timeout,
 )
-from smachac.frontend.text.field_shapes import paired_help
 from smachac.frontend.text.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.text.values import UNKNOWN
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
@@ -345,8 +344,7 @@ def _parts(
         others = tuple(name for name in known if name not in written)
         meant = _part_meant(word.text, others)
         if meant is None and paired:
-            help = paired_help(word.text, paired, ())
-            report.append(unknown_variable(word, owner, others, certain=help, required=paired))
+            report.append(unknown_variable(word, owner, others, likely=paired, required=paired))
             parts[paired] = each.value
             continue
         if meant is None:
