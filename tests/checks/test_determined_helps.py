@@ -226,18 +226,14 @@ states:
       outcomes: [done]
       transitions: {done: docked}
 """
-CUT_OFF = RACK.index("  - COUNT"), RACK.index("  - CLEAR")
 
 
-@pytest.mark.parametrize(
-    "text", [RACK, RACK[: CUT_OFF[0]] + RACK[CUT_OFF[1] :] + RACK[CUT_OFF[0] : CUT_OFF[1]]]
-)
-def test_states_that_a_failure_leads_past(text: str) -> None:
+def test_states_that_a_failure_leads_past() -> None:
     help = (
         "write `aborted: COUNT` in `TO_RACK`, or remove `COUNT` and `ENOUGH` if their work is not"
         " needed"
     )
-    assert reported({"main.yml": text}) == [("SM201", "COUNT", help)]
+    assert reported({"main.yml": RACK}) == [("SM201", "COUNT", help)]
 
 
 LAMP = """\
