@@ -20,12 +20,6 @@ states:
 """
 
 
-def test_a_transition_out_of_the_container_past_a_state() -> None:
-    text = PATH.replace("PROPERTY\n", "").replace("TARGET", "held").replace("END", "held")
-    help = "write `ok: CHECK` in `LIFT`, or remove `CHECK` if its work is not needed"
-    assert reported({"main.yml": text}) == [("SM201", "CHECK", help)]
-
-
 @pytest.mark.parametrize(
     "form", ["never: {after: OPEN, until: CHECK, enter: MOVE}", "before: {MOVE: CHECK}"]
 )

@@ -311,13 +311,13 @@ states:
         ("{right: name, length: 3.5}",
          [("SM304", "right", "write `name: right`: the name of the field comes first")]),
         ("{nmae: right, length: 3.5}",
-         [("SM304", "nmae", "did you mean `name` in place of `nmae`?")]),
-        ("{name: 3.5, length: right}",
-         [("SM304", "3.5", "write `name: right, length: 3.5`: the values have changed places")]),
+         [("SM304", "nmae", "did you mean `name`?")]),
+        ("{name: 3.5, length: right}", [("SM304", "3.5", "write `name: right, length: 3.5`")]),
     ],
 )  # fmt: skip
 def test_an_item_of_data_with_a_slip(item: str, found: list[Row]) -> None:
-    assert reported({"main.yml": RECORDS.replace("ITEM", item)}) == found
+    rows = printed({"main.yml": RECORDS.replace("ITEM", item)})
+    assert [(code, place, help.partition("\n")[0]) for code, place, help in rows] == found
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from functools import cached_property
@@ -22,14 +22,13 @@ from smachac.checks import notation
 from smachac.checks.edits import adding_outcome, likely
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.names.other_outcomes import (
-    continuing_outcome,
     missing_default,
     other_outcome,
     suggested_outcomes,
 )
 from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
+from smachac.diagnostics.diagnostic import Finding, Severity
 from smachac.diagnostics.repair import Certainty, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, respelt
@@ -44,7 +43,7 @@ EXCEPTIONS = "error"
 
 
 MOST_PROPOSED = 3
-"""The most targets without a transition that are proposed."""
+"""The most names that are proposed in place of a word."""
 
 
 class _Targets:
@@ -253,7 +252,7 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
         ),
         help=help or _add_or_use(fault),
         effect="SMACH refuses to run such a container: none of its states runs",
-        related=(*_unentered(fault), *calls(child, step.target_span)),
+        related=calls(child, step.target_span),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
         repairs=(*_as_outcome(fault), *(_unused_targets(fault) if near is None else ())),
@@ -264,8 +263,13 @@ def _unused_targets(fault: _Lost) -> Iterator[Repair]:
     """The repairs that lead the transition to a state or an outcome to which nothing leads. Each is
     only possible: the unknown target can be a state that is missing."""
     word = Word(fault.step.target, fault.step.target_span)
-    for edits in filter(None, (respelt(word, name) for name in fault.targets.unused)):
-        yield Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="lead to another target")
+    return _other_words(word, fault.targets.unused)
+
+
+def _other_words(word: Word, names: Sequence[str]) -> Iterator[Repair]:
+    """The repairs, only possible, that write one of these names in place of a word."""
+    for edits in filter(None, (respelt(word, name) for name in names[:MOST_PROPOSED])):
+        yield Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="write another name")
 
 
 def _as_outcome(fault: _Lost) -> tuple[Repair, ...]:
@@ -276,16 +280,6 @@ def _as_outcome(fault: _Lost) -> tuple[Repair, ...]:
     if target.isupper() or not (is_used or any(s.outcome == target for s in container.transitions)):
         return ()
     return adding_outcome(container, target)
-
-
-def _unentered(fault: _Lost) -> Iterator[Related]:
-    """The place of a state that no transition leads to, where several have the same unknown target:
-    the name of the state is probably the misspelt one."""
-    targets = fault.targets
-    if fault.sure is None or len(targets.places.get(fault.step.target, ())) < 2:
-        return
-    for span in targets.unentered.get(fault.sure, ()):
-        yield from other_place(span, f"no transition leads to `{fault.sure}`")
 
 
 def _through_outcome(fault: _Lost, above: str) -> str:
@@ -481,8 +475,8 @@ def _retried(child: Node, outcome: str) -> str | None:
 def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     if any(is_open(child) for child in container.children):
         return
-    known = {name for child in container.children for name in outcome_names(child)}
-    never = known.isdisjoint(container.loop_outcomes)
+    known = sorted({name for child in container.children for name in outcome_names(child)})
+    never = not {*known} & {*container.loop_outcomes}
     for number, name in enumerate(container.loop_outcomes if known else ()):
         if name not in known:
             span = container.loop_spans[number] if container.loop_spans else container.span
@@ -491,23 +485,14 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
                 message=f"`loop_outcomes` of `{container.name}` lists `{name}`, which is not an"
                 f" outcome of `{container.children[0].name}`",
                 arguments=(own_name(container, span), name),
-                help=_loop_help(name, container, sorted(known)),
+                help=did_you_mean(guesser(known)(name)) or f"use one of {listed(known)}",
+                repairs=tuple(_other_words(Word(name, span), known)),
                 effect="the loop ends after its first item"
                 if never
                 else "an entry that is no outcome of the child has no effect",
                 related=calls(container, span),
                 node=path,
             )
-
-
-def _loop_help(name: str, container: nodes.Iterator, known: list[str]) -> str:
-    """The help for an entry of `loop_outcomes` that the child does not end with: the outcome that
-    is near it, or the only one that can start the next item."""
-    near = did_you_mean(guesser(known)(name))
-    meant = continuing_outcome(container) if near is None else None
-    if meant is not None:
-        return f"write `{meant}` in place of `{name}`"
-    return near or f"use one of {listed(known)}"
 
 
 @rule(

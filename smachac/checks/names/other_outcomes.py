@@ -12,9 +12,6 @@ from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Leaf, Node, Transition
 from smachac.ir.outcome_names import (
-    GOOD,
-    PREEMPTED,
-    SUCCESSES,
     fails,
     is_failure,
     meaning,
@@ -101,23 +98,3 @@ def _has_limit(child: Node) -> bool:
     """Whether a variable of the type of a state is a time limit, after which it ends with another
     outcome."""
     return isinstance(child, Leaf) and any(TIMEOUT in each.name for each in child.variables)
-
-
-def continuing_outcome(container: nodes.Iterator) -> str | None:
-    """The only outcome of the child of an iterator that can start the next item: the only one with
-    which the iterator does not end by itself, that is not renamed, that is no failure, or the only
-    one with the name of a success."""
-    names = dict.fromkeys(name for child in container.children for name in outcome_names(child))
-    left = [name for name in names if name not in container.loop_outcomes and name != PREEMPTED]
-    ends = {*outcome_names(container)} - {container.exhausted_outcome}
-    renamed = dict(container.final_map)
-    failing = {name for child in container.children for name in names if fails(child, name)}
-    for choices in (
-        [name for name in left if name not in ends],
-        [name for name in left if name not in ends and name not in renamed],
-        [name for name in left if name not in failing],
-        [name for name in left if name.lower() in SUCCESSES | GOOD],
-    ):
-        if len(choices) == 1:
-            return choices[0]
-    return None

@@ -101,15 +101,14 @@ class LedPast(NamedTuple):
 def _led_past(
     container: Linear, before: Node | None, group: list[Node], seen: AbstractSet[str]
 ) -> LedPast | None:
-    """The transition that leads past a group of states, to a state or out of the container, as one
-    of them does: the only one of the state before them in the script that is not one of failure,
-    else the only one of failure."""
+    """The transition that leads past a group of states, to a state to which one of them leads as
+    well: the only one of the state before them in the script that is not one of failure, else the
+    only one of failure."""
     if isinstance(container, Sequence) or before is None or before.name not in seen:
         return None
-    others = seen | {end for end in outcome_names(container) if not fails(container, end)}
     after = {step.target for step in group[0].transitions if step.target in seen}
     good = {step.target for each in group for step in each.transitions
-            if step.target in others and not fails(each, step.outcome)
+            if step.target in seen and not fails(each, step.outcome)
             and step.outcome != PREEMPTED}  # fmt: skip
     steps = [step for step in before.transitions if step.origin == "written"]
     found = [step for step in steps if step.target in after | good

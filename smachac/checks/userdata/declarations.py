@@ -18,7 +18,6 @@ from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads
-from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.function_slots import function_reads
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import container_name
@@ -39,14 +38,14 @@ from smachac.checks.userdata.used_keys import sees_everything, used_in
 from smachac.checks.userdata.word_loops import words_as_lists
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
-from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, is_plain, respelt
+from smachac.diagnostics.spelling import guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.references import short_value
 from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
-from smachac.ir.traversal import expressions, remapping, walk
+from smachac.ir.traversal import expressions, walk
 
 
 @rule(
@@ -98,14 +97,12 @@ def dead_key(context: Context) -> Iterator[Finding]:
         if context.of_container(sees_everything, scope.path, scope) or container.sugar:
             continue
         read = context.of_container(used_in, scope.path, scope)
-        explained = 0
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or key in in_functions.get(scope.path, ()):
                 continue
             if (scope.path, key) in needed:
                 continue
-            explained += 1
-            finding = _unread_key(scope, key, node, span, is_searched=explained <= MOST_EXPLAINED)
+            finding = _unread_key(scope, key, node, span)
             # The userdata of the machine can be read after the run.
             is_result = container is flow.machine.root and node is not container
             yield replace(finding, severity=Severity.INFO) if is_result else finding
@@ -114,23 +111,14 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 yield _lost_result(scope, child, remap, meant)
 
 
-def _unread_key(
-    scope: UserdataScope,
-    key: str,
-    node: Node,
-    span: Span,
-    *,
-    is_searched: bool,
-) -> Finding:
-    """SM305 for a key of a container that a node sets. `is_searched`: a state that can read the key
-    is searched."""
+def _unread_key(scope: UserdataScope, key: str, node: Node, span: Span) -> Finding:
+    """SM305 for a key of a container that a node sets."""
     where = container_name(scope, span)
     return Finding(
         span=span,
         message=f"`{key}` is set, but nothing in {where} reads it",
         arguments=(key,),
-        help=(_reader_help(scope, key, node) if is_searched else None)
-        or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
+        help=f"remove `{key}`; or add it to the `input_keys` of the state that must read"
         f" it, or to the `output_keys` of {where}",
         related=calls(node, span),
         node=scope.path if node is scope.container else f"{scope.path}/{node.name}",
@@ -149,30 +137,6 @@ def _lost_result(scope: UserdataScope, child: Node, remap: Remap, meant: str) ->
         related=calls(child, remap.span),
         node=f"{scope.path}/{child.name}",
     )
-
-
-def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
-    """The help for a preset that one state can read as its only optional key of that kind, which
-    nothing sets."""
-    container = scope.container
-    data = next((each.value.data for each in container.userdata if each.key == key), None)
-    if node is not container or data is None:
-        return None
-    known = scope.uses.provided
-    given = type_of_data(data)
-    last = key.removesuffix("_id").rpartition("_")[2]
-    found = [
-        (child.name, each.name)
-        for child in container.children
-        for each in (child.inputs if isinstance(child, Leaf) else ())
-        if each.type.name == "optional" and remapping(child)[each.name] not in known
-        if misfit(given, each.type) is None and last in (each.role, each.name)
-    ]
-    if len(found) != 1:
-        return None
-    (state, name), *_ = found
-    pair = notation.mapping(container, "remapping", [(name, key)])
-    return f"`{state}` can read it as `{name}`: write `{pair}` in `{state}`, or remove `{key}`"
 
 
 def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ...]:
