@@ -18,7 +18,7 @@ from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.repair import Edit, Repair
 from smachac.diagnostics.source import assert_never
-from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
+from smachac.diagnostics.spelling import written_name
 from smachac.ir.graph import reachable
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
@@ -423,15 +423,13 @@ def unknown_event(context: Context) -> Iterator[Finding]:
           - GRASP: {template: ScriptedState, outcomes: [done], transitions: {done: LIFT}}
           - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    faults = [(each.property, fault) for each in _with(context, "unclear") for fault in each.faults]
-    alike: dict[tuple[str, ...], list[tuple[Property, NameFault]]] = {}
-    for given, fault in faults:
+    alike: dict[tuple[str, ...], list[NameFault]] = {}
+    for fault in (fault for each in _with(context, "unclear") for fault in each.faults):
         which = fault.kind, fault.atom.subject, fault.atom.name, fault.atom.outcome or ""
-        alike.setdefault(which, []).append((given, fault))
-    for number, (first, *others) in enumerate(alike.values()):
-        is_searched = number < MOST_EXPLAINED
-        found = name_fault(first[1], first[0], context, is_searched=is_searched)
-        spans = [*dict.fromkeys(fault.atom.span for _, fault in others)][:_MOST_ALIKE]
+        alike.setdefault(which, []).append(fault)
+    for first, *others in alike.values():
+        found = name_fault(first, context)
+        spans = [*dict.fromkeys(fault.atom.span for fault in others)][:_MOST_ALIKE]
         more = [part for span in spans for part in other_place(span, "and here")]
         yield replace(found, related=(*found.related, *more))
 
