@@ -11,6 +11,7 @@ from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser, respelt
 from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Leaf
+from smachac.ir.outcome_names import is_failure
 from smachac.ir.properties import Atom
 from smachac.ir.script_paths import walk_script
 from smachac.ir.traversal import walk
@@ -47,12 +48,13 @@ def name_fault(fault: NameFault, context: Context) -> Finding:
     sure = guesser(known).sure(atom.name)
     edits = respelt(Word(atom.name, atom.span), sure) if atom.subject == "path" else ()
     names = listed(known)
+    alike = [name for name in known if is_failure(name) == is_failure(atom.name)]
     return Finding(
         span=atom.span,
         message=f"there is no {subject} `{atom.name}`",
         arguments=("unknown", atom.subject, atom.name),
         help=_other_subject(atom, context)
-        or did_you_mean(atom.name, known)
+        or did_you_mean(atom.name, alike)
         or (f"use one of {names}" if names else _nothing_known(atom)),
         edits=edits,
     )

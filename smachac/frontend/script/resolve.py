@@ -556,7 +556,7 @@ class _Resolver:
         for entry in found.values():
             word = Word(str(entry.key.value), entry.key.span)
             help = f"`{word.text}` is a param of the sub-script: write it inside `params:`"
-            self.report.append(unknown_variable(word, Owner("state", "a state"), (), certain=help))
+            self.report.append(unknown_variable(word, Owner("state", "a state"), (), help=help))
         span = next(iter(found.values())).key.span
         name = own["params"].key if "params" in own else Scalar("params", True, *span)
         own = {key: entry for key, entry in own.items() if key not in found}

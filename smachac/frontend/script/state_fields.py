@@ -20,10 +20,12 @@ from smachac.diagnostics.spelling import (
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
 from smachac.frontend.errors.script import (
+    Choice,
     Owner,
     missing_variable,
     one_of_many,
     unknown_variable,
+    unused_variable,
     wrong_shape,
 )
 from smachac.frontend.resolved_script import State
@@ -233,7 +235,7 @@ def _known_fields(
                 words = [*schema.names_for(owner), *type_.used]
                 word = Word(str(entry.key.value), entry.key.span)
                 template = Owner(type_.name, f"`{type_.name}`")
-                report.append(unknown_variable(word, template, words, anything=True))
+                report.append(unused_variable(word, template, words))
         else:
             known = schema.names_for(owner)
             word = Word(str(entry.key.value), entry.key.span)
@@ -245,19 +247,16 @@ def _known_fields(
             own = [*type_.variables]
             also = [name for name, each in entries.items() if each is entry and name != key]
             sure = also[0] if also else None
+            as_key = _as_key(word, entry, entries, type_)
+            help = f"`{word.text}` is an input key: {as_key}" if as_key is not None else None
             target = name_of(entry.value) if key in _outcomes(entries, type_) else None
             if target is not None:
                 strays.append((word, target))
-            as_key = _as_key(word, entry, entries, type_)
-            stray = target is not None
-            fitting = [name for name in (*known, *own) if name not in entries]
+                help = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
             needed = sure if sure is not None and _is_required(sure, owner, type_) else None
-            report.append(
-                unknown_variable(
-                    word, whose, known, own=own, likely=sure, outcome=stray, key=as_key,
-                    fitting=fitting, required=needed,
-                )
-            )  # fmt: skip
+            free = [name for name in (*known, *own) if name not in entries]
+            choice = Choice(likely=sure, required=needed, own=own, free=free)
+            report.append(unknown_variable(word, whose, known, choice, help=help))
             if as_key is not None:
                 read["misplaced_keys"] = (*read.get("misplaced_keys", ()), word.text)
             meant.add(guesser_of((*dict.fromkeys((*known, *own)),))(word.text))

@@ -12,7 +12,7 @@ from smachac.diagnostics.spelling import guesser_of, words_of
 from smachac.diagnostics.wording import either, listed
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_not_found
-from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable
+from smachac.frontend.errors.script import Choice, Owner, missing_variable, unknown_variable
 from smachac.frontend.script.state_fields import FIELDS_OF_STATES, TEMPLATE_WORDS, accepts
 from smachac.frontend.text.fields import name_of, pairs_of
 from smachac.frontend.text.yaml_tree import Entry
@@ -114,7 +114,7 @@ def with_meant_call(name: Word, own: dict[str, Entry], report: Report) -> dict[s
         if key not in schema.VARIABLES and sure(key) == "script" and name_of(entry.value):
             owner = Owner(name.text, f"`{name.text}`")
             word = Word(str(entry.key.value), entry.key.span)
-            report.append(unknown_variable(word, owner, ["script"], meant="script"))
+            report.append(unknown_variable(word, owner, ["script"], Choice(meant="script")))
             return {("script" if each == key else each): own[each] for each in own}
     return own
 
