@@ -38,11 +38,10 @@ states:
 @pytest.mark.parametrize(
     ("old", "new", "help"),
     [
-        ("", "", "add `found_it: CHECK` to the transitions of `FIND`, or `found_it: GO` to run `GO`"
-                 " again"),
+        ("", "", "add `found_it: CHECK` to the transitions of `FIND`"),
         ("{failed: aborted}", "{exhausted: aborted, preempted: aborted}\n"
                               "      retry: {on: [failed], max: 3}",
-         "add `found_it: CHECK` to the transitions of `FIND`, or `found_it: GO` to run `GO` again"),
+         "add `found_it: CHECK` to the transitions of `FIND`"),
         ("there: CHECK", "there: arrived", "add `found_it: CHECK` to the transitions of `FIND`"),
         ("outcomes: [found_it, failed]\n      transitions: {failed: aborted}",
          "outcomes: [found_it, failed]\n      transitions: {found_it: CHECK}",
@@ -238,10 +237,15 @@ states:
 """
 
 
-@pytest.mark.parametrize("word", ["GATE_CLOSED", "GATE_CLOSE", "CLOSED_GATE"])
-def test_a_state_by_its_words_in_another_order(word: str) -> None:
-    script = GATE.replace("WORD", word)
-    assert helps({"main.yml": script}, "SM703") == ["did you mean `CLOSE_GATE`?"]
+@pytest.mark.parametrize(
+    ("word", "help"),
+    [
+        ("CLOSED_GATE", "did you mean `CLOSE_GATE`?"),
+        ("GATE_CLOSED", "use one of `CLOSE_GATE`, `OPEN_GATE`, `PRESS`, `sm`"),
+    ],
+)
+def test_an_unknown_event(word: str, help: str) -> None:
+    assert helps({"main.yml": GATE.replace("WORD", word)}, "SM703") == [help]
 
 
 @pytest.mark.parametrize(

@@ -276,9 +276,7 @@ class Lamp(smach.State):
     [
         ("done: LIGHT_OFF_GOOD", "done: succeeded", "SM701", "succeeded",
          "write `done: LIGHT_OFF_GOOD` in `SHOW`, or correct the property if this path is right"),
-        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LAMP_DARK]", "SM703", "LAMP_DARK",
-         "write `LIGHT_OFF_GOOD`: it does the same as `LIGHT_OFF`"),
-        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LIGHT_OFF_OK]", "SM703", "LIGHT_OFF_OK",
+        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LIGHT_OF_GOOD]", "SM703", "LIGHT_OF_GOOD",
          "did you mean `LIGHT_OFF_GOOD`?"),
     ],
 )  # fmt: skip

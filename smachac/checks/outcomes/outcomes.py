@@ -279,18 +279,6 @@ def _is_only_good(child: Node, outcome: str) -> bool:
     return bool(others) and all(fails(child, name) for name in others)
 
 
-def _before_detour(container: Linear, child: Node, target: str) -> str:
-    """The only state that leads to a state, if another of its outcomes leads to `target`, which is
-    meant for a success of that state: it may have to run again. Empty without one."""
-    before = [
-        state for state in written_children(container)
-        if state is not child and any(step.target == child.name for step in state.transitions)
-    ]  # fmt: skip
-    if len(before) != 1 or all(step.target != target for step in before[0].transitions):
-        return ""
-    return before[0].name
-
-
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
     """The target that an outcome probably needs: that of the other failures of the state, the state
     after a stop request, that of the same outcome of other states, a failure of the container or
@@ -397,9 +385,6 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         )
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
-    again = _before_detour(container, child, target) if not fails(child, outcome.name) else ""
-    if again:
-        again = f", or `{notation.entry(child, outcome.name, again)}` to run `{again}` again"
     missing = notation.entry(child, outcome.name, target)
     field = _field_that_adds(child, outcome.name)
     origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
@@ -413,7 +398,7 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{missing}` to the transitions of `{child.name}`{again}",
+        help=f"{why}add `{missing}` to the transitions of `{child.name}`",
         related=(
             *(other_place(outcome.span, origin) if inside and outcome.span != child.span else ()),
             *calls(child, child.span),

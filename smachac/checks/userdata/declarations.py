@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from itertools import groupby
 from typing import Literal
@@ -40,7 +40,6 @@ from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
-from smachac.frontend.errors.references import short_value
 from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable, variable_of
@@ -310,14 +309,6 @@ def _unused(
     )
 
 
-def _param_meant(name: str, known: Sequence[str]) -> str | None:
-    """The param that is probably meant by an unused one: one of a similar name, or the only one
-    that has a word of its name, as `force` for `grip_force`."""
-    words = set(name.split("_"))
-    alike = [each for each in known if not words.isdisjoint(each.split("_"))]
-    return guesser(known).sure(name) or (alike[0] if len(alike) == 1 else None)
-
-
 MOST_SHOWN = 40
 """The longest value that a message shows, in characters."""
 
@@ -347,8 +338,8 @@ def _unused_word(unused: Unused, root: str) -> Finding:
     """SM306 for a param or type of the script that nothing uses."""
     what, word, via, known, kept = unused
     outside = (call for call in via if call.source is not word.span.source)
-    meant = _param_meant(word.text, known)
-    help = _turned_param_help(word, known) or did_you_mean(meant)
+    meant = guesser(known).sure(word.text)
+    help = did_you_mean(meant)
     if help is None and known:
         help = f"the params that are used here are {listed(known)}"
         if len(known) == 1:
@@ -374,14 +365,6 @@ def _unused_word(unused: Unused, root: str) -> Finding:
         ),
         node=root,
     )
-
-
-def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:
-    """The help for a param whose value is the name of one that is used."""
-    value = short_value(word)
-    if value not in known:
-        return None
-    return f"write `{value}: {word.text}`: the name of the param comes first"
 
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:
