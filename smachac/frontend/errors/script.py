@@ -391,8 +391,6 @@ def missing_variable(
     example: str = "",
     *,
     help: str | None = None,
-    instead: Word | None = None,
-    in_params: Span | None = None,
 ) -> Finding:
     """A variable is missing that the language or the state type requires.
 
@@ -413,13 +411,6 @@ def missing_variable(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     help = help or f"add `{name}: {example or MISSING.get(name, '...')}`"
-    if name == "template":
-        help += "; `smachac states` lists the types"
-    if instead is not None:
-        span, help = instead.span, f"write `{name}:` in place of `{instead.text}:`"
-    if in_params is not None:
-        span = in_params
-        help = f"write `{name}:` beside `params:`; `params` has only constants for look-ups"
     return Finding(
         span=span,
         message=f"the {owner.part} `{name}` is missing: {owner.text} requires it",

@@ -114,10 +114,7 @@ def read_fields(
         _check_lists(entries, type_, report)
         for part, keys in _listed_keys(entries, type_):
             read[part] = (*read.get(part, ()), *keys)
-    examples = {}
-    if "outcomes" not in entries and read.get("outcomes"):
-        examples["outcomes"] = f"[{', '.join(each.name for each in read['outcomes'])}]"
-    _check_required(read["name"], entries, owner, type_, rejected, inner, examples, report)
+    _check_required(entries, owner, type_, read, rejected, inner, report)
     read["variables"] = tuple(_variables(entries, owner, type_))
     if owner == "base" or type_.variables:
         _check_unquoted(entries, owner, type_, report)
@@ -360,17 +357,17 @@ def _outcomes(entries: Entries, type_: StateType) -> set[str]:
 
 
 def _check_required(
-    name: Word,
     entries: Entries,
     owner: FieldOwner,
     type_: StateType,
+    read: Mapping[str, Any],
     meant: set[str | None],
     inner: Word | None,
-    examples: Mapping[str, str],
     report: Report,
 ) -> None:
-    """Required fields that are missing; not those for which a misspelt one was found. `examples`
-    are their values where the script shows them."""
+    """Required fields that are missing; not those for which a misspelt one was found. `read` are
+    the fields that were read."""
+    name: Word = read["name"]
     required = [*schema.REQUIRED[owner]]
     if type_.variables:
         required += [key for key, variable in type_.variables.items() if variable.required]
@@ -385,16 +382,16 @@ def _check_required(
             elif inner is not None:
                 related = (Related(span=inner.span, message="the sub-script does not set it"),)
             variable = type_.variables.get(key)
-            example = examples.get(key, "")
-            if variable is not None:
-                example = _example(variable)
+            example = _example(variable) if variable is not None else ""
+            if key == "outcomes" and read.get(key):
+                example = f"[{', '.join(each.name for each in read[key])}]"
             params = entries.get("params")
             entry = params.value.get(key) if params and isinstance(params.value, Map) else None
-            inside = entry.key.span if entry is not None else None
             help = _with_type(key, variable)
-            report.append(
-                missing_variable(place, key, whose, related, example, help=help, in_params=inside)
-            )
+            if entry is not None:
+                place = entry.key.span
+                help = f"write `{key}:` beside `params:`; `params` has only constants for look-ups"
+            report.append(missing_variable(place, key, whose, related, example, help=help))
 
 
 TYPE_EXAMPLES = {

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser_of, words_of
-from smachac.diagnostics.wording import either, listed
+from smachac.diagnostics.wording import both, either, listed
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_not_found
 from smachac.frontend.errors.script import Choice, Owner, missing_variable, unknown_variable
@@ -94,14 +94,15 @@ def unknown_template(
     """SM013 for a template that was not found: with the type that is meant by its name or by the
     `entries` of the state."""
     folders, types, known, scripts, other = searched
-    fitting: tuple[str, ...] = ()
-    used: tuple[str, ...] = ()
-    foreign = ""
-    is_script = word.text in scripts
-    if not (other or is_script) and guesser_of(tuple(known)).sure(word.text) is None:
-        foreign = type_of_other_framework(word.text, entries, types, find) if entries else ""
+    help = ""
+    if word.text in scripts:
+        help = f"`{word.text}` is a sub-script: write `script: {word.text}`"
+    elif not other and guesser_of(tuple(known)).sure(word.text) is None:
+        help = type_of_other_framework(word.text, entries, types, find) if entries else ""
         fitting, used = types_with_the_names(entries, word.text, types, find)
-    return template_not_found(word, folders, known, other, fitting, used, foreign, script=is_script)
+        if fitting and not help:
+            help = f"did you mean {either(fitting)}, with {both(used)}?"
+    return template_not_found(word, folders, known, other, help)
 
 
 def with_meant_call(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
@@ -179,8 +180,11 @@ def missing_template(
     related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
     owner = Owner(state.text, f"`{state.text}`")
     others = [entries[key] for key in entries if key in TEMPLATE_WORDS]
-    instead = Word(str(others[0].key.value), others[0].key.span) if others else None
-    return missing_variable(state.span, "template", owner, related, help=help, instead=instead)
+    place, help = state.span, f"{help or 'add `template: TYPE`'}; `smachac states` lists the types"
+    if others:
+        key = others[0].key
+        place, help = key.span, f"write `template:` in place of `{key.value}:`"
+    return missing_variable(place, "template", owner, related, help=help)
 
 
 def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:
