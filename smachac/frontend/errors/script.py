@@ -391,6 +391,7 @@ def missing_variable(
     example: str = "",
     *,
     help: str | None = None,
+    edits: tuple[Edit, ...] = (),
 ) -> Finding:
     """A variable is missing that the language or the state type requires.
 
@@ -417,6 +418,7 @@ def missing_variable(
         arguments=(name, owner.name),
         help=help,
         related=related,
+        edits=edits,
     )
 
 

@@ -71,11 +71,9 @@ from smachac.frontend.script.sub_scripts import (
 )
 from smachac.frontend.script.unknown_templates import (
     Searched,
-    meant_template,
     missing_template,
     missing_template_help,
     unknown_template,
-    with_meant_call,
 )
 from smachac.frontend.script.unused import Mark, Uses
 from smachac.frontend.text.fields import as_name, expanded, kind_of, name_of, pairs_of, wrong
@@ -512,7 +510,6 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
-        own = with_meant_call(name, own, self.report)
         while "script" in own:
             entry = own.pop("script")
             params = own["params"].value if "params" in own else None
@@ -648,8 +645,6 @@ class _Resolver:
     ) -> tuple[StateType, FieldOwner]:
         """The state type of a state, and its owner in the schema."""
         entry = entries.get("template")
-        if entry is None and role != "base":
-            entry = meant_template(entries, self.state_type)
         word = as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)
