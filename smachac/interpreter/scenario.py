@@ -147,8 +147,11 @@ def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
     """A scenario as a file for `smachac run --mock`."""
     lines = ["states:"]
     for path, row in rows.items():
-        lines.append(f"  {quoted(path)}:")
-        lines += [f"    - {quoted(step)}" for step in map(_step, row)]
+        steps = [_short(_step(step)) for step in row]
+        if len(steps) == 1:
+            lines.append(f"  {_plain(path)}: {steps[0]}")
+        else:
+            lines += [f"  {_plain(path)}:", *(f"    - {step}" for step in steps)]
     return "\n".join(lines) + "\n"
 
 

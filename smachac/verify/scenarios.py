@@ -1,0 +1,42 @@
+"""Scenarios for the outcomes of a machine, made of the paths on which targets are verified."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.scenario import plain_steps_by_path, scenario_behaviour, scenario_text
+from smachac.ir.nodes import Machine
+from smachac.ir.script_paths import script_paths
+from smachac.verify.generate import PathGenerator
+from smachac.verify.paths import Path
+
+MOST_PATHS = 400
+"""Paths that are tried for all outcomes together."""
+
+
+def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) -> dict[str, str]:
+    """For each of `outcomes` of a machine the text of a scenario that ends with it: of the paths
+    that were tried, the one with the fewest visits. An outcome that no path reached is missing.
+    Each scenario was played once, as `smachac run SCRIPT --mock` plays it."""
+    found: dict[str, Path] = {}
+    for path in PathGenerator(machine, most=MOST_PATHS).paths():
+        if path.stopped or not path.ends:
+            continue
+        behaviour = scenario_behaviour(path.scenario, machine, builtin_behaviour())
+        outcome = run(machine, behaviour).outcome
+        if outcome is None:
+            continue
+        best = found.get(outcome)
+        if outcome in outcomes and (best is None or path.visits < best.visits):
+            found[outcome] = path
+    return {name: _text(machine, found[name], script, name) for name in outcomes if name in found}
+
+
+def _text(machine: Machine, path: Path, script: str, outcome: str) -> str:
+    """The file of a scenario: its states by their paths in the script."""
+    shown = script_paths(machine.root)
+    rows = plain_steps_by_path(path.scenario, machine)
+    head = f"# smachac run {script} --mock FILE --expect {outcome}\n"
+    return head + scenario_text({shown.get(full, full): row for full, row in rows.items() if row})
