@@ -6,9 +6,14 @@ from collections.abc import Collection
 
 from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run
-from smachac.interpreter.scenario import plain_steps_by_path, scenario_behaviour, scenario_text
+from smachac.interpreter.scenario import (
+    Scenario,
+    plain_steps_by_path,
+    scenario_behaviour,
+    scenario_text,
+)
 from smachac.ir.nodes import Machine
-from smachac.ir.script_paths import script_paths
+from smachac.ir.script_paths import walk_script
 from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path
 
@@ -24,19 +29,28 @@ def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) 
     for path in PathGenerator(machine, most=MOST_PATHS).paths():
         if path.stopped or not path.ends:
             continue
-        behaviour = scenario_behaviour(path.scenario, machine, builtin_behaviour())
-        outcome = run(machine, behaviour).outcome
-        if outcome is None:
-            continue
-        best = found.get(outcome)
+        outcome = _outcome(machine, path.scenario)
+        best = found.get(outcome) if outcome is not None else None
         if outcome in outcomes and (best is None or path.visits < best.visits):
             found[outcome] = path
-    return {name: _text(machine, found[name], script, name) for name in outcomes if name in found}
+    return {
+        name: _text(machine, found[name].scenario, script, name)
+        for name in outcomes
+        if name in found
+    }
 
 
-def _text(machine: Machine, path: Path, script: str, outcome: str) -> str:
-    """The file of a scenario: its states by their paths in the script."""
-    shown = script_paths(machine.root)
-    rows = plain_steps_by_path(path.scenario, machine)
+def _outcome(machine: Machine, scenario: Scenario) -> str | None:
+    return run(machine, scenario_behaviour(scenario, machine, builtin_behaviour())).outcome
+
+
+def _text(machine: Machine, scenario: Scenario, script: str, outcome: str) -> str:
+    """The file of a scenario: its states by their paths in the script, without the timers and
+    pauses that the script does not contain unless the outcome needs them."""
+    paths = {path.full: path for path in walk_script(machine.root)}
+    written = {full: steps for full, steps in scenario.steps.items() if not paths[full].added}
+    if _outcome(machine, Scenario(steps=written)) == outcome:
+        scenario = Scenario(steps=written)
+    rows = plain_steps_by_path(scenario, machine)
     head = f"# smachac run {script} --mock FILE --expect {outcome}\n"
-    return head + scenario_text({shown.get(full, full): row for full, row in rows.items() if row})
+    return head + scenario_text({paths[full].shown: row for full, row in rows.items() if row})
