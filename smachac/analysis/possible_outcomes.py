@@ -128,7 +128,7 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
                 found |= exits
         if is_open(child):
             found |= exits - handled
-        if is_unread(child):
+        if is_unread(child) and len(seen) < len(states):
             more += states
         todo += (name for name in dict.fromkeys(more) if name not in seen)
         seen.update(more)
