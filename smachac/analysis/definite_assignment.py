@@ -33,6 +33,7 @@ from smachac.analysis.fixpoint import (
     may_be_unset,
 )
 from smachac.analysis.uses import KeyUses, items_read
+from smachac.diagnostics.source import new_tuple
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings, transitions
 from smachac.ir.nodes import (
@@ -324,10 +325,12 @@ def _steps(
             }
             if container.initial in children:
                 found[START].append(KeyStep(container.initial, "", NOTHING))
-            for source, leads, step in transitions(container):
-                given = writes(source, step.outcome) if source in writers else NOTHING
-                if given is not None:
-                    found[source].append(KeyStep(leads, step.outcome, given))
+            for child, leads in transitions(container):
+                name = child.name
+                for target, step in leads:
+                    given = writes(name, step.outcome) if name in writers else NOTHING
+                    if given is not None:
+                        found[name].append(new_tuple(KeyStep, (target, step.outcome, given)))
     return {vertex: tuple(steps) for vertex, steps in found.items()}
 
 

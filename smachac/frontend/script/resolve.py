@@ -54,7 +54,9 @@ from smachac.frontend.script.properties import properties_of
 from smachac.frontend.script.script_functions import functions_of
 from smachac.frontend.script.state_fields import (
     Entries,
+    FieldTable,
     another_state,
+    field_table,
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
@@ -78,7 +80,15 @@ from smachac.frontend.script.unknown_templates import (
     with_meant_call,
 )
 from smachac.frontend.script.unused import Mark, Uses
-from smachac.frontend.text.fields import as_name, expanded, kind_of, name_of, pairs_of, wrong
+from smachac.frontend.text.fields import (
+    as_name,
+    expanded,
+    kind_of,
+    name_of,
+    pairs_of,
+    usual_name,
+    wrong,
+)
 from smachac.frontend.text.file_kinds import OTHER_FILES, kind_of_tree
 from smachac.frontend.text.yaml_tree import (
     Entry,
@@ -201,6 +211,7 @@ class _Resolver:
         self.types: dict[str, StateType | None] = {}
         self.found_texts: dict[tuple[str, str], Source | None] = {}
         self.texts: dict[tuple[str, str], Source] = {}
+        self.tables: dict[tuple[FieldOwner, str, tuple[str, ...]], FieldTable] = {}
         self.parsed: dict[tuple[str, str], tuple[Tree | None, bool]] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
         self.calls: dict[Span, KeptCall] = {}
@@ -284,22 +295,25 @@ class _Resolver:
         params = own.get("params") or params_meant(own)
         begin = begin or self.uses.mark(self.report)
         scope = child_scope(around.scope, params.value, self.report) if params else around.scope
-        entries: dict[str, Entry] = {}
+        entries = own.copy()
         for key, entry in own.items():
             if key == "states":
-                entries[key] = entry
                 continue
             flat = is_flat(entry.value)
             if flat and key not in TYPED:
-                is_look_up = scope and isinstance(entry.value, Seq)
-                entries[key] = self.fill(key, entry, scope, flat=True) if is_look_up else entry
+                if scope and isinstance(entry.value, Seq):
+                    entries[key] = self.fill(key, entry, scope, flat=True)
                 continue
             self.uses.value(key, entry.value, flat=flat)
-            entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
+            if key != "params":
+                entries[key] = self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
         if type_.variables:
             entries |= self.lists(own, scope, type_)
-        entries = with_meant_fields(entries, owner, type_, self.report)
+        table = self.table(entries, owner, type_)
+        if table.others:
+            entries = with_meant_fields(entries, owner, type_, self.report)
+            table = self.table(entries, owner, type_)
         self.uses.type(type_)
         if scope:
             self.fixed_params += fixed_params(own, type_, scope)
@@ -307,7 +321,7 @@ class _Resolver:
             self.count += 1
         via = around.via
         fields = read_fields(
-            name, entries, owner, type_, self.report, scope=scope, inner=around.inner
+            name, entries, owner, type_, table, self.report, scope=scope, inner=around.inner
         )
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)
@@ -335,6 +349,13 @@ class _Resolver:
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
         return State(owner=owner, type=type_, via=via, states=children, **fields)
+
+    def table(self, entries: Entries, owner: FieldOwner, type_: StateType) -> FieldTable:
+        """The table for states with these fields, which is made once."""
+        which = owner, type_.name, tuple(entries)
+        if which not in self.tables:
+            self.tables[which] = field_table(entries, owner, type_)
+        return self.tables[which]
 
     def fill(self, key: str, entry: Entry, scope: Scope, *, flat: bool) -> Entry:
         """The field with values in place of its look-ups and aliases of types. `flat`: see
@@ -437,7 +458,7 @@ class _Resolver:
             return None
         nothing = isinstance(first.value, Scalar) and first.value.value is None
         if nothing and rest:
-            return self.call(name, expanded(rest, self.report), around)
+            return self.read(name, expanded(rest, self.report), around)
         if nothing or not isinstance(first.value, Map):
             found = kind_of(first.value)
             fault = "is empty" if nothing else f"must be a mapping of variables, not {found}"
@@ -449,7 +470,13 @@ class _Resolver:
         if rest:
             self.report.append(second_key(name, first.value, rest[0]))
         own = tuple(entry for entry in rest if is_field(entry)) if rest else ()
-        return self.call(name, expanded(first.value.entries + own, self.report), around)
+        return self.read(name, expanded(first.value.entries + own, self.report), around)
+
+    def read(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
+        """The state with these fields, which can be a call of a sub-script."""
+        if "template" in own and "script" not in own:
+            return self.state(name, own, around)
+        return self.call(name, own, around)
 
     def call(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
         """As `called`; for the call of a sub-script, the state of the last reading if it is still
@@ -650,6 +677,13 @@ class _Resolver:
         entry = entries.get("template")
         if entry is None and role != "base":
             entry = meant_template(entries, self.state_type)
+        usual = usual_name(entry.value) if entry is not None else None
+        if usual is not None and not role:  # most states
+            kind, type_ = schema.CONTAINERS.get(usual), self.types.get(usual)
+            if kind is not None:
+                return schema.CONTAINER_TYPES[kind], kind
+            if type_ is not None and type_.kind != "container":
+                return type_, "StateMachine" if "states" in entries else "state"
         word = as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)

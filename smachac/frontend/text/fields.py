@@ -394,6 +394,13 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
     return tuple(pairs)
 
 
+def usual_name(tree: Tree) -> str | None:
+    """The text of a scalar for which `as_name` reports nothing; None for other trees, also for some
+    names, such as a number."""
+    text = tree.value if isinstance(tree, Scalar) else None
+    return text if isinstance(text, str) and text not in YAML_1_1_BOOLEANS else None
+
+
 def pairs_of(tree: Tree) -> Pairs:
     """The pairs of names that a tree holds, without diagnostics."""
     entries = tree.entries if isinstance(tree, Map) else ()

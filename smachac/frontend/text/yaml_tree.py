@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import gc
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
@@ -353,69 +353,86 @@ class _Builder:
         self.report = report
         self.stack: list[_Open] = []
         self.items: list[Tree] = []
-        self.nodes = 0
         self.anchors: dict[str, tuple[Tree, int]] = {}
         self.doubtful: list[int] = []
         self.misplaced: list[int] = []
         self.aliased = 0
-        self.end = 0
         self.most = min(MAX_NODES, MAX_SMALL_NODES + len(source.text) // CHARACTERS_OF_A_NODE)
 
     def drive(self, events: Iterable[Any]) -> None:
-        """Builds the tree. Scalars, which are most events, are read here, without calls."""
+        """Builds the tree, in one loop: a long script has hundreds of thousands of events."""
         from yaml import events as kinds
 
-        steps: dict[type, Callable[[Any], None]] = {
-            kinds.MappingStartEvent: self._open,
-            kinds.SequenceStartEvent: self._open,
-            kinds.MappingEndEvent: self._close_mapping,
-            kinds.SequenceEndEvent: self._close_list,
-            kinds.AliasEvent: self._alias,
-        }
-        scalar, source = kinds.ScalarEvent, self.source
+        scalar, alias = kinds.ScalarEvent, kinds.AliasEvent
+        mapping_start, mapping_end = kinds.MappingStartEvent, kinds.MappingEndEvent
+        list_start, list_end = kinds.SequenceStartEvent, kinds.SequenceEndEvent
+        source, stack, most = self.source, self.stack, self.most
+        items = self.items
+        nodes = last = 0  # the number of nodes, and the end of the last one
         for event in events:
-            kind = type(event)
-            if kind is not scalar:
-                step = steps.get(kind)
-                if step is not None:
-                    step(event)
-                elif self._is_second(event):
-                    break
-                continue
-            text: str = event.value
-            start, end = event.start_mark.index, event.end_mark.index
-            plain = not event.style
-            if not text and plain and start == end:  # positions of nothing differ between parsers
-                start = end = self.end
-            self.end = end
-            value: bool | int | float | str | None = text
-            if event.tag is not None:
-                value = self._tagged(event)
-            elif plain and (not text.isidentifier() or text in WORDS):  # most texts are names
-                value = value_of(text)
-                if " " in text or text[-1:] in _LAST_SIGNS:
-                    self._doubt(text, start)
-            node = Scalar(value, plain, source, start, end)
-            self.items.append(node)
-            self.nodes += 1
-            if self.nodes > self.most:
-                self._too_many(start)
-            if event.anchor is not None:
-                self._check_anchor(event)
-                self.anchors[event.anchor] = (node, 1)
+            kind = event.__class__
+            if kind is scalar:
+                text: str = event.value
+                start, end = event.start_mark.index, event.end_mark.index
+                plain = not event.style
+                value: bool | int | float | str | None = text
+                if event.tag is not None:
+                    value = self._tagged(event)
+                elif plain and (not text.isidentifier() or text in WORDS):  # most are names
+                    value = value_of(text)
+                    if " " in text or text[-1:] in _LAST_SIGNS:
+                        self._doubt(text, start)
+                if start == end and plain:  # positions of nothing differ between parsers
+                    start = end = last
+                last = end
+                node: Tree = Scalar(value, plain, source, start, end)
+                nodes += 1
+                items.append(node)
+                if nodes > most:
+                    self._too_many(start)
+                if event.anchor is not None:
+                    self._check_anchor(event)
+                    self.anchors[event.anchor] = (node, 1)
+            elif kind is mapping_end or kind is list_end:
+                inside = items
+                items, before, flow, start, anchor = stack.pop()
+                if flow:
+                    last = event.end_mark.index
+                span = new_tuple(Span, (source, start, last))
+                if kind is list_end:
+                    node = Seq(tuple(inside), span)
+                else:
+                    node = self._mapping(inside, span, flow)
+                items.append(node)
+                if anchor is not None:
+                    self.anchors[anchor] = (node, nodes - before)
+            elif kind is mapping_start or kind is list_start:
+                start, last = event.start_mark.index, event.end_mark.index
+                self._check_opening(event)
+                stack.append((items, nodes, event.flow_style, start, event.anchor))
+                items = []
+                nodes += 1
+                if nodes > most:
+                    self._too_many(start)
+            elif kind is alias:
+                last = event.end_mark.index
+                node, size = self._meant(event)
+                items.append(node)
+                nodes += size
+                if nodes > most:
+                    self._too_many(event.start_mark.index)
+            elif items and kind is kinds.DocumentStartEvent:
+                self._refuse_second(event)
+                items = []  # what the rest of the text defines would be reported as missing
+                break
+        self.items = items
 
-    def _is_second(self, event: Any) -> bool:
-        """Whether a second document begins, which is reported."""
-        from yaml import events as kinds
-
-        if not self.items or type(event) is not kinds.DocumentStartEvent:
-            return False
+    def _refuse_second(self, event: Any) -> None:
+        """Reports a second document."""
         span = Span(self.source, event.start_mark.index, event.end_mark.index)
         message = "a second YAML document begins here"
         help = "remove the `---`: a script is one document"
         self.report.append(wrong_shape(span, message, help, arguments=("document",)))
-        self.items = []  # what the rest of the text defines would be reported as missing
-        return True
 
     def _doubt(self, text: str, start: int) -> None:
         """Notes a text without quotes that is probably two, or a part of one: `done READY`."""
@@ -475,52 +492,28 @@ class _Builder:
             )
         )
 
-    def _open(self, event: Any) -> None:
-        start = event.start_mark.index
+    def _check_opening(self, event: Any) -> None:
+        """Reports what is wrong with the tag, the depth or the anchor of a list or a mapping."""
         if event.tag is not None:
             self._check_tag(event)
-        depth = len(self.stack)
-        if depth >= MAX_DEPTH:
-            self.report.append(_too_deep(self.source, start))
+        if len(self.stack) >= MAX_DEPTH:
+            self.report.append(_too_deep(self.source, event.start_mark.index))
             raise _BeyondLimitError
         if event.anchor is not None:
             self._check_anchor(event)
-        self.stack.append((self.items, self.nodes, event.flow_style, start, event.anchor))
-        self.items = []
-        self.end = event.end_mark.index
-        self.nodes += 1
-        if self.nodes > self.most:
-            self._too_many(start)
 
-    def _close_mapping(self, event: Any) -> None:
-        items = self.items
-        self.items, before, flow, start, anchor = self.stack.pop()
-        if flow:
-            self.end = event.end_mark.index
-        span = new_tuple(Span, (self.source, start, self.end))
-        node: Seq | Map | None = None
-        if flow and items and isinstance(items[0], Map):
-            node = _jinja_look_up(items, span, self.report)
-        if node is None:
-            node = Map(self._entries(items, flow), span)
-        self.items.append(node)
-        if anchor is not None:
-            self.anchors[anchor] = (node, self.nodes - before)
+    def _mapping(self, items: list[Tree], span: Span, flow: bool) -> Seq | Map:
+        """The mapping of keys and values in turn; a look-up in the form of Jinja is a list."""
+        if flow and items and items[0].__class__ is Map:
+            look_up = _jinja_look_up(items, span, self.report)
+            if look_up is not None:
+                return look_up
+        return Map(self._entries(items, flow), span)
 
-    def _close_list(self, event: Any) -> None:
-        items = self.items
-        self.items, before, flow, start, anchor = self.stack.pop()
-        if flow:
-            self.end = event.end_mark.index
-        node = Seq(tuple(items), new_tuple(Span, (self.source, start, self.end)))
-        self.items.append(node)
-        if anchor is not None:
-            self.anchors[anchor] = (node, self.nodes - before)
-
-    def _alias(self, event: Any) -> None:
-        self.end = event.end_mark.index
+    def _meant(self, event: Any) -> tuple[Tree, int]:
+        """The node that an alias stands for, and the number of nodes in it."""
         self._check_anchor(event)
-        span = Span(self.source, event.start_mark.index, self.end)
+        span = Span(self.source, event.start_mark.index, event.end_mark.index)
         known = self.anchors.get(event.anchor)
         if known is None:
             name = event.anchor
@@ -536,10 +529,7 @@ class _Builder:
             self._stop(
                 span.start, message, "use fewer aliases, or aliases of shorter lists", "aliases"
             )
-        self.items.append(node)
-        self.nodes += size
-        if self.nodes > self.most:
-            self._too_many(span.start)
+        return node, size
 
     def _too_many(self, at: int) -> None:
         self._stop(
