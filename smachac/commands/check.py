@@ -143,7 +143,7 @@ def _check_once(
 ) -> int:
     """Check once; the exit code. The real paths of all files that were read go into `used`.
     `previous`: see `check_scripts`."""
-    from smachac.batch import check_scripts
+    from smachac.batch import check_scripts, processes_for
     from smachac.checks.robot.workspace import unreachable
     from smachac.commands.git import changed_since
     from smachac.diagnostics.diagnostic import Severity
@@ -157,9 +157,11 @@ def _check_once(
     def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
         folders = arguments.scripts, arguments.templates
         cached = not (arguments.no_cache or arguments.watch or arguments.changed_since)
+        once = previous is None and sim_rule is None and not disk.texts
         return check_scripts(
-            paths, disk, *folders, sim_rule, previous, everything=arguments.all, cached=cached
-        )
+            paths, disk, *folders, sim_rule, previous, everything=arguments.all, cached=cached,
+            processes=processes_for(len(paths)) if once else 1,
+        )  # fmt: skip
 
     whole = check(disk, previous)
     used.update(*whole.uses.values())

@@ -209,6 +209,10 @@ class Disk:
         report.extend(problems_found)
         return source
 
+    def known(self, path: str) -> Source | None:
+        """The text of a file that was read, by its real path."""
+        return self._sources.get(path, (None, []))[0]
+
     def parse(self, source: Source, report: Report) -> Tree | None:
         """As `yaml_mends.parse_mended`."""
         if source not in self._trees:
