@@ -157,11 +157,10 @@ def _check_once(
     def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
         folders = arguments.scripts, arguments.templates
         cached = not (arguments.no_cache or arguments.watch or arguments.changed_since)
-        once = previous is None and sim_rule is None and not disk.texts
+        others = sim_rule is None and previous is None and not disk.texts
         return check_scripts(
             paths, disk, *folders, sim_rule, previous, everything=arguments.all, cached=cached,
-            processes=processes_for(len(paths)) if once else 1,
-        )  # fmt: skip
+            processes=processes_for(len(paths)) if others else 1)  # fmt: skip
 
     whole = check(disk, previous)
     used.update(*whole.uses.values())
@@ -382,7 +381,7 @@ def _watch(arguments: Namespace) -> int:
     """Check, and check again when a file changes, until Ctrl-C."""
     from smachac.frontend.files import Disk, stamps
 
-    disk = Disk()  # files that did not change are read and parsed once
+    disk = Disk(in_pieces=True)  # files that did not change are read and parsed once
     previous: dict[str, Previous] = {}
     known: set[str] = set()
     while True:

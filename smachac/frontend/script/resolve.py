@@ -127,14 +127,15 @@ SCRIPT_HELP = "write a mapping with `name:`, `outcomes:` and `states:`"
 
 @dataclass(frozen=True, slots=True)
 class _Environment:
-    """The surroundings of a state: the source of its text and the params in scope.
+    """The surroundings of a state: the source of its text and the params in scope. They are equal
+    if only the texts of other states differ.
 
     `calls`: the sub-scripts that are called around it, with the spans of the calls, outermost
     first. `depth`: the number of containers around it. `inner`: if the state calls a sub-script,
     the name of the state in that. `iterated`: it is the state of an Iterator.
     """
 
-    source: Source
+    source: Source = field(compare=False)
     scope: Scope = field(default_factory=Scope, compare=False)
     calls: tuple[tuple[str, Span], ...] = ()
     depth: int = 0
@@ -232,6 +233,8 @@ class _Resolver:
         entries = expanded(tree.entries, self.report)
         if "types" in entries:
             self.aliases = read_aliases(entries["types"].value, self.report)
+        if self.kept is not None:
+            self.kept.use_aliases(self.aliases)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
         self.report[:] = one_for_each_name(self.report)
@@ -474,14 +477,14 @@ class _Resolver:
 
     def read(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
         """The state with these fields, which can be a call of a sub-script."""
-        if "template" in own and "script" not in own:
+        if "template" in own and "script" not in own and (self.kept is None or around.depth > 1):
             return self.state(name, own, around)
         return self.call(name, own, around)
 
     def call(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
-        """As `called`; for the call of a sub-script, the state of the last reading if it is still
-        the same."""
-        if self.kept is None or "script" not in own:
+        """As `called`; for the call of a sub-script, and for a state that is in no container of the
+        script, the state of the last reading if it is still the same."""
+        if self.kept is None or ("script" not in own and around.depth > 1):
             return self.called(name, own, around)
         kept = self.kept.calls.get(name.span)
         if kept is not None and self.is_current(kept, own, around):
@@ -515,8 +518,7 @@ class _Resolver:
         return new.state
 
     def is_current(self, kept: KeptCall, own: dict[str, Entry], around: _Environment) -> bool:
-        """Whether reading a call would give the same state again. The surroundings have the spans
-        of the calls around it, and so the main text, which has the aliases of types."""
+        """Whether reading a call would give the same state again."""
         return (
             same_objects(kept.own, own)
             and kept.around == around

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
-from smachac.diagnostics.source import Word
+from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import (
     MOST_EXPLAINED,
     guesser_of,
@@ -241,7 +241,7 @@ def with_meant_fields(
     found = {name: entry for name, entry in meant.items() if name is not None}
     if "child_termination_cb" in unknown and ends_with_any(entries, owner):
         given = entries["child_termination_cb"]  # the help of its finding is `join: any`
-        found["join"] = Entry(given.key, Scalar("any", True, given.key.span.source, 0, 0))
+        found["join"] = Entry(given.key, Scalar("any", True, *Span(given.key.span.source, 0, 0)))
     return found | entries
 
 

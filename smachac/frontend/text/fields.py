@@ -168,9 +168,7 @@ def _arrows(tree: Tree) -> tuple[Entry, ...]:
             Scalar(
                 found[group],
                 True,
-                tree.source,
-                start + found.start(group),
-                start + found.end(group),
+                *Span(tree.source, start + found.start(group), start + found.end(group)),
             )
             for group in (1, 2)
         )
@@ -219,7 +217,7 @@ def as_name(tree: Tree, report: Report) -> Word | None:
         text = name_text(tree, report)
     if text is None:
         return None
-    return new_tuple(Word, (text, new_tuple(Span, (tree.source, tree.start, tree.end))))
+    return new_tuple(Word, (text, new_tuple(Span, (tree.piece, tree.first, tree.last))))
 
 
 def expanded(entries: Iterable[Entry], report: Report) -> dict[str, Entry]:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.source import Source, Span, Word, new_tuple
+from smachac.diagnostics.source import Piece, Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
 from smachac.frontend.text.yaml_errors import (
     JOINED,
@@ -52,14 +52,26 @@ class Scalar:
 
     value: bool | int | float | str | None
     plain: bool
-    source: Source = field(compare=False, repr=False)
-    start: int = field(compare=False)
-    end: int = field(compare=False)
+    piece: Piece = field(compare=False, repr=False)
+    first: int = field(compare=False)
+    last: int = field(compare=False)
 
     @property
     def span(self) -> Span:
         """The place of the value, made when it is needed: a long list has millions of values."""
-        return new_tuple(Span, (self.source, self.start, self.end))
+        return new_tuple(Span, (self.piece, self.first, self.last))
+
+    @property
+    def source(self) -> Source:
+        return self.piece.source
+
+    @property
+    def start(self) -> int:
+        return self.piece.begin + self.first
+
+    @property
+    def end(self) -> int:
+        return self.piece.begin + self.last
 
 
 @dataclass(slots=True, unsafe_hash=True)
@@ -150,6 +162,25 @@ def parse(
     limits that are exceeded (SM006). With `mended`, the tree is that of the repaired text, with
     places in the source.
     """
+    if not fits_limits(source, report):
+        return None
+    builder = _Builder(source, source.pieces[0], report)
+    if mended is None:
+        return _build(builder, events(source.text), doubts)
+    return _build(builder, _moved_back(events(mended.text), mended), doubts)
+
+
+def parse_piece(
+    source: Source, piece: Piece, text: str, report: Report, doubts: Doubts
+) -> Tree | None:
+    """The tree of a piece of a source, which has this text, with places in the piece."""
+    builder = _Builder(source, piece, report)
+    builder.most_levels -= 1  # the mapping around the list of states
+    return _build(builder, events(text), doubts)
+
+
+def fits_limits(source: Source, report: Report) -> bool:
+    """Whether a text is not too long, and has only characters of YAML; if not, that is reported."""
     if len(source.text) >= MAX_CHARACTERS:
         span = Span(source, 0, 0)
         report.append(
@@ -161,7 +192,7 @@ def parse(
                 arguments=("characters",),
             )
         )
-        return None
+        return False
     bad = _unprintable(source.text)
     if bad is not None:
         span = Span(source, bad.start(), bad.end())
@@ -173,8 +204,7 @@ def parse(
                 arguments=("character", f"U+{ord(bad.group()):04X}"),
             )
         )
-        return None
-    return _build(source, report, doubts, mended)
+    return bad is None
 
 
 # The characters that are not printable: YAML 1.2.2, section 5.1.
@@ -249,17 +279,15 @@ def _moved_back(events: Iterator[Any], mended: Mended) -> Iterator[Any]:
         yield event
 
 
-def _build(
-    source: Source, report: Report, doubts: Doubts | None = None, mended: Mended | None = None
-) -> Tree | None:
+def _build(builder: _Builder, found: Iterable[Any], doubts: Doubts | None) -> Tree | None:
+    """The tree of the events of a text."""
     from yaml import MarkedYAMLError
 
-    builder = _Builder(source, report)
-    found = events(source.text if mended is None else mended.text)
+    source, report = builder.source, builder.report
     collecting = gc.isenabled()
     gc.disable()  # or it runs many times over the growing tree
     try:
-        builder.drive(found if mended is None else _moved_back(found, mended))
+        builder.drive(found)
     except MarkedYAMLError as error:
         builder.items = []
         deep = too_deep_at(error)
@@ -302,7 +330,7 @@ def _jinja_look_up(items: list[Tree], span: Span, report: Report) -> Seq | None:
     name = str(key.value).removeprefix("params.")
     if not key.plain or not name.isidentifier():
         return None
-    word = Scalar(name, True, key.source, key.end - len(name), key.end)
+    word = Scalar(name, True, *Span(key.source, key.end - len(name), key.end))
     message, written = "`{{ }}` is for templates, not for scripts", word.span.text
     help = f"a param is looked up with `[params, {written}]`"
     report.append(wrong_shape(span, message, help, arguments=("braces", written)))
@@ -348,9 +376,11 @@ def _is_empty(tree: Tree) -> bool:
 class _Builder:
     """Builds one tree from events, with a stack in place of recursion."""
 
-    def __init__(self, source: Source, report: Report) -> None:
+    def __init__(self, source: Source, piece: Piece, report: Report) -> None:
         self.source = source
+        self.piece = piece
         self.report = report
+        self.most_levels = MAX_DEPTH
         self.stack: list[_Open] = []
         self.items: list[Tree] = []
         self.anchors: dict[str, tuple[Tree, int]] = {}
@@ -366,7 +396,7 @@ class _Builder:
         scalar, alias = kinds.ScalarEvent, kinds.AliasEvent
         mapping_start, mapping_end = kinds.MappingStartEvent, kinds.MappingEndEvent
         list_start, list_end = kinds.SequenceStartEvent, kinds.SequenceEndEvent
-        source, stack, most = self.source, self.stack, self.most
+        piece, stack, most = self.piece, self.stack, self.most
         items = self.items
         nodes = last = 0  # the number of nodes, and the end of the last one
         for event in events:
@@ -385,7 +415,7 @@ class _Builder:
                 if start == end and plain:  # positions of nothing differ between parsers
                     start = end = last
                 last = end
-                node: Tree = Scalar(value, plain, source, start, end)
+                node: Tree = Scalar(value, plain, piece, start, end)
                 nodes += 1
                 items.append(node)
                 if nodes > most:
@@ -398,7 +428,7 @@ class _Builder:
                 items, before, flow, start, anchor = stack.pop()
                 if flow:
                     last = event.end_mark.index
-                span = new_tuple(Span, (source, start, last))
+                span = new_tuple(Span, (piece, start, last))
                 if kind is list_end:
                     node = Seq(tuple(inside), span)
                 else:
@@ -496,7 +526,7 @@ class _Builder:
         """Reports what is wrong with the tag, the depth or the anchor of a list or a mapping."""
         if event.tag is not None:
             self._check_tag(event)
-        if len(self.stack) >= MAX_DEPTH:
+        if len(self.stack) >= self.most_levels:
             self.report.append(_too_deep(self.source, event.start_mark.index))
             raise _BeyondLimitError
         if event.anchor is not None:
@@ -633,8 +663,8 @@ class _Builder:
             self.report.append(wrong)
         name, _, rest = text.partition(":")
         return (
-            Scalar(value_of(name), True, self.source, key.start, colon),
-            Scalar(value_of(rest), True, self.source, colon + 1, key.end),
+            Scalar(value_of(name), True, *Span(self.source, key.start, colon)),
+            Scalar(value_of(rest), True, *Span(self.source, colon + 1, key.end)),
         )
 
     def _merge(self, value: Tree) -> Iterator[Entry]:
