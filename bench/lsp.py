@@ -115,7 +115,7 @@ def time_file(parts: int, rounds: int = 21) -> None:
         target = "S12" if parts else "S612"
         at = text.index(f"{target}, aborted", len(text) // 2)
         for number in range(rounds):
-            new = text[:at] + f"S{int(target[1:]) + number % 3}" + text[at + len(target) :]
+            new = text[:at] + f"S{int(target[1:]) + 1 + number % 3}" + text[at + len(target) :]
             session.change(path, new)
             taken.append(cpu(lambda: session.check(path)))
         middle = sorted(taken)[rounds // 2]

@@ -230,6 +230,12 @@ class Disk:
         report.extend(problems_found)
         return tree
 
+    def release(self, source: Source) -> None:
+        """Forget the tree of a text, unless an editor needs it: it takes half of the memory of a
+        check."""
+        if self._pieces is None:
+            self._trees.pop(source, None)
+
     def _parse_in_pieces(self, source: Source) -> Tree | None:
         """As `pieces.parse_in_pieces`, for the texts of files."""
         path = os.path.realpath(source.name)
@@ -459,6 +465,7 @@ def disk_library(
         robot_names=lambda caller: _with_ending(script_folders(caller), ROBOT_FILES),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,
+        release=disk.release,
         ros=project.ros if ros is None else ros,
         policy=project.policy,
         settings_read=project.readable,

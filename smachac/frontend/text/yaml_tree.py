@@ -398,11 +398,13 @@ class _Builder:
         list_start, list_end = kinds.SequenceStartEvent, kinds.SequenceEndEvent
         piece, stack, most = self.piece, self.stack, self.most
         items = self.items
+        known: dict[str, str] = {}  # most texts are there many times: fields, templates, outcomes
         nodes = last = 0  # the number of nodes, and the end of the last one
         for event in events:
             kind = event.__class__
             if kind is scalar:
                 text: str = event.value
+                text = known.setdefault(text, text)
                 start, end = event.start_mark.index, event.end_mark.index
                 plain = not event.style
                 value: bool | int | float | str | None = text
