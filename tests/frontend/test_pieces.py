@@ -81,7 +81,8 @@ def test_most_examples_are_cut() -> None:
 
 def test_random_edits_have_the_tree_of_the_whole_text() -> None:
     chance = random.Random(1)
-    text, pieces, cut = SCRIPT, (), 0
+    text, cut = SCRIPT, 0
+    pieces: tuple[PieceTree, ...] = ()
     for _ in range(400):
         at = chance.randrange(len(text))
         size = chance.choice([0, 0, 1, 7])
