@@ -150,7 +150,6 @@ def _check_once(
     `previous`: see `check_scripts`."""
     from smachac.batch import check_scripts, processes_for
     from smachac.checks.robot.workspace import unreachable
-    from smachac.commands.git import changed_since
     from smachac.diagnostics.diagnostic import Severity
     from smachac.frontend.discovery import scripts_of
     from smachac.frontend.files import Disk
@@ -169,8 +168,7 @@ def _check_once(
 
     whole = check(disk, previous)
     used.update(*whole.uses.values())
-    revision = arguments.changed_since
-    changed = changed_since(revision, frozenset(used)) if revision else None
+    changed = _changed(arguments.changed_since, used)
     found, notes = _select(whole, changed, arguments)
     if arguments.write_baseline:
         return _write_baseline(arguments, found.report)
@@ -215,6 +213,15 @@ def _check_once(
         }
         _put(found, failing, clusters, coverage, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
+
+
+def _changed(revision: str | None, used: set[str]) -> set[str] | None:
+    """The files that differ from a revision; None without one."""
+    if not revision:
+        return None
+    from smachac.commands.git import changed_since
+
+    return changed_since(revision, frozenset(used))
 
 
 def _select(

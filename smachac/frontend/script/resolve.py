@@ -6,7 +6,7 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import PurePath
@@ -51,7 +51,6 @@ from smachac.frontend.script.params import (
     size_up_to,
 )
 from smachac.frontend.script.properties import properties_of
-from smachac.frontend.script.script_functions import functions_of
 from smachac.frontend.script.state_fields import (
     Entries,
     FieldTable,
@@ -106,6 +105,7 @@ from smachac.frontend.types.type_annotations import (
     read_aliases,
     typed,
 )
+from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.ir.robot import Robot
 from smachac.pysource.template_sources import TEMPLATE_FILES
@@ -259,7 +259,7 @@ class _Resolver:
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=params_of(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
-            functions=functions_of(base, self.types, self.library),
+            functions=self._functions(base),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
             aliases=self.aliases,
         )
@@ -271,6 +271,15 @@ class _Resolver:
         from smachac.frontend.robots.robots import robot_of
 
         return robot_of(base, source, self.library, self.report)
+
+    def _functions(self, base: State) -> Mapping[str, FunctionFacts]:
+        """The functions of the user that the states name. Scripts without state types of the user
+        do not load what reads Python."""
+        if all(type_ is None or type_.built_in for type_ in self.types.values()):
+            return {}
+        from smachac.frontend.script.script_functions import functions_of
+
+        return functions_of(base, self.types, self.library)
 
     def has_too_many_keys(self) -> bool:
         """Whether the script has too much userdata, which is reported where most of it is."""
