@@ -238,3 +238,32 @@ def test_a_state_of_an_edited_file_that_has_not_changed_keeps_its_node(tmp_path:
         "unread_SECOND"
     )
     assert third.children[0].span.source is session.source(main)
+
+
+NODE = """\
+name: node
+template: ROSBase
+outcomes: [done, late]
+params: {limit: 5.0}
+states:
+- A:
+    template: SleepState
+    time: 1.0
+    timeout: [params, limit]
+    transitions: {succeeded: B, preempted: late, timeout: late}
+- B: {template: SleepState, time: 1.0, transitions: {succeeded: done, preempted: late}}
+"""
+
+
+def test_a_param_that_is_fixed_in_a_state_that_has_not_changed_is_found_again(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "smachac.toml").write_text("ros = 2\n", "utf-8")
+    main = os.path.realpath(tmp_path / "main.yml")
+    session = Session([tmp_path])
+    for time in ("1.0", "2.0", "3"):
+        text = NODE.replace("time: 1.0, ", f"time: {time}, ")
+        session.change(main, text)
+        assert found(session, main) == fresh(main, {main: text})
+        codes = [item.code for each in session.check(main).values() for item in each]
+        assert "SM610" in codes, codes

@@ -23,7 +23,7 @@ from smachac.frontend.script.unused import Uses
 from smachac.frontend.text.yaml_tree import Entry
 from smachac.frontend.types.state_types import find_state_type
 from smachac.frontend.types.type_annotations import Aliases
-from smachac.ir.nodes import Preset, StateType
+from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.records import dataclass, field
 
 Answers: TypeAlias = "list[object]"
@@ -50,6 +50,7 @@ class KeptCall(NamedTuple):
     states: int
     keys: int
     most_keys: tuple[Preset, ...]
+    fixed_params: tuple[FixedParam, ...]
 
 
 def same_objects(one: Mapping[str, object], other: Mapping[str, object]) -> bool:

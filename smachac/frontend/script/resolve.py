@@ -500,9 +500,11 @@ class _Resolver:
             self.count += kept.states
             self.keys += kept.keys
             self.add(kept)
+            self.fixed_params += kept.fixed_params
             self.calls[name.span] = kept
             return kept.state
         before = len(self.report), self.looked_up, self.count, self.keys
+        fixed = len(self.fixed_params)
         outer = self.texts, self.sources, self.types, self.calls, self.uses, self.most_keys
         self.texts, self.sources, self.types, self.calls = {}, {}, {}, {}
         self.uses, self.most_keys = Uses(), ()
@@ -519,6 +521,7 @@ class _Resolver:
             states=self.count - before[2],
             keys=self.keys - before[3],
             most_keys=self.most_keys,
+            fixed_params=tuple(self.fixed_params[fixed:]),
         )
         self.texts, self.sources, self.types, self.calls, self.uses, self.most_keys = outer
         self.add(new)
