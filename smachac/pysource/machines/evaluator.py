@@ -14,6 +14,7 @@ from typing import Any, Literal, Protocol
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.builtins import BUILTINS, attribute_of_value, is_pure
 from smachac.pysource.machines.heap import ABSENT, Changes, Children, Heap, present
+from smachac.pysource.machines.lasting import Lasting
 from smachac.pysource.machines.operations import (
     MOST_BITS,
     MOST_ITEMS,
@@ -39,6 +40,7 @@ from smachac.pysource.machines.values import (
     ModuleValue,
     Native,
     OneOf,
+    OwnSlots,
     Partial,
     Slots,
     Super,
@@ -47,6 +49,7 @@ from smachac.pysource.machines.values import (
     UseFault,
     Value,
     alternatives,
+    newest,
     one_of,
     sequence,
     truth,
@@ -112,6 +115,7 @@ class Evaluator:
         self.tries = 0
         self.exhausted = False
         self.faults: list[UseFault] = []
+        self.missed: set[tuple[int, str]] = set()
 
     # --- statements
 
@@ -231,9 +235,10 @@ class Evaluator:
         mark = self.heap.mark()
         states: list[Changes] = []
         last: Completion | None = None
-        opened = [*self.opened]
+        opened, others = [*self.opened], len(self.heap.others)
         self.unsure += 1
         for branch in branches:
+            start = newest()
             end = branch()
             self.opened[:] = opened
             if end is not None:
@@ -242,7 +247,9 @@ class Evaluator:
                 self.heap.undo(mark)
             else:
                 states.append(self.heap.undo(mark))
+            self.heap.others.append((start, newest()))
         self.unsure -= 1
+        del self.heap.others[others:]
         self.heap.join(states)
         self.heap.release(mark)
         if states:
@@ -372,10 +379,17 @@ class Evaluator:
             made, faults = len(self.made), len(self.faults)
             orphans, opened = self.orphans, [*self.opened]
             left = [len(region.left) for region in self.regions]
-            mark = self.heap.mark()
+            mark, start = self.heap.mark(), newest()
+            self.missed.clear()
             end = self.choice([some, lambda: None])
-            changed = [(slots, key) for slots, key, before, now in self.heap.since(mark)
-                       if _is_other(present(slots, key, before), now)]  # fmt: skip
+            written = [*self.heap.since(mark)]
+            lasting = Lasting(start, written)
+            changed = [
+                (slots, key)
+                for slots, key, before, now in written
+                if (before is ABSENT and (id(slots), key) in self.missed)
+                or (_is_other(present(slots, key, before), now) and slots in lasting)
+            ]
             if not changed:
                 self.heap.release(mark)
                 return end
@@ -543,6 +557,7 @@ class Evaluator:
             return frame.module.slots[name]  # type: ignore[no-any-return]
         if name in BUILTINS:
             return BUILTINS[name]
+        self.missed |= {(id(frame.slots), name), (id(frame.module.slots), name)}
         return UNKNOWN
 
     def assign(self, target: ast.expr, value: Value, frame: Frame) -> None:
@@ -944,7 +959,8 @@ class Evaluator:
     ) -> tuple[Value, ...] | None:
         """The items of a comprehension; None: not known."""
         found: list[Value] = []
-        inner = Frame({}, frame.module, frame, frame.function, frame.me, kind="comprehension")
+        slots = OwnSlots({})
+        inner = Frame(slots, frame.module, frame, frame.function, frame.me, kind="comprehension")
         is_known = True
 
         def visit(at: int) -> None:
@@ -1196,6 +1212,8 @@ class Evaluator:
         if name == "__class__":
             return owner.cls
         found = self.of_class(owner.cls, name, owner)
+        if found is UNKNOWN:
+            self.missed.add((id(owner.slots), name))
         function = found.function if isinstance(found, Method) else None
         if isinstance(function, Function) and function.kind == "property":
             return self.call(function, Arguments((owner,)), node, frame)
@@ -1373,7 +1391,7 @@ class Evaluator:
     def _parameters(self, function: Function, arguments: Arguments) -> Slots:
         taken = function.node.args
         positional = [*taken.posonlyargs, *taken.args]
-        slots: Slots = {}
+        slots: Slots = OwnSlots({})
         given = arguments.positional
         for argument, value in zip(positional, given, strict=False):
             slots[argument.arg] = value

@@ -192,6 +192,14 @@ class _Builder:
                 return self._iterator(made, common, built, added, span)
         return StateMachine(**common, children=built, initial=initial, initial_span=span)
 
+    def _runs_as_state(self, made: Instance) -> bool:
+        """Whether a container has no states, but a method `execute` of its own."""
+        children = made.slots.get("$children")
+        return children == Children() and any(
+            isinstance(cls, Class) and "execute" in cls.slots
+            for cls in self.evaluator.classes(made.cls)
+        )
+
     def _overrides(self, made: Instance) -> bool:
         """Whether a class changes how states are added or run."""
         if made.opaque:
@@ -219,25 +227,40 @@ class _Builder:
             else:
                 place = _place(key, span)
                 rules.append(OutcomeRule(outcome=name, when=tuple(conditions), span=place))
-        callback = made.slots.get("$outcome_cb")
-        if callback is not None and not _is_none(callback):
-            unknown = True
         default = made.slots.get("$default_outcome")
         join = self._join(made.slots.get("$child_termination_cb"))
+        outcomes: tuple[Outcome, ...] = common["outcomes"]
+        decided: list[Leaf] = []
         if unknown or builder.incomplete:
-            outcomes: tuple[Outcome, ...] = common["outcomes"]
-            extra = Leaf(name=ELSEWHERE, type=ELSEWHERE, open=True, synthetic=True, span=span,
-                         outcomes=outcomes)  # fmt: skip
-            built = (*(child for child in built if child.name != ELSEWHERE), extra)
+            decided.append(_decider(ELSEWHERE, outcomes, span))
+        callback = made.slots.get("$outcome_cb")
+        if callback is not None and not _is_none(callback):
+            decided.append(self._callback(callback, outcomes, span))
+        if decided:
+            built = (*(child for child in built if child.name != ELSEWHERE), *decided)
             rules += [
                 OutcomeRule(outcome=outcome.name, span=span,
-                            when=(Condition(child=ELSEWHERE, outcome=outcome.name, span=span),))
-                for outcome in outcomes
+                            when=(Condition(child=leaf.name, outcome=outcome.name, span=span),))
+                for leaf in decided
+                for outcome in leaf.outcomes
             ]  # fmt: skip
         return Concurrence(
             **common, children=built, rules=tuple(rules), join=join,
             default_outcome=_text(default) or "", default_span=_place(default, span),
         )  # fmt: skip
+
+    def _callback(self, callback: Value, outcomes: tuple[Outcome, ...], span: Span) -> Leaf:
+        """The state in place of `outcome_cb`, a function that selects the outcome: those of the
+        container that it returns."""
+        bound = isinstance(callback, Method)
+        function = callback.function if isinstance(callback, Method) else callback
+        if not isinstance(function, Function):
+            return _decider(ELSEWHERE, outcomes, span)
+        facts = self.reader.of_callback(function, bound=bound)
+        if facts is not None and facts.complete:
+            names = {ending.outcome.text for ending in facts.endings}
+            outcomes = tuple(outcome for outcome in outcomes if outcome.name in names) or outcomes
+        return _decider(f"{function.name}()", outcomes, span)
 
     def _join(self, callback: Value | None) -> Literal["all", "any"]:
         """Whether the first branch that ends stops the others."""
@@ -279,7 +302,8 @@ class _Builder:
     def state(self, value: Value, added: Added, name: str, depth: int) -> Node:
         span: Span = added.span
         if isinstance(value, Instance) and "$children" in value.slots:
-            return self.container(value, name, span, depth + 1)
+            if not self._runs_as_state(value):
+                return self.container(value, name, span, depth + 1)
         self.states += 1
         if not isinstance(value, Instance) or "$outcomes" not in value.slots:
             reason = "its class is not known"
@@ -649,6 +673,11 @@ def _place(value: Value | None, span: Span) -> Span:
     """The place of a value; if it has none in the project, another one."""
     found = getattr(value, "span", None)
     return found if isinstance(found, Span) else span
+
+
+def _decider(name: str, outcomes: tuple[Outcome, ...], span: Span) -> Leaf:
+    """A state in place of what selects the outcome of a concurrence."""
+    return Leaf(name=name, type=name, open=True, synthetic=True, span=span, outcomes=outcomes)
 
 
 def _optional(key: Key) -> Key:

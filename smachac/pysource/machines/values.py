@@ -47,6 +47,12 @@ class OwnSlots(dict[Any, Any]):
         return default
 
 
+def newest() -> int:
+    """A number that is larger than `born` of all slots that there are, and not larger than that of
+    later ones."""
+    return next(_BIRTHS)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unknown:
     """A value that is not known, with the reason and the place, if there is one to tell."""

@@ -84,6 +84,13 @@ WRONG = {
         '    sm.add("B", Do())\n',
         'SM201 sm.add("B", Do())',
     ),
+    "a container that runs as a state": (
+        'class Run(smach.StateMachine):\n    def __init__(self):\n'
+        '        smach.StateMachine.__init__(self, outcomes=["ok"])\n'
+        '    def execute(self, userdata):\n        return "okk"\n'
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Run())\n',
+        'SM309 return "okk"',
+    ),
     "a key that nothing sets": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Use())\n',
         'SM301 sm.add("A", Use())',
