@@ -115,7 +115,7 @@ class PythonProject:
                 own = _in_file([*more], str(path))
                 findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
-        report += _of_uses(evaluator.faults, whole)
+        report += _of_uses([*evaluator.faults, *repository.faults_of(str(path))])
         if evaluator.exhausted and not whole:
             report.append(_too_long(source))
         self.disk.searched.update(repository.files_of(str(path)))
@@ -266,7 +266,7 @@ def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diag
             yield item
 
 
-def _of_uses(faults: Sequence[UseFault], found: Sequence[Graph]) -> Iterator[Diagnostic]:
+def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
     """The findings about wrong uses of SMACH; the names that a module lacks are one for each file
     that uses them."""
     members: dict[tuple[Source, str], list[Word]] = {}

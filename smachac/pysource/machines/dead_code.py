@@ -43,6 +43,7 @@ def choices(facts: ClassFacts, classes: Sequence[Value]) -> tuple[Choice, ...]:
         if isinstance(value, Function) and isinstance(value.node, ast.FunctionDef)
     ]
     changed = {name for method in methods if method.name != "__init__"
+               if isinstance(method.node, ast.FunctionDef)
                for name in _assigned(method.node)}  # fmt: skip
     words = (*facts.reads, *facts.writes, *facts.returns)
     found = [choice for method in methods for choice in _choices_of(method, words)]
@@ -70,15 +71,26 @@ def live_facts(facts: ClassFacts, found: Iterable[Choice], instance: Instance) -
     )
 
 
+def unknown_places(found: Iterable[Choice], instance: Instance) -> Iterator[Span]:
+    """The places of facts that conditions over attributes select whose values are not known."""
+    for choice in found:
+        is_unknown = _condition(choice.test, choice.own, instance.slots) is None
+        if is_unknown and any(_attributes(choice.test)):
+            yield from choice.if_true | choice.if_false
+
+
 def _attributes(node: ast.AST) -> Iterator[str]:
     return (part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute))
 
 
-def _assigned(function: ast.AST) -> Iterator[str]:
-    """The attributes that code assigns, of any object."""
+def _assigned(function: ast.FunctionDef) -> Iterator[str]:
+    """The attributes that a method assigns, of any object but its parameters, as userdata."""
+    others = {argument.arg for argument in function.args.args[1:]}
     for node in ast.walk(function):
         if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load):
-            yield node.attr
+            owner = node.value.id if isinstance(node.value, ast.Name) else ""
+            if owner not in others:
+                yield node.attr
 
 
 def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
@@ -87,11 +99,11 @@ def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
         return
     own = node.args.args[0].arg
     place = text.span(node)
-    inside = [word.span for word in words if _contains(place, word.span)]
+    inside = [word.span for word in words if contains(place, word.span)]
 
     def within(parts: Sequence[ast.stmt | ast.expr]) -> frozenset[Span]:
         places = [text.span(part) for part in parts]
-        return frozenset(span for span in inside for place in places if _contains(place, span))
+        return frozenset(span for span in inside for place in places if contains(place, span))
 
     for part in ast.walk(node) if inside else ():
         match part:
@@ -106,7 +118,8 @@ def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
                     yield Choice(value, own, none if is_or else rest, rest if is_or else none)
 
 
-def _contains(place: Span, span: Span) -> bool:
+def contains(place: Span, span: Span) -> bool:
+    """Whether a place in the code contains another one."""
     return place.source is span.source and place.start <= span.start < place.end
 
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Any, Literal, Protocol
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.machines.bound_names import KNOWN_NAMES, bound_names, star_imports
 from smachac.pysource.machines.builtins import BUILTINS, attribute_of_value, is_pure
 from smachac.pysource.machines.heap import ABSENT, Changes, Children, Heap, present
 from smachac.pysource.machines.lasting import Lasting
@@ -203,13 +204,14 @@ class Evaluator:
 
     def load(self, body: Sequence[ast.stmt], frame: Frame) -> bool:
         """Evaluates a module that another one imports; whether it ends with an error. What it
-        writes stays, also if the import is under a condition."""
-        around = self.opened, self.regions, self.unsure
-        self.opened, self.regions, self.unsure = [], [], 0
+        writes stays, also if the import is under a condition; the faults in it are its own."""
+        around = self.opened, self.regions, self.unsure, self.faults
+        self.opened, self.regions, self.unsure, self.faults = [], [], 0, []
         try:
             return self.heap.apart(lambda: self.block(body, frame)) is not None
         finally:
-            self.opened, self.regions, self.unsure = around
+            frame.module.faults = self.faults
+            self.opened, self.regions, self.unsure, self.faults = around
 
     def begin(self) -> None:
         """Begins the evaluation of a file, with all steps left. What the code of the one before
@@ -558,6 +560,29 @@ class Evaluator:
         if name in BUILTINS:
             return BUILTINS[name]
         self.missed |= {(id(frame.slots), name), (id(frame.module.slots), name)}
+        return self._undefined(name, node, frame)
+
+    def _undefined(self, name: str, node: ast.expr | None, frame: Frame) -> Value:
+        """The value of a name that has none. If nothing in the file can bind it, it is a fault;
+        else a module that was not found can."""
+        module = frame.module
+        span = self.span(node, frame) if node is not None else None
+        text = module.text
+        if span is None or text is None:
+            return UNKNOWN
+        if module.bound is None:
+            module.bound = bound_names(text.tree)
+        if name in module.bound:
+            return UNKNOWN
+        for part in star_imports(text.tree):
+            found = self.project.load(self, self._full_name(part, module), module)
+            if isinstance(found, Unknown):
+                return found
+            if not isinstance(found, ModuleValue) or found.dynamic:
+                return UNKNOWN
+        known = name in KNOWN_NAMES or any(word in text.source.text for word in _BINDING)
+        if not (known or self.tries):
+            self.faults.append(UseFault("missing member", span, (name, module.file)))
         return UNKNOWN
 
     def assign(self, target: ast.expr, value: Value, frame: Frame) -> None:
@@ -690,12 +715,7 @@ class Evaluator:
                 self.bind(alias.asname or alias.name, found, frame)
 
     def _import_from(self, node: ast.ImportFrom, frame: Frame) -> None:
-        package = frame.module.package
-        for _ in range(node.level - 1):
-            package = package.rpartition(".")[0]
-        name = node.module or ""
-        if node.level:
-            name = f"{package}.{name}".strip(".")
+        name = self._full_name(node, frame.module)
         found = self.project.load(self, name, frame.module)
         for alias in node.names:
             if alias.name == "*":
@@ -717,6 +737,14 @@ class Evaluator:
                 if isinstance(found, Unknown):
                     value = found if isinstance(inner, Unknown) else inner
             self.bind(alias.asname or alias.name, value, frame)
+
+    def _full_name(self, node: ast.ImportFrom, module: ModuleValue) -> str:
+        """The module of an import, which can be relative to that of the import."""
+        package = module.package
+        for _ in range(node.level - 1):
+            package = package.rpartition(".")[0]
+        name = node.module or ""
+        return f"{package}.{name}".strip(".") if node.level else name
 
     # --- functions and classes
 
@@ -924,7 +952,7 @@ class Evaluator:
 
     def _dict(self, node: ast.Dict, frame: Frame) -> Value:
         pairs: dict[Any, tuple[Value, Value]] | None = {}
-        repeated: list[Const] = []
+        repeated: list[tuple[Const, bool]] = []
         written: set[object] = set()  # a key replaces that of a `**` dictionary on purpose
         for key, value in zip(node.keys, node.values, strict=True):
             found = self.value(value, frame)
@@ -937,7 +965,7 @@ class Evaluator:
             name = self.value(key, frame)
             if isinstance(name, Const) and pairs is not None:
                 if name.value in written:
-                    repeated.append(name)
+                    repeated.append((name, bool(same(pairs[name.value][1], found))))
                 written.add(name.value)
                 pairs[name.value] = name, found
             else:

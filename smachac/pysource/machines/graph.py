@@ -34,8 +34,10 @@ from smachac.ir.nodes import (
     Transition,
 )
 from smachac.ir.traversal import outer_inputs
+from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.proven_reads import doubtful_in
 from smachac.pysource.machines.roots import Roots
 from smachac.pysource.machines.values import (
     UNKNOWN,
@@ -73,7 +75,10 @@ class FactReader(Protocol):
 
     def of_class(self, cls: Class) -> ClassFacts | None: ...
     def of_instance(self, instance: Instance, classes: Sequence[Value]) -> ClassFacts | None: ...
-    def of_callback(self, function: Function, *, bound: bool) -> ClassFacts | None: ...
+    def of_callback(
+        self, function: Function, *, bound: bool, given: frozenset[str] = frozenset()
+    ) -> ClassFacts | None: ...
+    def doubtful(self, instance: Instance, classes: Sequence[Value]) -> tuple[Span, ...]: ...
 
 
 class Coverage(NamedTuple):
@@ -301,9 +306,9 @@ class _Builder:
 
     def state(self, value: Value, added: Added, name: str, depth: int) -> Node:
         span: Span = added.span
-        if isinstance(value, Instance) and "$children" in value.slots:
-            if not self._runs_as_state(value):
-                return self.container(value, name, span, depth + 1)
+        is_container = isinstance(value, Instance) and "$children" in value.slots
+        if isinstance(value, Instance) and is_container and not self._runs_as_state(value):
+            return self.container(value, name, span, depth + 1)
         self.states += 1
         if not isinstance(value, Instance) or "$outcomes" not in value.slots:
             reason = "its class is not known"
@@ -321,7 +326,7 @@ class _Builder:
         required = sequence(value.slots.get("$required")) or ()
         names = {text for item in required if (text := _text(item)) is not None}
         if facts is not None:
-            names |= _read_first(facts)
+            names |= _read_first(facts, self._doubtful(value))
         in_keys = tuple(
             key if key.name in names else _optional(key)
             for key in self.keys(value.slots.get("$inputs"), span, required=True)
@@ -337,12 +342,28 @@ class _Builder:
         """What the code of a state does; None if it is not known."""
         if isinstance(value.cls, Class):
             return self.reader.of_instance(value, self.evaluator.classes(value.cls))
+        function = self._callback_of(value)
+        if function is None:
+            return None
+        bound = isinstance(value.slots.get("$callback"), Method)
+        given = value.slots.get("$callback_values")
+        pairs = given.items if isinstance(given, DictValue) else {}
+        if not isinstance(pairs, Mapping):
+            return None
+        return self.reader.of_callback(function, bound=bound, given=frozenset(map(str, pairs)))
+
+    def _callback_of(self, value: Instance) -> Function | None:
+        """The function that a CBState calls."""
         callback = value.slots.get("$callback")
-        bound = isinstance(callback, Method)
         function = callback.function if isinstance(callback, Method) else callback
-        if isinstance(function, Function):
-            return self.reader.of_callback(function, bound=bound)
-        return None
+        return function if isinstance(function, Function) else None
+
+    def _doubtful(self, value: Instance) -> tuple[Span, ...]:
+        """The places in the code of a state at which reads of userdata need not happen."""
+        if isinstance(value.cls, Class):
+            return self.reader.doubtful(value, self.evaluator.classes(value.cls))
+        function = self._callback_of(value)
+        return doubtful_in(function) if function is not None else ()
 
     def _faults(self, value: Value) -> ClassFacts | None:
         """The faults of a class whose constructor does not set the outcomes of the state."""
@@ -656,13 +677,17 @@ def _connected(node: Node, transitions: tuple[Transition, ...], remaps: tuple[Re
     return replace(node, transitions=transitions, remaps=remaps)
 
 
-def _read_first(facts: ClassFacts) -> set[str]:
-    """The keys that code reads in no line after one that sets them."""
+def _read_first(facts: ClassFacts, doubtful: Sequence[Span]) -> set[str]:
+    """The keys that code reads in no line after one that sets them, at no place of `doubtful`."""
     set_in: dict[str, int] = {}
     for word in facts.writes:
         set_in[word.text] = min(word.span.line, set_in.get(word.text, word.span.line))
-    return {word.text for word in facts.reads
-            if word.span.line <= set_in.get(word.text, word.span.line)}  # fmt: skip
+    return {
+        word.text
+        for word in facts.reads
+        if word.span.line <= set_in.get(word.text, word.span.line)
+        and not any(contains(place, word.span) for place in doubtful)
+    }
 
 
 def _is_none(value: Value | None) -> bool:

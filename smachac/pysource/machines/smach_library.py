@@ -153,6 +153,9 @@ def _cb_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -
         outputs = _joined(_names(evaluator, given[2], here), own[2], both)
         _interface(evaluator, me, outcomes, inputs, outputs)
         evaluator.heap.set(me.slots, "$callback", function)
+        values = arguments.get(3, "cb_kwargs")
+        if values is not None:
+            evaluator.heap.set(me.slots, "$callback_values", _copied(values) or NONE)
     return NONE
 
 
@@ -252,7 +255,9 @@ def _add(kind: str) -> Run:
         evaluator.heap.set(container.slots, "$children", Children(whole, children.complete))
         for given in (transitions, remapping):
             if isinstance(given, DictValue):
-                for key in given.repeated:
+                for key, is_same in given.repeated:
+                    if is_same and given is remapping:
+                        continue
                     place = key.span or span
                     fault = UseFault("repeated key", place, (str(key.value),))
                     if fault not in evaluator.faults:

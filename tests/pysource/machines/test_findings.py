@@ -65,6 +65,15 @@ WRONG = {
         '    sm.add("A", names.Dooo())\n',
         'SM803 sm.add("A", names.Dooo())',
     ),
+    "a name that the file lacks": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Dooo())\n',
+        'SM803 sm.add("A", Dooo())',
+    ),
+    "a name that the file and the module of a star import lack": (
+        'from names import *\nsm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", Dooo())\n',
+        'SM803 sm.add("A", Dooo())',
+    ),
     "a key twice": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
         '    sm.add("A", Do(), {"ok": "gone", "ok": "ok"})\n',
@@ -91,6 +100,15 @@ WRONG = {
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Run())\n',
         'SM309 return "okk"',
     ),
+    "a key that is read in a loop after another condition": (
+        'class Loop(smach.State):\n    def __init__(self):\n'
+        '        smach.State.__init__(self, outcomes=["ok"], input_keys=["part"])\n'
+        '    def execute(self, userdata):\n        if self.preempt_requested():\n'
+        '            return "ok"\n        while not vendor.is_shutdown():\n'
+        '            print(userdata.part)\n        return "ok"\n'
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Loop())\n',
+        'SM301 sm.add("A", Loop())',
+    ),
     "a key that nothing sets": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Use())\n',
         'SM301 sm.add("A", Use())',
@@ -111,6 +129,120 @@ sm = smach.StateMachine(outcomes=["done", "no"])
 with sm:
     sm.add("A", Do("ok", "no"), dict(table, no="B"))
     sm.add("B", Do(), table.copy())
+""",
+    "a name that a module can have that was not found": """
+from vendor import *
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Dooo())
+""",
+    "a name of Python 2, and one that a handler expects to be missing": """
+try:
+    text = nothing
+except NameError:
+    text = unicode("A")
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Do() if raw_input() else text)
+""",
+    "a name that the file binds in another function": """
+def prepare():
+    global table
+    table = {"ok": "ok"}
+def build():
+    sm = smach.StateMachine(outcomes=["ok"])
+    with sm:
+        sm.add("A", Do(), table)
+""",
+    "one value twice": """
+sm = smach.StateMachine(outcomes=["ok"])
+sm.userdata.b = 1
+with sm:
+    sm.add("A", Use(), remapping={"part": "b", "part": "b"})
+""",
+    "a method execute that other code sets": """
+class Plan(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok"])
+def run(userdata):
+    return "ok"
+plan = Plan()
+plan.execute = run
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", plan)
+sm.execute()
+""",
+    "a callback whose second parameter gets another value": """
+class Node:
+    @smach.cb_interface(outcomes=["ok"])
+    def call(self, robot):
+        robot.count = robot.total
+        return "ok"
+    def build(self, robot):
+        sm = smach.StateMachine(outcomes=["ok"])
+        with sm:
+            sm.add("A", smach.CBState(self.call, cb_kwargs={"robot": robot}))
+        sm.execute()
+Node().build(vendor.robot())
+""",
+    "a key that the values of other keys select": """
+class Mode(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"], input_keys=["mode", "part"])
+    def execute(self, userdata):
+        mode = userdata.mode
+        if mode == 1:
+            return "no"
+        print(userdata.part)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok", "no"])
+sm.userdata.mode = 1
+with sm:
+    sm.add("A", Mode())
+sm.execute()
+""",
+    "a key whose absence is caught": """
+class Careful(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"], input_keys=["part"])
+    def execute(self, userdata):
+        try:
+            part = userdata.part
+        except KeyError:
+            return "no"
+        print(userdata.part, part)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok", "no"])
+with sm:
+    sm.add("A", Careful())
+sm.execute()
+""",
+    "a key that an unknown attribute selects": """
+class Wait(smach.State):
+    def __init__(self, time=None):
+        smach.State.__init__(self, outcomes=["ok"], input_keys=["time"])
+        self.time = time
+    def execute(self, userdata):
+        print(self.time if self.time else userdata.time)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Wait(vendor.Duration(1)))
+sm.execute()
+""",
+    "a key of the name of an attribute that selects": """
+class Wait(smach.State):
+    def __init__(self, time=None):
+        smach.State.__init__(self, outcomes=["ok"], input_keys=["time"], output_keys=["time"])
+        self.time = time
+    def execute(self, userdata):
+        userdata.time = self.time if self.time else userdata.time
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Wait(2))
+sm.execute()
 """,
     "a container added twice": """
 def inner():
@@ -254,3 +386,17 @@ def test_files_of_a_repository_do_not_change_each_other(tmp_path: Path) -> None:
         for name in ("one.py", "two.py", "one.py")
     ]
     assert codes == [["SM101"], [], ["SM101"]]
+
+
+def test_a_fault_of_a_module_belongs_to_each_file_that_imports_it(tmp_path: Path) -> None:
+    (tmp_path / "names.py").write_text("import other\nFIRST = other.MISSING\n", "utf-8")
+    (tmp_path / "other.py").write_text("import smach\n", "utf-8")
+    text = 'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Do())\n'
+    for name in ("one.py", "two.py"):
+        (tmp_path / name).write_text(f"{HEAD}\nimport names\n{text}", "utf-8")
+    project = PythonProject(Disk())
+    places = [
+        [(item.code, Path(item.span.source.name).name) for item in project.read(file).report]
+        for file in (tmp_path / "two.py", tmp_path / "one.py", tmp_path / "two.py")
+    ]
+    assert places == [[("SM803", "names.py")]] * 3
