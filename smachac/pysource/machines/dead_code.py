@@ -44,7 +44,7 @@ def choices(facts: ClassFacts, classes: Sequence[Value]) -> tuple[Choice, ...]:
     ]
     changed = {name for method in methods if method.name != "__init__"
                if isinstance(method.node, ast.FunctionDef)
-               for name in _assigned(method.node)}  # fmt: skip
+               for name in assigned(method.node)}  # fmt: skip
     words = (*facts.reads, *facts.writes, *facts.returns)
     found = [choice for method in methods for choice in _choices_of(method, words)]
     return tuple(
@@ -83,14 +83,16 @@ def _attributes(node: ast.AST) -> Iterator[str]:
     return (part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute))
 
 
-def _assigned(function: ast.FunctionDef) -> Iterator[str]:
-    """The attributes that a method assigns, of any object but its parameters, as userdata."""
-    others = {argument.arg for argument in function.args.args[1:]}
-    for node in ast.walk(function):
-        if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load):
-            owner = node.value.id if isinstance(node.value, ast.Name) else ""
+def assigned(node: ast.AST) -> Iterator[str]:
+    """The attributes that code assigns; of a method, not those of its parameters, as userdata."""
+    others: set[str] = set()
+    if isinstance(node, ast.FunctionDef):
+        others = {argument.arg for argument in node.args.args[1:]}
+    for part in ast.walk(node):
+        if isinstance(part, ast.Attribute) and not isinstance(part.ctx, ast.Load):
+            owner = part.value.id if isinstance(part.value, ast.Name) else ""
             if owner not in others:
-                yield node.attr
+                yield part.attr
 
 
 def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:

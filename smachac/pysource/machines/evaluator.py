@@ -7,6 +7,7 @@ state, and the states are joined. `try` is such a condition: its handlers may ru
 from __future__ import annotations
 
 import ast
+import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal, Protocol
@@ -595,6 +596,8 @@ class Evaluator:
                 self.assign(inner, value, frame)
             case ast.Attribute(value=owner, attr=name):
                 self.set_attribute(self.value(owner, frame), name, value)
+            case ast.Subscript(value=owner, slice=ast.Slice() as index):
+                self._set_slice(self.value(owner, frame), index, value, frame)
             case ast.Subscript(value=owner, slice=index):
                 self._set_item(self.value(owner, frame), self.value(index, frame), value)
 
@@ -811,7 +814,8 @@ class Evaluator:
     def _order(self, bases: Sequence[Value]) -> tuple[Value, ...]:
         """The classes in which Python searches a name after the class with these bases: C3, as in
         "A Monotonic Superclass Linearization for Dylan" (Barrett et al., 1996)."""
-        known = [base if isinstance(base, Class | LibraryClass) else UNKNOWN for base in bases]
+        kinds = Class | LibraryClass | Unknown
+        known = [base if isinstance(base, kinds) else UNKNOWN for base in bases]
         rows = [[base, *self.classes(base)[1:]] for base in known] + [[*known]]
         found: list[Value] = []
         while rows := [row for row in rows if row]:
@@ -1168,25 +1172,41 @@ class Evaluator:
         return UNKNOWN
 
     def _slice(self, owner: Value, index: ast.Slice, frame: Frame) -> Value:
+        bounds = self._bounds(index, frame)
+        if bounds is None:
+            return UNKNOWN
+        match owner:
+            case Const(value=str() as text, span=span):
+                return Const(text[bounds], span)
+            case TupleValue(items=items):
+                return TupleValue(items[bounds])
+            case ListValue():
+                items_ = owner.items
+                return self.new_list(items_[bounds]) if isinstance(items_, tuple) else UNKNOWN
+        return UNKNOWN
+
+    def _bounds(self, index: ast.Slice, frame: Frame) -> slice | None:
+        """A slice; None if it is not known, or wrong."""
         bounds: list[int | None] = []
         for part in (index.lower, index.upper, index.step):
             found = self.value(part, frame) if part is not None else NONE
             if not isinstance(found, Const) or not isinstance(found.value, int | None):
-                return UNKNOWN
+                return None
             bounds.append(found.value)
-        if bounds[2] == 0:
-            return UNKNOWN
-        match owner:
-            case Const(value=str() as text, span=span):
-                return Const(text[slice(*bounds)], span)
-            case TupleValue(items=items):
-                return TupleValue(items[slice(*bounds)])
-            case ListValue():
-                items_ = owner.items
-                return (
-                    self.new_list(items_[slice(*bounds)]) if isinstance(items_, tuple) else UNKNOWN
-                )
-        return UNKNOWN
+        return None if bounds[2] == 0 else slice(*bounds)
+
+    def _set_slice(self, owner: Value, index: ast.Slice, value: Value, frame: Frame) -> None:
+        bounds, more = self._bounds(index, frame), sequence(value)
+        for part in alternatives(owner):
+            if isinstance(part, ListValue):
+                whole: object = UNKNOWN
+                known = part.items if part is owner else UNKNOWN
+                if isinstance(known, tuple) and bounds is not None and more is not None:
+                    items = [*known]
+                    with contextlib.suppress(ValueError):  # an extended slice of another size
+                        items[bounds] = more
+                        whole = tuple(items) if len(items) <= MOST_ITEMS else UNKNOWN
+                self.heap.set(part.slots, "items", whole)
 
     # --- attributes
 

@@ -145,8 +145,10 @@ class _Builder:
 
     # --- containers
 
-    def container(self, made: Instance, name: str, span: Span, depth: int) -> Container:
-        """A container with its states."""
+    def container(
+        self, made: Instance, name: str, span: Span, depth: int, assumed: Sequence[str] = ()
+    ) -> Container:
+        """A container with its states. `assumed` are its outcomes if they are not known."""
         children = made.slots.get("$children")
         added = children.added if isinstance(children, Children) else ()
         complete = isinstance(children, Children) and children.complete and self.roots.complete
@@ -160,19 +162,22 @@ class _Builder:
         if inside:
             added = ()
         self.path.append(made)
-        node = self._built(made, name, span, depth, added, complete=complete)
+        node = self._built(made, name, span, depth, added, assumed, complete=complete)
         self.path.pop()
         return node
 
     def _built(
-        self, made: Instance, name: str, span: Span, depth: int, added: Sequence[Added], *,
-        complete: bool,
+        self, made: Instance, name: str, span: Span, depth: int, added: Sequence[Added],
+        assumed: Sequence[str], *, complete: bool,
     ) -> Container:  # fmt: skip
         kind = _text(made.slots.get("$kind")) or "StateMachine"
         outcomes = self.names(made.slots.get("$outcomes"), span)
         builder = _Children(self, made, kind, outcomes, complete=complete)
         built = builder.build(added, depth)
-        known = outcomes if outcomes is not None else builder.targets_outside()
+        known = outcomes
+        if known is None:
+            named = dict.fromkeys([*assumed, *_selected_outcomes(made)], span)
+            known = [*{**named, **dict(builder.targets_outside())}.items()]
         common: dict[str, Any] = {
             "name": name,
             "type": kind,
@@ -308,19 +313,17 @@ class _Builder:
         span: Span = added.span
         is_container = isinstance(value, Instance) and "$children" in value.slots
         if isinstance(value, Instance) and is_container and not self._runs_as_state(value):
-            return self.container(value, name, span, depth + 1)
+            return self.container(value, name, span, depth + 1, _outcomes_of(added))
         self.states += 1
         if not isinstance(value, Instance) or "$outcomes" not in value.slots:
-            reason = "its class is not known"
-            if isinstance(value, Unknown) and value.reason:
-                reason = f"package {value.reason.partition('.')[0]} not found"
+            reason = self._missing(value, added)
             return self.open_leaf(name, span, added, reason, self._faults(value))
         outcomes = self.names(value.slots.get("$outcomes"), span)
         inputs = sequence(value.slots.get("$inputs"))
         outputs = sequence(value.slots.get("$outputs"))
         if outcomes is None or inputs is None or outputs is None or value.opaque:
             what = "outcomes" if outcomes is None else "keys"
-            reason = "a base class is not known" if value.opaque else f"its {what} are not known"
+            reason = self._missing(value, added) if value.opaque else f"its {what} are not known"
             return self.open_leaf(name, span, added, reason)
         facts = self._facts(value)
         required = sequence(value.slots.get("$required")) or ()
@@ -337,6 +340,18 @@ class _Builder:
             name=name, type=type_, outcomes=tuple(Outcome(name=t, span=p) for t, p in outcomes),
             inputs=in_keys, outputs=out_keys, span=span, class_facts=facts,
         )  # fmt: skip
+
+    def _missing(self, value: Value, added: Added) -> str:
+        """Why the type of a state is not known."""
+        if len(alternatives(added.state)) > 1:
+            return "a condition that is not known selects its class"
+        bases = self.evaluator.classes(value.cls) if isinstance(value, Instance) else [value]
+        for base in bases:
+            if isinstance(base, Unknown) and base.reason:
+                if base.reason.endswith(".py"):
+                    return f"{base.reason} cannot be read"
+                return f"package {base.reason.partition('.')[0]} not found"
+        return "its class is not known"
 
     def _facts(self, value: Instance) -> ClassFacts | None:
         """What the code of a state does; None if it is not known."""
@@ -377,9 +392,7 @@ class _Builder:
     ) -> Leaf:
         """A state of an unknown type: its outcomes are those of its transitions."""
         self.unknown.append((span, reason))
-        items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
-        names = [str(key) for key in items] if isinstance(items, Mapping) else []
-        outcomes = tuple(Outcome(name=text, span=span) for text in names)
+        outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
         return Leaf(name=name, type=type_, open=True, outcomes=outcomes, span=span,
                     class_facts=facts)  # fmt: skip
@@ -595,6 +608,22 @@ class _Children:
         )  # fmt: skip
 
 
+def _selected_outcomes(made: Instance) -> Iterator[str]:
+    """The outcomes that the rules of a container name."""
+    for slot in ("$default_outcome", "$exhausted_outcome", "$connector_outcome"):
+        if (name := _text(made.slots.get(slot))) is not None:
+            yield name
+    rules = made.slots.get("$outcome_map")
+    pairs = rules.items if isinstance(rules, DictValue) else {}
+    yield from map(str, pairs if isinstance(pairs, Mapping) else ())
+
+
+def _outcomes_of(added: Added) -> list[str]:
+    """The outcomes that the transitions of a state name."""
+    items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
+    return [str(key) for key in items] if isinstance(items, Mapping) else []
+
+
 def _one_for_each_name(added: Sequence[Added]) -> list[Added]:
     """The states of a container. Those of one name that unknown conditions add are one state: it
     is one of several, and leads to one of several targets."""
@@ -695,9 +724,10 @@ def _is_none(value: Value | None) -> bool:
 
 
 def _place(value: Value | None, span: Span) -> Span:
-    """The place of a value; if it has none in the project, another one."""
+    """The place of a value; if it has none in the same file, another one."""
     found = getattr(value, "span", None)
-    return found if isinstance(found, Span) else span
+    near = isinstance(found, Span) and (span is NOWHERE or found.source is span.source)
+    return found if isinstance(found, Span) and near else span
 
 
 def _decider(name: str, outcomes: tuple[Outcome, ...], span: Span) -> Leaf:

@@ -7,6 +7,7 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.machines.dead_code import assigned
 from smachac.pysource.machines.values import Class, Function, Value
 from smachac.pysource.source import PythonText
 
@@ -18,42 +19,49 @@ _EXITS = (ast.Return, ast.Raise, ast.Continue, ast.Break)
 
 def doubtful_places(classes: Sequence[Value]) -> tuple[Span, ...]:
     """The places in the methods of a class at which a read of userdata is not proven. `classes` are
-    the class and its bases."""
-    return tuple(
-        place
+    the class and its bases. Conditions over attributes that methods change can differ from one
+    visit of the state to the next."""
+    methods = [
+        (method, method.node)
         for cls in classes
         if isinstance(cls, Class)
         for method in cls.slots.values()
         if isinstance(method, Function) and isinstance(method.node, ast.FunctionDef)
-        for place in _of_function(method, method.node)
-    )
+    ]
+    changed = {
+        f"self.{name}"
+        for method, node in methods
+        if method.name != "__init__"
+        for name in assigned(node)
+    }
+    return tuple(place for method, node in methods for place in _of_function(method, node, changed))
 
 
 def doubtful_in(function: Function) -> tuple[Span, ...]:
     """The places in a callback at which a read of userdata is not proven."""
     node = function.node
-    return tuple(_of_function(function, node)) if isinstance(node, ast.FunctionDef) else ()
+    return tuple(_of_function(function, node, set())) if isinstance(node, ast.FunctionDef) else ()
 
 
-def _of_function(function: Function, node: ast.FunctionDef) -> Iterator[Span]:
+def _of_function(function: Function, node: ast.FunctionDef, changed: set[str]) -> Iterator[Span]:
     text = function.frame.module.text
     if text is None:
         return iter(())
     taken = node.args
     names = {argument.arg for argument in (*taken.posonlyargs, *taken.args, *taken.kwonlyargs)}
-    names -= {"self"}
-    walk = _Walk(text, names)
+    walk = _Walk(text, (names - {"self"}) | changed)
     walk.block(node.body, sure=True)
     return iter(walk.places)
 
 
 class _Walk:
     """The statements of a function in order. `derived` are the names of values that come from
-    userdata, `places` those that need not run."""
+    userdata, `tried` the keys that a `try` can have set, `places` those that need not run."""
 
     def __init__(self, text: PythonText, derived: set[str]) -> None:
         self.text = text
         self.derived = derived
+        self.tried: set[str] = set()
         self.places: list[Span] = []
 
     def block(self, body: Sequence[ast.stmt], *, sure: bool) -> bool:
@@ -83,6 +91,7 @@ class _Walk:
                 return self.block(body, sure=True)
             case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=last):
                 caught = any(map(_catches, handlers))
+                self.tried.update(name for part in body for name in assigned(part))
                 runs = self.block(body, sure=not caught)
                 for handler in handlers:
                     self.block(handler.body, sure=False)
@@ -108,6 +117,8 @@ class _Walk:
         """Notes the operands of an expression that only some values of userdata evaluate."""
         for part in ast.walk(node):
             match part:
+                case ast.Attribute(attr=name) if name in self.tried:
+                    self.places.append(self.text.span(part))
                 case ast.IfExp(test=test, body=yes, orelse=no) if self._is_derived(test):
                     self.places += [self.text.span(yes), self.text.span(no)]
                 case ast.BoolOp(values=values):

@@ -385,6 +385,7 @@ _CONTAINER: Mapping[str, Run] = {
 
 _METHODS: Mapping[str, Mapping[str, Run]] = {
     "smach.State": _STATE,
+    "smach.CBInterface": {"__get__": _nothing},
     "smach.CBState": {**_STATE, "__init__": _cb_state},
     "smach.StateMachine": {
         **_CONTAINER,
@@ -509,6 +510,8 @@ def _libraries() -> dict[str, ModuleValue]:
     smach = {
         **_classes("smach", "State CBState StateMachine Sequence Concurrence Iterator"),
         "ConditionState": LibraryClass("smach.ConditionState"),
+        "CBInterface": LibraryClass("smach.CBInterface"),
+        **_classes("smach_ros", "SimpleActionState ServiceState MonitorState"),  # before 1.2
         "cb_interface": Native("cb_interface", _cb_interface),
         "UserData": Native("UserData", _user_data),
         "Container": UNKNOWN,

@@ -218,6 +218,71 @@ with sm:
     sm.add("A", Careful())
 sm.execute()
 """,
+    "a key that a try sets": """
+class Try(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok"], input_keys=["part"], output_keys=["part"])
+    def execute(self, userdata):
+        try:
+            userdata.part = vendor.part()
+        except vendor.Error:
+            print("error")
+        print(userdata.part)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Try())
+sm.execute()
+""",
+    "a key that a counter selects": """
+class Count(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"], input_keys=["part"], output_keys=["part"])
+        self.tries = 0
+    def execute(self, userdata):
+        self.tries += 1
+        if self.tries == 2:
+            print(userdata.part)
+            return "ok"
+        userdata.part = 1
+        return "no"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Count(), {"no": "A"})
+sm.execute()
+""",
+    "outcomes of a concurrence that are not known": """
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    both = smach.Concurrence(vendor.outcomes(), "no")
+    with both:
+        smach.Concurrence.add("A", Do())
+    sm.add("BOTH", both, {"ok": "ok", "no": "ok"})
+sm.execute()
+""",
+    "a concurrence with the outcomes of an unknown state": """
+class Limited(smach.Concurrence):
+    def __init__(self, state):
+        outcomes = set(state.get_registered_outcomes())
+        outcomes.add("late")
+        smach.Concurrence.__init__(self, list(outcomes), default_outcome="late",
+                                   outcome_map={"ok": {"B": "ok"}})
+        with self:
+            smach.Concurrence.add("A", state)
+            smach.Concurrence.add("B", Do())
+""",
+    "outcomes that an assignment to a slice changes": """
+outcomes = ["ok", "no", "wrong"]
+outcomes[:] = [name for name in outcomes if name != "wrong"]
+outcomes[1:2] = ["bad"]
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    inner = smach.StateMachine(outcomes)
+    with inner:
+        inner.add("A", Do("ok", "bad"))
+    sm.add("B", inner, {"bad": "ok"})
+sm.execute()
+""",
     "a key that an unknown attribute selects": """
 class Wait(smach.State):
     def __init__(self, time=None):
