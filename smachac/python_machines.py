@@ -16,6 +16,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.driver import CODES, Analysis
 from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors import python_machines as errors
+from smachac.frontend.errors.suppressions import vain_description
 from smachac.frontend.files import Disk, disk_library, lies_inside
 from smachac.frontend.text.suppressions import suppress
 from smachac.ir.nodes import Machine
@@ -116,6 +117,7 @@ class PythonProject:
                 findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
         report += _of_uses([*evaluator.faults, *repository.faults_of(str(path))])
+        report += map(vain_description, reader.comments.unused(source))
         if evaluator.exhausted and not whole:
             report.append(_too_long(source))
         self.disk.searched.update(repository.files_of(str(path)))

@@ -13,6 +13,7 @@ from smachac.pysource.class_reader import NO_EXECUTE, facts_of, facts_of_callbac
 from smachac.pysource.machines.dead_code import Choice, choices, live_facts, unknown_places
 from smachac.pysource.machines.project import Repository
 from smachac.pysource.machines.proven_reads import doubtful_places
+from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import Class, Function, Instance, ModuleValue, Value
 from smachac.pysource.modules import Module, module_of
 from smachac.pysource.user_code import UserCode
@@ -24,6 +25,7 @@ class ClassReader:
     def __init__(self, repository: Repository) -> None:
         self.repository = repository
         self.library = UserCode(template=lambda file: None, code=self._code)
+        self.comments = StateComments()
         self.modules: dict[str, Module] = {}
         self.facts: dict[int, tuple[Class, ClassFacts | None]] = {}
         self.choices: dict[ast.ClassDef, tuple[Choice, ...]] = {}

@@ -39,6 +39,7 @@ from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.heap import Added, Children
 from smachac.pysource.machines.proven_reads import doubtful_in
 from smachac.pysource.machines.roots import Roots
+from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import (
     UNKNOWN,
     Class,
@@ -71,8 +72,10 @@ several places, and each of them is a state."""
 
 
 class FactReader(Protocol):
-    """Reads what the code of a state does."""
+    """Reads what the code of a state does. `comments` are those about states."""
 
+    @property
+    def comments(self) -> StateComments: ...
     def of_class(self, cls: Class) -> ClassFacts | None: ...
     def of_instance(self, instance: Instance, classes: Sequence[Value]) -> ClassFacts | None: ...
     def of_callback(
@@ -390,12 +393,21 @@ class _Builder:
     def open_leaf(
         self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
     ) -> Leaf:
-        """A state of an unknown type: its outcomes are those of its transitions."""
-        self.unknown.append((span, reason))
-        outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
+        """A state of an unknown type: its outcomes are those of a comment, or of its
+        transitions."""
+        told = self.reader.comments.at(span)
+        if told.outcomes is None:
+            self.unknown.append((span, reason))
+            outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
+        else:
+            outcomes = tuple(Outcome(name=word.text, span=word.span) for word in told.outcomes)
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
-        return Leaf(name=name, type=type_, open=True, outcomes=outcomes, span=span,
-                    class_facts=facts)  # fmt: skip
+        return Leaf(
+            name=name, type=type_, outcomes=outcomes, span=span, class_facts=facts,
+            open=told.input_keys is None and told.output_keys is None,
+            inputs=tuple(Key(name=word.text, span=word.span) for word in told.input_keys or ()),
+            outputs=tuple(Key(name=word.text, span=word.span) for word in told.output_keys or ()),
+        )  # fmt: skip
 
     def _type(
         self, value: Instance, outcomes: Sequence[tuple[str, Span]], inputs: Sequence[Key],

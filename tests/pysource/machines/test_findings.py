@@ -109,6 +109,33 @@ WRONG = {
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Loop())\n',
         'SM301 sm.add("A", Loop())',
     ),
+    "an outcome that a comment names": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    # smachac: outcomes ok, no\n'
+        '    # the arm\n    sm.add("A", vendor.Do(), {"ok": "ok"})\n',
+        'SM104 sm.add("A", vendor.Do(), {"ok": "ok"})',
+    ),
+    "a key that a comment names": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", vendor.Do(),  # smachac: outcomes ok\n'
+        '           {"ok": "ok"})  # smachac: input_keys part\n',
+        'SM301 sm.add("A", vendor.Do(),  # smachac: outcomes ok',
+    ),
+    "a key that a state does not set, as a comment says": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    # smachac: outcomes ok\n    # smachac: output_keys other\n'
+        '    sm.add("A", vendor.Do(), {"ok": "B"})\n    sm.add("B", Use())\n',
+        'SM301 sm.add("B", Use())',
+    ),
+    "a comment at a state that is known": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", Do())  # smachac: outcomes ok\n',
+        'SM022 sm.add("A", Do())  # smachac: outcomes ok',
+    ),
+    "a comment without names": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", vendor.Do())  # smachac: outcomes\n',
+        'SM022 sm.add("A", vendor.Do())  # smachac: outcomes',
+    ),
     "a key that nothing sets": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Use())\n',
         'SM301 sm.add("A", Use())',
@@ -422,6 +449,14 @@ sm = smach.StateMachine(outcomes=["ok"])
 with sm:
     sm.add("A", Do(), {"ok": None})
 """,
+    "a comment in a text": """
+TEXT = "# smachac: outcomes done"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    # smachac: outcomes ok, no
+    sm.add("A", vendor.Do("# smachac: outcomes done"), {"ok": "ok", "no": "B"})
+    sm.add("B", Use())
+""",
     "a suppression": """
 sm = smach.StateMachine(outcomes=["ok"])
 with sm:
@@ -465,3 +500,12 @@ def test_a_fault_of_a_module_belongs_to_each_file_that_imports_it(tmp_path: Path
         for file in (tmp_path / "two.py", tmp_path / "one.py", tmp_path / "two.py")
     ]
     assert places == [[("SM803", "names.py")]] * 3
+
+
+def test_a_state_that_a_comment_describes_is_known(tmp_path: Path) -> None:
+    path = tmp_path / "machine.py"
+    text = 'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", vendor.Do())'
+    path.write_text(f"{HEAD}{text}  # smachac: outcomes ok\n", "utf-8")
+    coverage = PythonProject(Disk()).read(path).coverage
+    assert coverage is not None
+    assert (coverage.states, coverage.exact) == (1, 1)
