@@ -75,7 +75,7 @@ class PythonProject:
         self.disk = disk
         self.cached = cached
         self.caches: dict[str, Cache] = {}
-        self.repositories: dict[str, tuple[Repository, Evaluator, ClassReader]] = {}
+        self.repositories: dict[tuple[str, bool], tuple[Repository, Evaluator, ClassReader]] = {}
 
     def read(self, path: Path, *, everything: bool = False) -> PythonFile:
         """The machines of a file with the findings about them; with `everything`, those of all
@@ -97,7 +97,7 @@ class PythonProject:
                 path=path, source=source, report=[*report, *known.report], coverage=known.coverage
             )
         read_before = [*report]
-        repository, evaluator, reader = self._repository(path)
+        repository, evaluator, reader = self._repository(path, everything)
         del evaluator.faults[:]
 
         def made(roots: Roots) -> list[Graph]:
@@ -146,13 +146,16 @@ class PythonProject:
             self.caches[name] = Cache(f"{name} {Path.cwd()}", digest_of(texts))
         return self.caches[name]
 
-    def _repository(self, path: Path) -> tuple[Repository, Evaluator, ClassReader]:
+    def _repository(
+        self, path: Path, everything: bool
+    ) -> tuple[Repository, Evaluator, ClassReader]:
         root = repository_of(path)
-        key = os.path.realpath(root)
+        key = os.path.realpath(root), everything
         if key not in self.repositories:
             repository = Repository(map(str, python_files(root)), self._text)
             evaluator = Evaluator(repository)
-            self.repositories[key] = repository, evaluator, ClassReader(repository)
+            reader = ClassReader(repository, whole=everything)
+            self.repositories[key] = repository, evaluator, reader
         return self.repositories[key]
 
     def _text(self, file: str) -> Source | None:

@@ -6,6 +6,8 @@ import ast
 import builtins
 from collections.abc import Iterator
 
+from smachac.pysource.syntax_tree import walk_code
+
 KNOWN_NAMES = frozenset(dir(builtins)) | frozenset([
     "__file__", "__path__", "__builtins__", "__annotations__", "__class__", "__module__",
     "__qualname__", "WindowsError", "apply", "basestring", "buffer", "cmp", "coerce", "execfile",
@@ -17,7 +19,7 @@ KNOWN_NAMES = frozenset(dir(builtins)) | frozenset([
 
 def bound_names(tree: ast.Module) -> frozenset[str]:
     """The names that the code of a module binds: no other name can have a value."""
-    return frozenset(name for node in ast.walk(tree) for name in _bound(node))
+    return frozenset(name for node in walk_code(tree) for name in _bound(node))
 
 
 def _bound(node: ast.AST) -> Iterator[str]:
@@ -42,6 +44,6 @@ def star_imports(tree: ast.Module) -> list[ast.ImportFrom]:
     """The imports that bind all names of a module."""
     return [
         node
-        for node in ast.walk(tree)
+        for node in walk_code(tree)
         if isinstance(node, ast.ImportFrom) and any(part.name == "*" for part in node.names)
     ]

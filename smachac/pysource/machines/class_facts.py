@@ -20,13 +20,15 @@ from smachac.pysource.user_code import UserCode
 
 
 class ClassReader:
-    """Reads classes of a repository, each once."""
+    """Reads classes of a repository, each once; `whole`: with all facts, which takes longer."""
 
-    def __init__(self, repository: Repository) -> None:
+    def __init__(self, repository: Repository, *, whole: bool = True) -> None:
         self.repository = repository
+        self.whole = whole
         self.library = UserCode(template=lambda file: None, code=self._code)
         self.comments = StateComments()
         self.modules: dict[str, Module] = {}
+        self.files: dict[str, str | None] = {}
         self.facts: dict[int, tuple[Class, ClassFacts | None]] = {}
         self.choices: dict[ast.ClassDef, tuple[Choice, ...]] = {}
         self.places: dict[ast.ClassDef, tuple[Span, ...]] = {}
@@ -56,7 +58,9 @@ class ClassReader:
         known = self.facts.get(id(cls.node))
         if known is None:
             module = self._module(cls.frame.module)
-            facts = facts_of(module, cls.node, self.library) if module is not None else None
+            facts = None
+            if module is not None:
+                facts = facts_of(module, cls.node, self.library, whole=self.whole)
             if facts is not None and any(fault.kind is NO_EXECUTE for fault in facts.faults):
                 facts = self._without_execute(facts)
             known = self.facts[id(cls.node)] = cls, facts
@@ -101,6 +105,9 @@ class ClassReader:
 
     def _code(self, file: str) -> Source | None:
         """A module by a path such as `my_robot/states.py`."""
-        stem = PurePath(file).with_suffix("")
-        found = self.repository.file_of(".".join(stem.parts), ModuleValue("", {}, file=file))
+        if file not in self.files:
+            stem = PurePath(file).with_suffix("")
+            user = ModuleValue("", {}, file=file)
+            self.files[file] = self.repository.file_of(".".join(stem.parts), user)
+        found = self.files[file]
         return self.repository.read(found) if found is not None else None

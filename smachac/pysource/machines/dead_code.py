@@ -20,6 +20,7 @@ from smachac.pysource.machines.values import (
     alternatives,
     truth,
 )
+from smachac.pysource.syntax_tree import walk_code
 
 
 class Choice(NamedTuple):
@@ -80,7 +81,7 @@ def unknown_places(found: Iterable[Choice], instance: Instance) -> Iterator[Span
 
 
 def _attributes(node: ast.AST) -> Iterator[str]:
-    return (part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute))
+    return (part.attr for part in walk_code(node) if isinstance(part, ast.Attribute))
 
 
 def assigned(node: ast.AST) -> Iterator[str]:
@@ -88,7 +89,7 @@ def assigned(node: ast.AST) -> Iterator[str]:
     others: set[str] = set()
     if isinstance(node, ast.FunctionDef):
         others = {argument.arg for argument in node.args.args[1:]}
-    for part in ast.walk(node):
+    for part in walk_code(node):
         if isinstance(part, ast.Attribute) and not isinstance(part.ctx, ast.Load):
             owner = part.value.id if isinstance(part.value, ast.Name) else ""
             if owner not in others:
@@ -107,7 +108,7 @@ def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
         places = [text.span(part) for part in parts]
         return frozenset(span for span in inside for place in places if contains(place, span))
 
-    for part in ast.walk(node) if inside else ():
+    for part in walk_code(node) if inside else ():
         match part:
             case ast.If(test=test, body=body, orelse=orelse):
                 yield Choice(test, own, within(body), within(orelse))

@@ -56,9 +56,10 @@ from smachac.pysource.machines.values import (
     sequence,
     truth,
 )
+from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass, field
 
-MOST_STEPS, MOST_TIMES = 400_000, 2
+MOST_STEPS, MOST_TIMES = 150_000, 2
 """The most statements and expressions that are evaluated for the main part of a file, or for one of
 its functions and classes, and how many times as many for all of them."""
 DEEPEST_CALL, MOST_RECURSIVE = 60, 2
@@ -523,7 +524,7 @@ class Evaluator:
 
     def _capture(self, subject: Value, pattern: ast.pattern, frame: Frame) -> None:
         """Binds the names of a pattern."""
-        for part in ast.walk(pattern):
+        for part in walk_code(pattern):
             name = getattr(part, "name", None) or getattr(part, "rest", None)
             if isinstance(name, str):
                 self.bind(name, subject if part is pattern else UNKNOWN, frame)
@@ -1554,7 +1555,7 @@ def _are_other_types(left: Value, right: Value) -> bool:
 
 def _parts(body: Sequence[ast.stmt]) -> Iterator[ast.AST]:
     for statement in body:
-        yield from ast.walk(statement)
+        yield from walk_code(statement)
 
 
 def _exits(node: ast.expr) -> bool:

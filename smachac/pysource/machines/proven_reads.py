@@ -10,6 +10,7 @@ from smachac.diagnostics.source import Span
 from smachac.pysource.machines.dead_code import assigned
 from smachac.pysource.machines.values import Class, Function, Value
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 
 _ERRORS = frozenset(["KeyError", "LookupError", "AttributeError", "Exception", "BaseException"])
 """The errors that a handler of a missing key can name."""
@@ -115,7 +116,7 @@ class _Walk:
 
     def expression(self, node: ast.AST) -> None:
         """Notes the operands of an expression that only some values of userdata evaluate."""
-        for part in ast.walk(node):
+        for part in walk_code(node):
             match part:
                 case ast.Attribute(attr=name) if name in self.tried:
                     self.places.append(self.text.span(part))
@@ -133,7 +134,7 @@ class _Walk:
 
 def _names(node: ast.AST) -> Iterator[str]:
     """The names in an expression; of an attribute of `self` also `self.name`."""
-    for part in ast.walk(node):
+    for part in walk_code(node):
         match part:
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 yield f"self.{name}"
@@ -142,7 +143,7 @@ def _names(node: ast.AST) -> Iterator[str]:
 
 
 def _leaves(body: Sequence[ast.stmt]) -> bool:
-    return any(isinstance(part, _EXITS) for statement in body for part in ast.walk(statement))
+    return any(isinstance(part, _EXITS) for statement in body for part in walk_code(statement))
 
 
 def _catches(handler: ast.ExceptHandler) -> bool:
