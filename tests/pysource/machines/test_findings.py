@@ -109,6 +109,14 @@ WRONG = {
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Loop())\n',
         'SM301 sm.add("A", Loop())',
     ),
+    "a key that a state sets under another name": (
+        'class Set(smach.State):\n    def __init__(self):\n'
+        '        smach.State.__init__(self, outcomes=["ok"], output_keys=["part"])\n'
+        '    def execute(self, userdata):\n        userdata.part = 1\n        return "ok"\n'
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", Set(), {"ok": "B"}, {"part": "other"})\n    sm.add("B", Use())\n',
+        'SM301 sm.add("B", Use())',
+    ),
     "an outcome that a comment names": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    # smachac: outcomes ok, no\n'
         '    # the arm\n    sm.add("A", vendor.Do(), {"ok": "ok"})\n',
