@@ -24,6 +24,7 @@ from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
 from smachac.pysource.coverage import Coverage, coverage_of, unknown_states
 from smachac.pysource.machines.class_facts import ClassReader
+from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
 from smachac.pysource.machines.project import Repository, module_text
@@ -295,6 +296,7 @@ def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:
     """Each machine of a file with its findings, by the names of the machines; later ones of a name
     have a number. `checked` is empty: no program can be generated."""
     named: dict[str, Analysis] = {}
+    places = [node.span for graph in file.graphs for _, node in walk(graph.machine.root)]
     for graph in file.graphs:
         own = graph.machine.root.name
         name, number = own, 2
@@ -302,7 +304,7 @@ def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:
             name, number = f"{own}_{number}", number + 1
         named[name] = Analysis(
             script=str(file.path), source=file.source, machine=_drawn(graph, name),
-            report=_renamed(_of_machine(file.report, graph.machine), own, name),
+            report=_renamed(_of_machine(file.report, graph.machine, places), own, name),
         )  # fmt: skip
     return named
 
@@ -320,11 +322,20 @@ def _drawn(graph: Graph, name: str) -> Machine:
     return replace(machine, base="", digest=digest.hexdigest(), unknown=unknown)
 
 
-def _of_machine(report: Report, machine: Machine) -> Report:
-    """The findings of a file that are about one of its machines, or about none."""
+def _of_machine(report: Report, machine: Machine, places: Sequence[Span]) -> Report:
+    """The findings of a file that are about one of its machines. One about no state belongs to the
+    machines with a call around it, or to all. `places` are the calls of all machines."""
     with deep_recursion():
         own = {(item.code, item.span) for item in check_machine(machine)}
-    return [item for item in report if item.finding.node is None or (item.code, item.span) in own]
+    calls = [node.span for _, node in walk(machine.root)]
+
+    def is_own(item: Diagnostic) -> bool:
+        if item.finding.node is not None:
+            return (item.code, item.span) in own
+        inside = [place for place in calls if contains(place, item.span)]
+        return bool(inside) or not any(contains(place, item.span) for place in places)
+
+    return [item for item in report if is_own(item)]
 
 
 def _renamed(report: Report, old: str, new: str) -> Report:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import PurePath
 from typing import Any, Literal, NamedTuple, Protocol
 
 from smachac.diagnostics.source import NOWHERE, Span
@@ -117,7 +118,9 @@ class _Builder:
         self.evaluator = evaluator
         self.reader = reader
         self.types: dict[str, StateType] = {}
-        self.type_names: dict[tuple[object, ...], str] = {}
+        self.type_names: dict[tuple[Any, ...], str] = {}
+        self.first_types: dict[str, tuple[Any, ...]] = {}
+        self.variants: dict[str, int] = {}
         self.unknown: list[tuple[Span, str]] = []
         self.states = 0
         self.nodes = 0
@@ -417,7 +420,7 @@ class _Builder:
         short = cls.name if isinstance(cls, Class) else cls.short
         if facts is not None and facts.name is not None:
             short = facts.name.text
-        which = (
+        which: tuple[Any, ...] = (
             id(cls) if isinstance(cls, Class) else f"{cls.name} {short}",
             tuple(name for name, _ in outcomes),
             tuple(key.name for key in inputs),
@@ -427,15 +430,28 @@ class _Builder:
         known = self.type_names.get(which)
         if known is not None:
             return known
-        name, number = short, 2
-        while name in self.types:
-            name, number = f"{short}_{number}", number + 1
+        first = self.first_types.setdefault(short, which)
+        own = short if first is which else f"{short} ({self._difference(cls, first, which)})"
+        number = self.variants[own] = self.variants.get(own, 0) + 1
+        name = own if number == 1 else f"{own} {number}"
         self.type_names[which] = name
         self.types[name] = StateType(
             name=name, outcomes=tuple(Outcome(name=t, span=p) for t, p in outcomes),
             input_keys=tuple(inputs), output_keys=tuple(outputs), class_facts=facts,
         )  # fmt: skip
         return name
+
+    def _difference(
+        self, cls: Class | LibraryClass, first: tuple[Any, ...], other: tuple[Any, ...]
+    ) -> str:
+        """What a state type has that the first one of its name has not: its module, its outcomes or
+        its keys."""
+        if first[0] != other[0] and isinstance(cls, Class):
+            return PurePath(cls.frame.module.file).stem
+        for names, more in zip(first[1:4], other[1:4], strict=True):
+            if names != more:
+                return ", ".join([*more[:3], *(["..."] if len(more) > 3 else [])]) or "none"
+        return "other values"
 
     def names(self, value: Value | None, span: Span) -> list[tuple[str, Span]] | None:
         """The names in a list, each with its place; None: not known."""

@@ -376,6 +376,14 @@ def _close(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> V
     return NONE
 
 
+def _from_keys(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    names, value = sequence(arguments.get(0, "iterable")), arguments.get(1, "value", NONE)
+    if names is None or not all(isinstance(name, Const) for name in names):
+        return DictValue({"items": UNKNOWN}, span)
+    pairs = {name.value: (name, value) for name in names if isinstance(name, Const)}
+    return DictValue({"items": pairs}, span)
+
+
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
     "open": _open,
@@ -386,6 +394,7 @@ _CONTAINER: Mapping[str, Run] = {
 _METHODS: Mapping[str, Mapping[str, Run]] = {
     "smach.State": _STATE,
     "smach.CBInterface": {"__get__": _nothing},
+    "builtins.dict": {"fromkeys": _from_keys},
     "smach.CBState": {**_STATE, "__init__": _cb_state},
     "smach.StateMachine": {
         **_CONTAINER,
