@@ -31,7 +31,7 @@ from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
-from smachac.pysource.source import syntax_error
+from smachac.pysource.source import LONGEST, is_readable, syntax_error
 from smachac.python_cache import Cache, Known, digest_of
 from smachac.records import dataclass
 
@@ -227,8 +227,13 @@ def _unreadable(source: Source) -> Diagnostic:
     word = syntax_error(source)
     if word is None:
         span = Span(source, 0, 0)
-        help = "split the file, or end its lines with a line feed"
-        return errors.unreadable_module(span, "this file is too long or too deeply nested", help)
+        message, help = "the code in this file is nested too deeply", "split the expressions"
+        if len(source.text) > LONGEST:
+            message, help = f"this file has more than {LONGEST:,} characters", "split the file"
+        elif not is_readable(source.text):
+            message = "lines of this file end with a carriage return alone"
+            help = "end its lines with a line feed"
+        return errors.unreadable_module(span, message, help)
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
     help = "correct the code at the mark"
     return errors.unreadable_module(word.span, message, help)
