@@ -26,7 +26,7 @@ from smachac.targets.cpp.user_classes import class_code, left_to_scripts
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, that of its robot, and the files of the options."""
     wanted = project(context.options)
-    planned = plan(machine)
+    planned = plan(machine, wanted.bounds)
     header = header_of(planned)
     robot = _robot_files(planned, wanted)
     report.extend(in_order(planned.report))
