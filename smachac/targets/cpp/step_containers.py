@@ -8,7 +8,8 @@ step starts it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 
 from smachac.diagnostics.source import assert_never
 from smachac.ir.nodes import (
@@ -29,7 +30,6 @@ from smachac.targets.cpp.bounded import Bounds, is_loose, loose, most_bytes
 from smachac.targets.cpp.containers import (
     ContainerPlan,
     Lines,
-    all_results,
     concurrence_rules,
     indented,
     is_small,
@@ -43,7 +43,7 @@ from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cp
 
 NONE = "State::none_"
 ACTIVE = "states.active_"
-RUNNING, FAILED = "smachac::step::RUNNING", "smachac::step::FAILED"
+FAILED = "smachac::step::FAILED"
 
 RESERVED = ("active_", "branches_", "items_", "position_")
 """The members of `States` that are no states."""
@@ -73,12 +73,6 @@ class StepPlan:
     def end_of(self, child: Node) -> int:
         """The number after those of a child and all nodes in it."""
         return self.number_of(child) + sum(1 for _ in walk(child))
-
-    def case(self, child: Node, outcome: str) -> str:
-        """The label of the case for an outcome of a child."""
-        if outcome == child.catches:
-            return f"case {FAILED}:"
-        return f"case smachac::step::code({self.container.child_outcome(child, outcome)}):"
 
 
 def states_members(plan: StepPlan) -> list[tuple[str, int]]:
@@ -113,8 +107,9 @@ def step(plan: StepPlan) -> Lines:
         case _:
             assert_never(node)
     scope = plan.container.scope
-    caller = plan.container.scopes.get(scope.path.rpartition("/")[0], scope)
-    inline = "[[gnu::always_inline]] inline" if is_small(caller.node) else "inline"
+    caller = plan.container.scopes.get(scope.path.rpartition("/")[0])
+    small = caller is None or is_small(caller.node)
+    inline = "[[gnu::always_inline]] inline" if small else "inline"
     return [
         "template <class Run>",
         f"{inline} smachac::step::Result<Outcome> step_([[maybe_unused]] States &states,"
@@ -271,34 +266,27 @@ def _machine(plan: StepPlan, node: StateMachine | Sequence) -> Lines:
         "  [[fallthrough]];",
     ]
     for child in (first, *others):
-        edges = {edge.outcome: edge for edge in reversed(child.transitions)}
-        outcomes: Lines = []
-        for at, name in enumerate(all_results(child)):
-            edge = edges.get(name)
-            outcomes.append(plan.case(child, name))
-            caught = name == child.catches
-            if caught:
-                outcomes.append(f"  run.caught({plan.number_of(child)}, {at});")
-            code = str(at) if caught else "result"
-            if edge is None:
-                outcomes.append(f"  return run.undeclared({ACTIVE}, {plan.number_of(child)});")
-            elif leads_to_child(edge, plan.container.names):
-                target = children[edge.target]
-                outcomes.append(
-                    f"  return run.go({ACTIVE}, State::{identifier(target.name)}, {plan.number},"
-                    f" {plan.number_of(child)}, {code}, {plan.number_of(target)});"
-                )
-            else:
-                own = plan.container.own_outcome(edge.target)
-                outcomes.append(f"  return {_end(plan, child, own, code)};")
         where = f" // {place(child)}" if place(child) else ""
         lines += [
             f"case State::{identifier(child.name)}: {{{where}",
             *indented(_turn(plan, child)),
-            *indented(_result_switch(plan, child, outcomes)),
+            *indented(_result_switch(plan, child, partial(_transition, plan, child))),
             "}",
         ]
     return [*lines, "default:", "  smachac::step::never();", "}"]
+
+
+def _transition(plan: StepPlan, child: Node, outcome: str, code: str) -> Lines:
+    """The statements for an outcome of a state of a machine."""
+    number = plan.number_of(child)
+    edge = next((edge for edge in child.transitions if edge.outcome == outcome), None)
+    if edge is None:
+        return [f"return run.undeclared({ACTIVE}, {number});"]
+    if leads_to_child(edge, plan.container.names):
+        target = next(each for each in plan.node.children if each.name == edge.target)
+        to = f"State::{identifier(target.name)}, {plan.number}, {number}, {code}"
+        return [f"return run.go({ACTIVE}, {to}, {plan.number_of(target)});"]
+    return [f"return {_end(plan, child, plan.container.own_outcome(edge.target), code)};"]
 
 
 def _end(plan: StepPlan, child: Node, own: str, code: str) -> str:
@@ -306,15 +294,28 @@ def _end(plan: StepPlan, child: Node, own: str, code: str) -> str:
     return f"run.end({ACTIVE}, {own}, {plan.number}, {plan.number_of(child)}, {code})"
 
 
-def _result_switch(plan: StepPlan, child: Node, outcomes: Lines) -> Lines:
-    """The switch over the result of a child."""
+def _result_switch(plan: StepPlan, child: Node, outcome: Callable[[str, str], Lines]) -> Lines:
+    """The statements after a step of a child. `outcome` gives those for an outcome and the text of
+    its index."""
+    number = plan.number_of(child)
+    caught: Lines = []
+    if child.catches:
+        at = len(results(child))
+        lines = [f"run.caught({number}, {at});", *outcome(child.catches, str(at))]
+        caught = [f"if (result == {FAILED}) {{", *indented(lines), "}"]
+    cases: Lines = []
+    for name in results(child):
+        label = f"case smachac::step::code({plan.container.child_outcome(child, name)}):"
+        cases += [label, *indented(outcome(name, "result"))]
     return [
+        "if (result < 0) {",
+        *indented(caught),
+        f"  return run.unended({ACTIVE}, result);",
+        "}",
         "switch (result) {",
-        *outcomes,
-        f"case {RUNNING}:",
-        "  return smachac::step::running;",
+        *cases,
         "default:",
-        f"  return run.fail({ACTIVE}, {plan.number_of(child)}, result);",
+        f"  return run.invalid({ACTIVE}, {number});",
         "}",
     ]
 
@@ -447,13 +448,6 @@ def _iterator(plan: StepPlan, node: Iterator) -> Lines:
         f"run.begin_items({plan.number}, {first});",
         f"{ACTIVE} = State::{identifier(child.name)};",
     ]
-    cases: Lines = []
-    for at, name in enumerate(all_results(child)):
-        cases.append(plan.case(child, name))
-        caught = name == child.catches
-        if caught:
-            cases.append(f"  run.caught({first}, {at});")
-        cases += indented(_item_outcome(plan, node, child, name, str(at) if caught else "result"))
     where = [f"// {place(child)}"] if place(child) else []
     return [
         *lines,
@@ -462,7 +456,7 @@ def _iterator(plan: StepPlan, node: Iterator) -> Lines:
         "}",
         *where,
         *_turn(plan, child),
-        *_result_switch(plan, child, cases),
+        *_result_switch(plan, child, partial(_item_outcome, plan, node, child)),
     ]
 
 

@@ -56,7 +56,7 @@ def machine_class(
     alone = f"{explicit[0]}Machine({', '.join(parameters)})"
     head = f"{explicit[1]}Machine({', '.join([*parameters, 'Observer &observer'])})"
     nobody = ", ".join([*map(argument, parameters), "smachac::step::nobody"])
-    states = f"states({given}), " if given else ""
+    states = f", states({given})" if given else ""
     most = size + RUN_BYTES + count
     limit = " + ".join([f"{most}U", *_objects(machine, classes)])
     of_user = " and the objects of your classes" if classes else ""
@@ -67,11 +67,11 @@ def machine_class(
         "template <class Observer = smachac::step::NoObserver> class Machine {",
         "public:",
         f"  {alone} : Machine({nobody}) {{}}",
-        f"  {head} : {states}run_(observer, table_) {{}}",
+        f"  {head} : run_(observer, table_){states} {{}}",
         "",
-        "  /// Makes at most one transition in each active branch. `now` is the time in nanoseconds",
-        "  /// of a clock that never goes back. After an outcome or a failure, the next step starts",
-        "  /// the machine again, with its userdata as it is.",
+        "  /// Makes at most one transition in each active branch. `now` is the time in",
+        "  /// nanoseconds of a clock that never goes back. After an outcome or a failure, the",
+        "  /// next step starts the machine again, with its userdata as it is.",
         "  smachac::step::Result<Outcome> step(smachac::step::Nanoseconds now) {",
         "    run_.context.now = now;",
         "    if (Run::watches && states.idle()) {",
@@ -90,13 +90,14 @@ def machine_class(
         "  /// The failure of the last run that failed.",
         "  [[nodiscard]] const smachac::step::Failure &failure() const { return run_.failure; }",
         "",
-        f"  States states{'' if given else '{}'};",
-        "  Userdata userdata{};",
-        "",
         "private:",
         f"  using Run = smachac::step::Run<Observer, {nodes}>;",
         "",
-        "  Run run_;",
+        "  Run run_; // the first member: its address is that of the machine",
+        "",
+        "public:",
+        f"  States states{'' if given else '{}'};",
+        "  Userdata userdata{};",
         "};",
         f"static_assert(sizeof(Machine<>) <= {limit},",
         '              "the machine is larger than expected");',

@@ -46,6 +46,11 @@ inline constexpr Failed failed{};
 inline constexpr int RUNNING = -1;
 inline constexpr int FAILED = -2;
 
+/// The result of a container that runs or has failed.
+struct Unended {
+  int code;
+};
+
 /// The code of an outcome.
 template <class Outcome> constexpr int code(Outcome outcome) { return static_cast<int>(outcome); }
 
@@ -55,6 +60,8 @@ public:
   constexpr Result(Outcome outcome) : code_(step::code(outcome)) {} // NOLINT: `return Outcome::ok`
   constexpr Result(Running) : code_(RUNNING) {}                     // NOLINT: `return running`
   constexpr Result(Failed) : code_(FAILED) {}                       // NOLINT: `return failed`
+  /// The result of a state in it that has not ended.
+  constexpr Result(Unended unended) : code_(unended.code) {} // NOLINT
 
   [[nodiscard]] constexpr bool is_running() const { return code_ == RUNNING; }
   [[nodiscard]] constexpr bool has_failed() const { return code_ == FAILED; }
@@ -262,17 +269,23 @@ public:
     }
     return with;
   }
-  /// The end of a container without an outcome: a state has failed, or has ended with none of its
-  /// outcomes.
-  template <class State> Failed fail(State &active, std::size_t node, int result) {
-    active = State::none_;
-    if (result != FAILED) {
-      report(node, "ended without an outcome");
+  /// The result of a container whose state has not ended: it runs, or has failed with the state.
+  template <class State> Unended unended(State &active, int result) {
+    if (result == FAILED) {
+      active = State::none_;
     }
+    return {result};
+  }
+  /// The failure of a state that has ended with none of its outcomes.
+  template <class State>
+  [[gnu::cold, gnu::noinline]] Failed invalid(State &active, std::size_t node) {
+    active = State::none_;
+    report(node, "ended without an outcome");
     return failed;
   }
   /// The failure of an outcome that leads nowhere.
-  template <class State> Failed undeclared(State &active, std::size_t node) {
+  template <class State>
+  [[gnu::cold, gnu::noinline]] Failed undeclared(State &active, std::size_t node) {
     active = State::none_;
     report(node, "ended with an outcome that leads nowhere");
     return failed;
@@ -331,14 +344,17 @@ public:
   }
   /// The end of a step of a state: its failure or its exit. Returns the code of the result.
   int stepped(std::size_t node, int result) {
-    if (result == RUNNING) {
-      context.first = false;
-    } else if (result == FAILED) {
-      report(node, context.message());
-    } else {
+    if (result >= 0) {
       send(Event::Kind::exit, node, result);
+      return result;
     }
-    return result;
+    if (result != RUNNING) {
+      return failed_leaf(node);
+    }
+    if (context.first) { // a store that most steps need not make
+      context.first = false;
+    }
+    return RUNNING;
   }
   /// The failure of a state that becomes its outcome.
   void caught(std::size_t node, int result) { send(Event::Kind::exit, node, result); }
@@ -364,11 +380,7 @@ public:
   }
   /// The result of a step; a failure if the state has gone over the bound of an output.
   template <class T> int within_bound(int result, Key<T> &key, const char *name) {
-    if (key.went_over()) {
-      context.fail("a value beyond its bound", name);
-      return FAILED;
-    }
-    return result;
+    return key.is_over() ? over(key, name) : result;
   }
 
   // Writes
@@ -437,6 +449,15 @@ private:
     } else {
       recall(container);
     }
+  }
+  template <class T> [[gnu::cold, gnu::noinline]] int over(Key<T> &key, const char *name) {
+    key.went_over();
+    context.fail("a value beyond its bound", name);
+    return FAILED;
+  }
+  [[gnu::cold, gnu::noinline]] int failed_leaf(std::size_t node) {
+    report(node, context.message());
+    return FAILED;
   }
   [[gnu::cold, gnu::noinline]] void report(std::size_t node, const char *message) {
     failure = {table_, node, message, context.key()};

@@ -100,6 +100,7 @@ public:
   }
   /// Whether a text beyond the bound was assigned since the last call.
   bool went_over() { return std::exchange(over_, false); }
+  [[nodiscard]] bool is_over() const { return over_; }
 
 protected:
   Text(char *data, std::size_t capacity)
@@ -194,6 +195,7 @@ public:
   }
   /// Whether an item beyond the bound was added since the last call.
   bool went_over() { return std::exchange(over_, false); }
+  [[nodiscard]] bool is_over() const { return over_; }
 
 protected:
   List(T *data, std::size_t capacity)
@@ -496,13 +498,6 @@ template <class K> [[nodiscard]] const auto &need(Fault &fault, const K &key, co
 /// The value of a key as an optional; empty if the key is unset.
 template <class Optional, class K> [[nodiscard]] Optional maybe(Fault &fault, const K &key) {
   return key.set() ? convert<Optional>(fault, key.get()) : Optional();
-}
-
-/// A fault if a state has gone over the bound of an output.
-template <class K> void within_bound(Fault &fault, K &key, const char *name) {
-  if (key.went_over()) {
-    fault.fail("a value beyond its bound", name);
-  }
 }
 
 // The operations of Python
