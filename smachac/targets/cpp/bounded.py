@@ -10,7 +10,7 @@ The types in the second column exist only here. Other types are the same in both
 
 from __future__ import annotations
 
-from smachac.ir.types import Type
+from smachac.ir.types import Type, bound_of
 from smachac.records import dataclass
 from smachac.targets.cpp.types import STR, UnportableError, plain
 
@@ -29,7 +29,7 @@ class Bounds:
 def bounded(type_: Type, bounds: Bounds) -> Type:
     """The storage of a type of the script in a stepped machine. Raises UnportableError for a type
     without a bound, and for types that need the heap."""
-    own = _own_bound(type_)
+    own = bound_of(type_)
     match type_.name, type_.args:
         case "str", _:
             return Type("text", (_bound(type_, own or bounds.text, "str<=32"),))
@@ -59,12 +59,6 @@ def bounded(type_: Type, bounds: Bounds) -> Type:
 
 
 _OTHER = "declare a type with a size that is known, such as `float[7]` or `list[Pose]<=8`"
-
-
-def _own_bound(type_: Type) -> int:
-    """The bound in the notation of a type; 0 without one."""
-    last = type_.args[-1] if type_.args else 0
-    return last if type_.name in ("str", "list") and isinstance(last, int) else 0
 
 
 def _bound(type_: Type, bound: int, example: str) -> int:

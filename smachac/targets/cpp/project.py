@@ -27,10 +27,21 @@ OPTIONS = {
 PROGRAM = "smachac/program.hpp"
 ARM = "smachac/arm.hpp"
 
-HEADERS = ("smachac/operations.hpp", "smachac/values.hpp", "smachac/smachac.hpp")
+HEADERS = (
+    "smachac/operations.hpp",
+    "smachac/values.hpp",
+    "smachac/class_checks.hpp",
+    "smachac/smachac.hpp",
+)
 """The headers of smachac that every machine includes."""
 
-STEP_HEADERS = ("smachac/operations.hpp", "smachac/step_values.hpp", "smachac/step.hpp")
+STEP_HEADERS = (
+    "smachac/operations.hpp",
+    "smachac/step_values.hpp",
+    "smachac/class_checks.hpp",
+    "smachac/step.hpp",
+    "smachac/step_trace.hpp",
+)
 """The headers of smachac that every stepped machine includes."""
 
 OTHER_HEADERS = (ARM, PROGRAM)

@@ -281,7 +281,7 @@ def _transition(plan: StepPlan, child: Node, outcome: str, code: str) -> Lines:
     number = plan.number_of(child)
     edge = next((edge for edge in child.transitions if edge.outcome == outcome), None)
     if edge is None:
-        return [f"return run.undeclared({ACTIVE}, {number});"]
+        return [f"return run.undeclared({ACTIVE}, {plan.number}, {number});"]
     if leads_to_child(edge, plan.container.names):
         target = next(each for each in plan.node.children if each.name == edge.target)
         to = f"State::{identifier(target.name)}, {plan.number}, {number}, {code}"
@@ -310,12 +310,12 @@ def _result_switch(plan: StepPlan, child: Node, outcome: Callable[[str, str], Li
     return [
         "if (result < 0) {",
         *indented(caught),
-        f"  return run.unended({ACTIVE}, result);",
+        f"  return run.unended({ACTIVE}, {plan.number}, {number}, result);",
         "}",
         "switch (result) {",
         *cases,
         "default:",
-        f"  return run.invalid({ACTIVE}, {number});",
+        f"  return run.invalid({ACTIVE}, {plan.number}, {number});",
         "}",
     ]
 

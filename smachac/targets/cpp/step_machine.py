@@ -27,7 +27,8 @@ def node_table(machine: Machine, paths: Mapping[str, str]) -> Lines:
         full = cpp_literal(path) if path in paths else "nullptr"
         around = numbers.get(path.rpartition("/")[0], 0)
         shown = cpp_literal(paths.get(path, path))
-        rows.append(f"    {{{shown}, {full}, {cpp_literal(place(node))}, {names}, {around}}},")
+        outcomes = f"{names}, {len(all_results(node))}"
+        rows.append(f"    {{{shown}, {full}, {cpp_literal(place(node))}, {outcomes}, {around}}},")
     return [
         *(
             f"inline constexpr const char *{name}[] = {{{', '.join(map(cpp_literal, names))}}};"

@@ -192,7 +192,8 @@ def _input(scope: ContainerScope, key: Key, outer: str) -> str:
 def _bounded_input(scope: ContainerScope, key: Key, outer: str, spelt: str) -> str:
     """The text of an input in a stepped machine."""
     given, wanted = scope.key(outer), plain(key.type)
-    if loose(given) == wanted:
+    maybe = wanted.name == "optional" and outer not in scope.sure
+    if loose(given) == wanted and not maybe:
         return spelt
     if wanted.name == "optional":
         stored = given if given.name == "optional" else Type("optional", (given,))

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "smachac/class_checks.hpp"
 #include "smachac/step_values.hpp"
 
 namespace smachac {
@@ -111,13 +112,14 @@ private:
 // Events
 
 /// A state in the tables of a machine: its path in the script, the path in the machine where it is
-/// another one, otherwise null; its file and line; the names of its outcomes; the number of the
-/// container around it.
+/// another one, otherwise null; its file and line; the names of its outcomes and their number; the
+/// number of the container around it.
 struct Node {
   const char *path;
   const char *in_machine;
   const char *src;
   const char *const *outcomes;
+  std::uint16_t count;
   std::uint16_t around;
 
   [[nodiscard]] const char *full() const { return in_machine != nullptr ? in_machine : path; }
@@ -136,6 +138,7 @@ struct Event {
   Kind kind;
   const Node *nodes;         ///< the table of the machine
   std::size_t node;          ///< the state: its index in the table
+  Nanoseconds now;           ///< the time of the step
   int result = -1;           ///< of exit, transition and finish: the index of the outcome
   int to = -1;               ///< of transition: the index of the next state
   int with = -1;             ///< of transition: the index of the outcome of the container that ends
@@ -270,25 +273,23 @@ public:
     return with;
   }
   /// The result of a container whose state has not ended: it runs, or has failed with the state.
-  template <class State> Unended unended(State &active, int result) {
-    if (result == FAILED) {
-      active = State::none_;
-    }
-    return {result};
+  template <class State>
+  Unended unended(State &active, std::size_t container, std::size_t from, int result) {
+    return result == RUNNING ? Unended{RUNNING} : fail(active, container, from);
   }
   /// The failure of a state that has ended with none of its outcomes.
   template <class State>
-  [[gnu::cold, gnu::noinline]] Failed invalid(State &active, std::size_t node) {
-    active = State::none_;
-    report(node, "ended without an outcome");
-    return failed;
+  [[gnu::cold, gnu::noinline]] Unended invalid(State &active, std::size_t container,
+                                               std::size_t from) {
+    report(from, "ended without an outcome");
+    return fail(active, container, from);
   }
   /// The failure of an outcome that leads nowhere.
   template <class State>
-  [[gnu::cold, gnu::noinline]] Failed undeclared(State &active, std::size_t node) {
-    active = State::none_;
-    report(node, "ended with an outcome that leads nowhere");
-    return failed;
+  [[gnu::cold, gnu::noinline]] Unended undeclared(State &active, std::size_t container,
+                                                  std::size_t from) {
+    report(from, "ended with an outcome that leads nowhere");
+    return fail(active, container, from);
   }
   /// The failure of a container itself.
   Failed give_up(std::size_t node) {
@@ -345,7 +346,9 @@ public:
   /// The end of a step of a state: its failure or its exit. Returns the code of the result.
   int stepped(std::size_t node, int result) {
     if (result >= 0) {
-      send(Event::Kind::exit, node, result);
+      if (watches && result < table_[node].count) {
+        send(Event::Kind::exit, node, result);
+      }
       return result;
     }
     if (result != RUNNING) {
@@ -407,7 +410,7 @@ public:
   void wrote(std::size_t node, const char *name, Key<T> &key, bool secret = false) {
     if constexpr (writes) {
       if (key.fresh()) {
-        Event event{Event::Kind::write, table_, node};
+        Event event{Event::Kind::write, table_, node, context.now};
         event.key = name;
         event.value = {secret ? nullptr : &key.get(), [](const void *object, const Sink &sink) {
                          write_json(sink,
@@ -428,7 +431,7 @@ public:
   /// Sends an event to the observer; nothing without one.
   void send(Event::Kind kind, std::size_t node, int result = -1, int to = -1, int with = -1) {
     if constexpr (watches) {
-      Event event{kind, table_, node};
+      Event event{kind, table_, node, context.now};
       event.result = result;
       event.to = to;
       event.with = with;
@@ -459,10 +462,21 @@ private:
     report(node, context.message());
     return FAILED;
   }
+  /// The end of a container with a failure; its request counts as answered if its last state has
+  /// none.
+  template <class State>
+  [[gnu::cold, gnu::noinline]] Unended fail(State &active, std::size_t container,
+                                            std::size_t from) {
+    active = State::none_;
+    if (asked(container) && !asked(from)) {
+      recall(container);
+    }
+    return {FAILED};
+  }
   [[gnu::cold, gnu::noinline]] void report(std::size_t node, const char *message) {
     failure = {table_, node, message, context.key()};
     if constexpr (watches) {
-      Event event{Event::Kind::error, table_, node};
+      Event event{Event::Kind::error, table_, node, context.now};
       event.message = message;
       event.key = context.key();
       observer_->on(event);

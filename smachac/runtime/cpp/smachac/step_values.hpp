@@ -173,7 +173,7 @@ public:
   }
   void pop_back() { --size_; }
   /// Sets the item at an index below the capacity; `resize` makes it an item of the list.
-  void set(std::size_t i, const T &item) { data_[i] = item; }
+  void replace(std::size_t i, const T &item) { data_[i] = item; }
   void resize(std::size_t size) { size_ = static_cast<std::uint16_t>(size); }
   void clear() { size_ = 0; }
   List &operator=(const List &list) {
@@ -303,7 +303,7 @@ template <class To, class From> bool put(Fault &fault, To &to, const From &from)
     for (std::size_t i = 0; i < size; ++i) {
       typename To::value_type found{};
       put(fault, found, from[i]);
-      to.set(i, found);
+      to.replace(i, found);
     }
     to.resize(size);
   } else {
@@ -627,8 +627,8 @@ inline void write_number(const Sink &sink, std::int64_t value) {
   sink({buffer + at, sizeof buffer - at});
 }
 
-/// Writes a text as JSON. Characters beyond ASCII are escaped.
-inline void write_text(const Sink &sink, std::string_view value) {
+/// Writes a text as it is between the quotes of JSON. Characters beyond ASCII are escaped.
+inline void write_escaped(const Sink &sink, std::string_view value) {
   constexpr std::string_view special = "\"\\\n\r\t\b\f", letters = "\"\\nrtbf";
   constexpr char digits[] = "0123456789abcdef";
   const auto unit = [&](std::uint32_t code) {
@@ -640,7 +640,6 @@ inline void write_text(const Sink &sink, std::string_view value) {
                            digits[code & 15U]};
     sink({escape, sizeof escape});
   };
-  sink("\"");
   for (std::size_t place = 0; place < value.size();) {
     const std::size_t begin = place;
     const std::uint32_t point = smachac::detail::code_point(value, place);
@@ -657,6 +656,12 @@ inline void write_text(const Sink &sink, std::string_view value) {
       sink(value.substr(begin, place - begin));
     }
   }
+}
+
+/// Writes a text as JSON.
+inline void write_text(const Sink &sink, std::string_view value) {
+  sink("\"");
+  write_escaped(sink, value);
   sink("\"");
 }
 
