@@ -72,8 +72,7 @@ def part(case: Json, name: str, *, stepped: bool = False) -> Part | list[str]:
 
 def _part(case: Json, name: str, typed: bool, bounds: Bounds | None) -> Part | list[str]:
     leaves: dict[str, Leaf] = {}
-    inner = _renamed(declared(case), "", name, typed, leaves)
-    machine = Machine(root=_around(case, name, inner), source="vectors")
+    machine = _machine(case, name, typed, leaves)
     scopes = plan(machine, bounds).scopes
     if not typed:
         leaves = {
@@ -125,6 +124,16 @@ def _part(case: Json, name: str, typed: bool, bounds: Bounds | None) -> Part | l
         header=header,
         call=call,
     )
+
+
+def _machine(case: Json, name: str, typed: bool, leaves: dict[str, Leaf]) -> Machine:
+    inner = _renamed(declared(case), "", name, typed, leaves)
+    return Machine(root=_around(case, name, inner), source="vectors")
+
+
+def typed_machine(case: Json, name: str) -> Machine:
+    """The machine of a case whose keys have the types of their names."""
+    return _machine(case, name, True, {})
 
 
 def declared(case: Json) -> Any:

@@ -17,11 +17,11 @@ from smachac.records import dataclass
 from smachac.targets.cpp.bounded import loose
 from smachac.targets.cpp.builtin_states import enumeration
 from smachac.targets.cpp.identifiers import identifier
-from smachac.targets.cpp.plan import ContainerScope, place, scope_name
+from smachac.targets.cpp.plan import ContainerScope, Plan, place, scope_name
 from smachac.targets.cpp.types import cpp_literal, cpp_value, script_data
 from smachac.targets.cpp.user_classes import interface_hash, step_field_type
 from smachac.verify.players.cpp_program import CppLeaf, Program
-from smachac.verify.test_case import OPAQUE
+from smachac.verify.test_case import OPAQUE, TestCase
 
 HOSTED = """
 #include <cstdio>
@@ -32,42 +32,42 @@ void verify::print(const char *text, std::size_t size) { std::fwrite(text, 1, si
 
 
 class StepProgram(Program):
-    """A stepped machine as a program for some test cases. `output` is the text with the function
-    that prints."""
+    """A stepped machine as a program for some test cases. `name` is that of its namespaces and of
+    the function that runs it."""
 
-    output = HOSTED
+    def __init__(self, planned: Plan, cases: Sequence[TestCase], name: str = "machine") -> None:
+        self.name = name
+        super().__init__(planned, cases)
 
     def _leaf(self, number: int, path: str, leaf: Leaf, scope: ContainerScope) -> CppLeaf:
-        return _StepLeaf(number=number, path=path, leaf=leaf, scope=scope)
+        return _StepLeaf(number=number, path=path, leaf=leaf, scope=scope, space=self.name)
 
     def script(self) -> str:
         return ""
 
     def text(self) -> str:
-        play = resources.files("smachac.verify").joinpath("play_step.hpp").read_text("utf-8")
-        most = 1 + max((leaf.number for leaf in self._leaves.values()), default=0)
-        leaves = [leaf.text(self._reads) for leaf in self._leaves.values()]
-        machines = [
-            f"namespace stage{number} {{\n{self._machine(live)[0]}\n}}"
-            for number, live in enumerate(self._stages)
-        ]
-        return "\n".join(
-            [
-                f"#define MOST_LEAVES {most}",
-                play,
-                self.output,
-                "namespace verify {",
-                *leaves,
-                "} // namespace verify",
-                *machines,
-                *self._main(),
-            ]
-        )
+        return program_text([self], HOSTED)
 
-    def _main(self) -> Iterator[str]:
-        scope = self._plan.scopes[self._plan.machine.root.name]
+    @property
+    def most_leaves(self) -> int:
+        """A number larger than that of every leaf."""
+        return 1 + max((leaf.number for leaf in self._leaves.values()), default=0)
+
+    def parts(self) -> Iterator[str]:
+        """The code of the leaves and machines, and the function that runs all test cases."""
+        yield f"namespace verify::{self.name} {{"
+        yield from (leaf.text(self._reads) for leaf in self._leaves.values())
+        yield "}"
+        for number, live in enumerate(self._stages):
+            yield f"namespace {self.name}_{number} {{\n{self._machine(live)[0]}\n}}"
+        yield f"namespace verify::{self.name} {{"
         yield from self._script()
-        yield "int main() {"
+        yield from self._run()
+        yield "}"
+
+    def _run(self) -> Iterator[str]:
+        scope = self._plan.scopes[self._plan.machine.root.name]
+        yield "inline void run() {"
         yield "  const auto given = [](auto &ud, auto &fault) {"
         yield "    static_cast<void>(ud), static_cast<void>(fault);"
         inputs = {key: value for case in self._test_cases for key, value in case.userdata.items()}
@@ -76,19 +76,17 @@ class StepProgram(Program):
                 text = cpp_value(script_data(value), scope.keys[key])
                 yield f"    ud.{identifier(key)}.hold(fault, {cpp_literal(key)}, {text});"
         yield "  };"
-        yield "  for (const verify::TestCase &test_case : verify::test_cases) {"
+        yield "  for (const TestCase &test_case : test_cases) {"
         for number in range(len(self._stages)):
-            machine = f"stage{number}::{scope_name(scope.path)}::Machine"
+            machine = f"::{self.name}_{number}::{scope_name(scope.path)}::Machine"
             yield f"    if (test_case.stage == {number}) {{"
-            yield f"      verify::play<{machine}<smachac::step::TraceWriter>>(test_case, given);"
+            yield f"      play<{machine}<smachac::step::TraceWriter>>(test_case, given);"
             yield "    }"
         yield "  }"
-        yield "  return 0;"
         yield "}"
 
     def _script(self) -> Iterator[str]:
         """The tables of the test cases."""
-        yield "namespace verify {"
         table = []
         for at, case in enumerate(self._test_cases):
             rows = []
@@ -103,12 +101,32 @@ class StepProgram(Program):
             stage, stopped = self._stages.index(case.live), str(case.stopped).lower()
             table.append(f"{{{stage}, {case.most}, {stopped}, {len(rows)}, rows_{at}}}")
         yield f"constexpr TestCase test_cases[] = {{{', '.join(table)}}};"
-        yield "} // namespace verify"
+
+
+def program_text(programs: Sequence[StepProgram], output: str) -> str:
+    """A program that runs all test cases of several machines, one after the other. `output` is the
+    text with the function that prints."""
+    play = resources.files("smachac.verify").joinpath("play_step.hpp").read_text("utf-8")
+    most = max(program.most_leaves for program in programs)
+    return "\n".join(
+        [
+            f"#define MOST_LEAVES {most}",
+            play,
+            output,
+            *(part for program in programs for part in program.parts()),
+            "int main() {",
+            *(f"  verify::{program.name}::run();" for program in programs),
+            "  return 0;",
+            "}",
+        ]
+    )
 
 
 @dataclass(slots=True, kw_only=True)
 class _StepLeaf(CppLeaf):
-    """A leaf of a stepped machine that performs test cases."""
+    """A leaf of a stepped machine that performs test cases; its class is in a namespace."""
+
+    space: str
 
     def keys(self) -> dict[str, dict[str, Type]]:
         """The inputs and outputs that exist in C++, with their types and bounds."""
@@ -126,7 +144,7 @@ class _StepLeaf(CppLeaf):
         return found
 
     def state_type(self) -> StateType:
-        header = {"header": "smachac/step.hpp", "class": f"verify::{self.type}"}
+        header = {"header": "smachac/step.hpp", "class": f"verify::{self.space}::{self.type}"}
         return replace(CppLeaf.state_type(self), classes={"cpp": header})
 
     def text(self, reads: Mapping[str, Sequence[str]]) -> str:
@@ -139,7 +157,8 @@ class _StepLeaf(CppLeaf):
             for part, types in zip(("In", "Out"), stored.values(), strict=True)
         )
         parameters = ["smachac::step::Context &context"]
-        parameters += ["In in"] * bool(ins) + ["Out out"] * bool(outs)
+        parameters += ["[[maybe_unused]] In in"] * bool(ins)
+        parameters += ["[[maybe_unused]] Out out"] * bool(outs)
         place_ = f"{cpp_literal(self.path)}, {cpp_literal(place(self.leaf))}"
         return "\n".join(
             [
