@@ -38,8 +38,8 @@ class ContainerScope:
 
     `keys` are the types of its keys by name. `sure` are the keys that hold a value whenever one of
     its states starts. `shared` are the keys that have no object of their own: they are those of the
-    container around. `secret` are the keys whose values traces hide. In a stepped machine, the
-    types of keys are those of their storage (bounded.py).
+    container around. `secret` are the keys whose values traces hide. `bounds` are those of a
+    stepped machine, in which the types of keys are those of their storage (bounded.py).
     """
 
     path: str
@@ -48,7 +48,11 @@ class ContainerScope:
     sure: frozenset[str]
     shared: frozenset[str] = frozenset()
     secret: AbstractSet[str] = frozenset()
-    dialect: Dialect = BLOCKING
+    bounds: Bounds | None = None
+
+    @property
+    def dialect(self) -> Dialect:
+        return BLOCKING if self.bounds is None else STEPPED
 
     def key(self, name: str) -> Type:
         """The type of a key. Raises UnportableError where the container cannot have it."""
@@ -137,7 +141,7 @@ def plan(machine: Machine, bounds: Bounds | None = None) -> Plan:
             keys=keys.get(path, {}),
             sure=_sure(node, around),
             secret=secret.get(path, frozenset()),
-            dialect=found.dialect,
+            bounds=bounds,
         )
         written = _written(node, machine.state_types)
         scope = replace(scope, shared=_shared(scope, around, written, path in catching))

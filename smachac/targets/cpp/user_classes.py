@@ -113,7 +113,9 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope, number: int =
         return ", true" if names[key.name] in scope.secret else ""
 
     made = [*map(argument, code.parameters), *_variables(type_, leaf)]
-    if scope.dialect.stepped:
+    if scope.bounds is not None:
+        for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
+            step_fields(part, keys, scope.bounds)  # raises the reason
         return LeafCode(
             type=code.name,
             call=_step(code, leaf, scope, inputs, outs, number),
@@ -267,6 +269,12 @@ def interface_hash(type_: StateType) -> str:
     return f"0x{zlib.crc32(chr(10).join(told).encode()):08x}U"
 
 
+def step_fields(part: str, keys: Iterable[Key], bounds: Bounds) -> dict[str, str]:
+    """The fields of `In` or `Out` in a stepped machine and their types. Raises UnportableError for
+    a type without a bound."""
+    return {identifier(key.name): step_field_type(part, _stored(key.type, bounds)) for key in keys}
+
+
 def _stored(type_: Type, bounds: Bounds) -> Type:
     """The storage of the type of a key in an interface. The bound of a text or list itself is that
     of the key in the script: here it has none."""
@@ -289,12 +297,10 @@ def assertions(code: ClassCode, bounds: Bounds | None = None) -> list[str]:
         f'smachac_interface");',
     ]
     for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
-        wanted = {
-            identifier(key.name): field_type(part, key.type)
-            if bounds is None
-            else step_field_type(part, _stored(key.type, bounds))
-            for key in keys
-        }
+        if bounds is None:
+            wanted = {identifier(key.name): field_type(part, key.type) for key in keys}
+        else:
+            wanted = step_fields(part, keys, bounds)
         for field, text in wanted.items():
             lines += [
                 f"static_assert(std::is_same_v<decltype({name}::{part}::{field}), {text}>,",
