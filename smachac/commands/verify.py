@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from smachac.diagnostics.source import Source
     from smachac.frontend.loader import Library
     from smachac.ir.nodes import Checked
-    from smachac.targets.cpp.bounded import Bounds
+    from smachac.ir.types import Bounds
     from smachac.verify.test_case import Player
 
 EXAMPLES = """\
@@ -91,15 +91,16 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
 def verify_command(arguments: Namespace) -> int:
     """Compare each target with the interpreter; the exit code."""
     from smachac.driver import analyse_script
+    from smachac.targets.cpp.project import project
     from smachac.verify import verify
     from smachac.verify.result import render_json, render_text
     from smachac.verify.test_case import UnplayableError
 
     if (wrong := _wrong_usage(arguments)) is not None:
         return wrong
-    bounds = _bounds(arguments.option)
-    if isinstance(bounds, int):
-        return bounds
+    options = _options(arguments.option)
+    if isinstance(options, int):
+        return options
     paths = {"python": arguments.program, "cpp": arguments.header}
     files = {target: path for target, path in paths.items() if path is not None}
     targets = list(dict.fromkeys([*(arguments.targets or ()), *files])) or ["python"]
@@ -108,6 +109,7 @@ def verify_command(arguments: Namespace) -> int:
     sources = _read(files, report)
     players: dict[str, Player] = {}
     if machine is not None and library is not None and len(sources) == len(files):
+        bounds = project(options, library.bounds).bounds
         players = _players(arguments.script, targets, sources, machine, library, report, bounds)
     print_report(without_notes(report), arguments, sys.stderr)
     if machine is None or len(players) < len(targets):
@@ -147,11 +149,8 @@ def _wrong_usage(arguments: Namespace) -> int | None:
     return None
 
 
-def _bounds(texts: Sequence[str]) -> Bounds | int | None:
-    """The bounds of a stepped machine, from the options of the target cpp; None for a blocking one;
-    the exit code after an error of usage."""
-    if not texts:
-        return None
+def _options(texts: Sequence[str]) -> dict[str, str] | int:
+    """The options of the target cpp; the exit code after an error of usage."""
     from smachac.targets import OptionError
     from smachac.targets.cpp import TARGET
     from smachac.targets.cpp.project import project
@@ -160,9 +159,10 @@ def _bounds(texts: Sequence[str]) -> Bounds | int | None:
     if isinstance(options, int):
         return options
     try:
-        return project(options).bounds
+        project(options)
     except OptionError as error:
         return usage(f"--option {error}")
+    return options
 
 
 def _read(files: Mapping[str, Path], report: Report) -> dict[str, Source]:

@@ -435,6 +435,7 @@ def disk_library(
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,
         ros=project.ros if ros is None else ros,
+        bounds=project.bounds,
         policy=project.policy,
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),

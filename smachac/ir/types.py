@@ -105,6 +105,18 @@ def _complete(type_: Type) -> Type:
     return type_
 
 
+class Bounds(NamedTuple):
+    """The bounds of texts (bytes of UTF-8) and lists (items) that have none of their own; 0: none.
+    Only stepped machines in C++ need them."""
+
+    text: int = 0
+    list: int = 0
+
+
+MOST_BOUND = 65535
+"""The largest bound: sizes have 16 bits."""
+
+
 def bound_of(type_: Type) -> int | None:
     """The bound of a text (bytes of UTF-8) or a list (items), if its type has one."""
     last = type_.args[-1] if type_.args and type_.name in ("str", "list") else None

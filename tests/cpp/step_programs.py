@@ -14,7 +14,7 @@ from smachac.interpreter.scenario import Scenario, ScenarioStep, scenario_behavi
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Concurrence, Leaf, Machine
 from smachac.ir.traversal import outcome_names, walk
-from smachac.targets.cpp.bounded import Bounds
+from smachac.ir.types import Bounds
 from smachac.targets.cpp.plan import plan
 from smachac.verify.generate import PathGenerator
 from smachac.verify.paths import Path

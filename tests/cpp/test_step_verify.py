@@ -11,7 +11,7 @@ import pytest
 
 from smachac.commands.cli import main
 from smachac.driver import analyse_script
-from smachac.targets.cpp.bounded import Bounds
+from smachac.ir.types import Bounds
 from smachac.verify.players.cpp_step_program import HOSTED
 from tests.cpp.compilers import BARE, SANITIZED, compilers, last_with
 from tests.cpp.step_programs import Played, disagreements, played, text

@@ -24,9 +24,9 @@ from smachac.interpreter.userdata import UserdataError
 from smachac.ir import nodes
 from smachac.ir.nodes import Checked, Key, Leaf, Machine, Node, Outcome, Preset, StateMachine
 from smachac.ir.traversal import outcome_names, remapping
-from smachac.ir.types import ANY, Type
+from smachac.ir.types import ANY, Bounds, Type
 from smachac.targets.cpp import TARGET
-from smachac.targets.cpp.bounded import Bounds, bounded, loose
+from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.containers import results
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import member, plan

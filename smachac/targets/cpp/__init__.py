@@ -27,7 +27,7 @@ from smachac.targets.cpp.user_classes import class_code, left_to_scripts
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, that of its robot, and the files of the options."""
-    wanted = project(context.options)
+    wanted = project(context.options, context.library.bounds)
     planned = plan(machine, wanted.bounds)
     refuse_other_methods(planned, context.library)
     header = header_of(planned)

@@ -10,20 +10,8 @@ The types in the second column exist only here. Other types are the same in both
 
 from __future__ import annotations
 
-from smachac.ir.types import Type, bound_of
-from smachac.records import dataclass
+from smachac.ir.types import MOST_BOUND, Bounds, Type, bound_of
 from smachac.targets.cpp.types import STR, UnportableError, plain
-
-MOST = 65535
-"""The largest bound: sizes have 16 bits."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bounds:
-    """The bounds of texts (bytes) and lists (items) that have none of their own; 0: no default."""
-
-    text: int = 0
-    list: int = 0
 
 
 def bounded(type_: Type, bounds: Bounds) -> Type:
@@ -67,8 +55,8 @@ def _bound(type_: Type, bound: int, example: str) -> int:
         help_ = f"write `{example}`, or {setting}" if example else f"write {setting}"
         message = f"`{type_}` has no bound, and a stepped machine has no heap"
         raise UnportableError(message, help=help_)
-    if bound > MOST:
-        raise UnportableError(f"the bound of `{type_}` is larger than {MOST}")
+    if bound > MOST_BOUND:
+        raise UnportableError(f"the bound of `{type_}` is larger than {MOST_BOUND}")
     return bound
 
 

@@ -15,10 +15,10 @@ from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, No
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import OuterNames, containers, outcome_names, remapping
-from smachac.ir.types import ANY, Type
+from smachac.ir.types import ANY, Bounds, Type
 from smachac.records import dataclass, field
 from smachac.targets import comment
-from smachac.targets.cpp.bounded import Bounds, bounded, loose
+from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.dialect import BLOCKING, STEPPED, Dialect
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.identifiers import clashes, identifier, outermost

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
+from smachac.ir.types import MOST_BOUND, Bounds
 from smachac.records import dataclass
 from smachac.targets import BuildContext, Files, OptionError, made_by, stem
-from smachac.targets.cpp.bounded import MOST, Bounds
 from smachac.targets.cpp.header import Header
 from smachac.targets.cpp.plan import scope_name
 from smachac.targets.cpp.user_classes import class_code
@@ -63,8 +63,12 @@ class Project:
         return f"include/{self.package}/{file}" if self.package else file
 
 
-def project(options: Mapping[str, str]) -> Project:
-    """The project of the options. Raises OptionError."""
+NO_BOUNDS = Bounds()
+
+
+def project(options: Mapping[str, str], defaults: Bounds = NO_BOUNDS) -> Project:
+    """The project of the options; `defaults` are the bounds of the project file. Raises
+    OptionError."""
     package = options.get("package", "")
     if package and not re.fullmatch(r"[a-z][a-z0-9_]*", package):
         raise OptionError(f"`package` must match `[a-z][a-z0-9_]*`, not `{package}`")
@@ -74,7 +78,9 @@ def project(options: Mapping[str, str]) -> Project:
     main = _truth(options, "main")
     if main and mode == "step":
         raise OptionError("`main` is not possible with `mode=step`: the caller has the loop")
-    bounds = Bounds(text=_bound(options, "text"), list=_bound(options, "list"))
+    bounds = Bounds(
+        text=_bound(options, "text") or defaults.text, list=_bound(options, "list") or defaults.list
+    )
     return Project(
         main=main,
         cmake=_truth(options, "cmake"),
@@ -86,8 +92,8 @@ def project(options: Mapping[str, str]) -> Project:
 def _bound(options: Mapping[str, str], name: str) -> int:
     """The bound of texts or lists without one; 0 without the option."""
     value = options.get(name, "0")
-    if not (value.isascii() and value.isdecimal() and len(value) < 6 and int(value) <= MOST):
-        raise OptionError(f"`{name}` must be a number from 1 to {MOST}, not `{value}`")
+    if not (value.isascii() and value.isdecimal() and len(value) < 6 and int(value) <= MOST_BOUND):
+        raise OptionError(f"`{name}` must be a number from 1 to {MOST_BOUND}, not `{value}`")
     return int(value)
 
 

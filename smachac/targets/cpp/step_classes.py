@@ -5,7 +5,7 @@ from __future__ import annotations
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Leaf
 from smachac.ir.traversal import walk
-from smachac.targets.cpp.bounded import Bounds
+from smachac.ir.types import Bounds
 from smachac.targets.cpp.declared_interface import class_method
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import Plan
@@ -28,9 +28,7 @@ def refuse_other_methods(plan: Plan, library: Library) -> None:
             continue
         short = code.name.removeprefix("::")
         if plan.bounds is not None and method == "execute":
-            text = (
-                f"`execute` of `{short}` blocks, and the class has no `step`"
-            )
+            text = f"`execute` of `{short}` blocks, and the class has no `step`"
             error = UnportableError(text, help=f"write `{_stub(code, plan.bounds)}`")
             plan.refuse(leaf.span, error, leaf.name, short)
         elif plan.bounds is None and method == "step":

@@ -24,9 +24,9 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import ends_preempted, leads_to_child, walk
-from smachac.ir.types import Type
+from smachac.ir.types import Bounds, Type
 from smachac.records import dataclass
-from smachac.targets.cpp.bounded import Bounds, is_loose, loose, most_bytes
+from smachac.targets.cpp.bounded import is_loose, loose, most_bytes
 from smachac.targets.cpp.containers import (
     ContainerPlan,
     Lines,

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Sequence
 from smachac.frontend.text.unquoted import parameters
 from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED
-from smachac.ir.types import Type
+from smachac.ir.types import Bounds, Type
 from smachac.records import dataclass
-from smachac.targets.cpp.bounded import Bounds, bounded, loose
+from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.builtin_states import STOP, LeafCode
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, converts

@@ -18,7 +18,7 @@ from typing import IO, NamedTuple
 import smachac
 from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Machine
-from smachac.targets.cpp.bounded import Bounds
+from smachac.ir.types import Bounds
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.types import UnportableError
 from smachac.verify.players.cpp_program import Program
