@@ -42,9 +42,10 @@ class Library(UserCode):
     folders below that of the main script that have one of these files. The lists of folders and
     names are for messages. `policy` are the severities of the project, `bounds` the bounds of texts
     and lists. `parse` may return one tree for all scripts that share a text. `robot(file)` returns
-    a description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf, packages)` returns the path of a
-    mesh that a URDF file names (`find_mesh`); no mesh is opened. `expand(file, arguments,
-    packages)` returns the URDF text of a xacro file; it raises XacroError. `settings_read` is False
+    a description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
+    packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
+    `expand(file, arguments, packages)` returns the URDF text of a xacro file; it raises XacroError.
+    `settings_read` is False
     if the project file or its search folders could not be read.
     """
 

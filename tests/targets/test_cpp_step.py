@@ -73,7 +73,7 @@ states:
 """
 INTERFACE = """
 name: Grasp
-input_keys: {force: float, name: "str<=16"}
+input_keys: {force: float, part: "str<=16"}
 output_keys: {width: float}
 outcomes: {done: {}}
 code: {cpp: {header: my_robot/grasp.hpp, class: "my_robot::Grasp"}}
@@ -84,14 +84,14 @@ namespace my_robot {
 class Grasp {
 public:
   enum class Outcome { done };
-  struct In { double force; const std::string &name; };
+  struct In { double force; const std::string &part; };
   struct Out { smachac::Key<double> &width; };
   static constexpr std::uint32_t smachac_interface = NUMBER;
   Outcome execute(In in, Out out) { out.width = in.force; return Outcome::done; }
 };
 }
 """
-GIVEN = GRASP.replace("outcomes", "userdata: {force: 1.0, name: left}\noutcomes")
+GIVEN = GRASP.replace("outcomes", "userdata: {force: 1.0, part: left}\noutcomes")
 
 
 def with_class(text: str) -> dict[str, str]:
@@ -109,7 +109,7 @@ def test_a_class_that_blocks_is_a_finding_with_the_code_to_write() -> None:
     assert message.endswith("`execute` of `my_robot::Grasp` blocks, and the class has no `step`")
     assert line == 6
     assert help_ == (
-        "write `struct In { double force; std::string_view name; };"
+        "write `struct In { double force; std::string_view part; };"
         " struct Out { smachac::step::Key<double> &width; };"
         " smachac::step::Result<Outcome> step(smachac::step::Context &context, In in, Out out);`"
     )
@@ -122,7 +122,7 @@ namespace my_robot {
 class Grasp {
 public:
   enum class Outcome : std::uint8_t { done };
-  struct In { double force; std::string_view name; };
+  struct In { double force; std::string_view part; };
   struct Out { smachac::step::Key<double> &width; };
   static constexpr std::uint32_t smachac_interface = NUMBER;
   smachac::step::Result<Outcome> step(smachac::step::Context &context, In in, Out out) {
@@ -159,7 +159,7 @@ def test_a_stepped_class_in_a_blocking_machine() -> None:
 def test_other_types_without_a_bound(type_: str, words: str) -> None:
     interface = INTERFACE.replace('"str<=16"', f'"{type_}"')
     files = {"templates/Grasp.yml": interface}
-    script = GRASP.replace("outcomes", "input_keys: {force: float, name: any}\noutcomes")
+    script = GRASP.replace("outcomes", "input_keys: {force: float, part: any}\noutcomes")
     findings, _ = made(script, files)
     assert any(words in message for message, _, _ in findings)
 
