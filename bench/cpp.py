@@ -4,6 +4,7 @@
     python bench/cpp.py --scale 1000 10000           # compile a ring of so many states
     python bench/cpp.py --scale 10000 --containers 20    # the same in containers of 20 states
     python bench/cpp.py --step                       # stepped machines: instructions a step
+    python bench/cpp.py --flash                      # stepped machines on a Cortex-M4: bytes
 
 The machines and the loops (bench/cpp_machines) run the same bodies of states, which the optimiser
 does not see. CPU time, minimum of interleaved rounds; instructions are those of callgrind, where
@@ -175,6 +176,56 @@ def stepped(compiler: str) -> Iterator[str]:
             yield f"| {name} | {' | '.join([*cells, *(f'{each:.1f}' for each in waits)])} |"
 
 
+FLASH_ENTRY = """
+static {machine} machine;
+extern "C" bool entry(std::int64_t now) {{ return machine.step(now){running}; }}
+"""
+HAND = """
+#include <cstdint>
+namespace bench::by_hand {
+struct Data { std::int64_t now = 0, count = 0; };
+enum class Outcome : std::uint8_t { running, again, done };
+struct Hit { Outcome step(Data &data); };
+}
+"""
+"""The state and the data of a ring by hand, without those of other machines."""
+
+CORTEX = ("-mcpu=cortex-m4", "-mthumb", "-Os", "-ffreestanding", "-fno-exceptions", "-fno-rtti")
+SECTIONS = ("-fno-threadsafe-statics", "-ffunction-sections", "-fdata-sections")
+
+
+def flash() -> Iterator[str]:
+    """Lines of a table: flash and RAM of machines on a Cortex-M4, with the bodies of the states."""
+    yield "| Cortex-M4, -Os | flash by hand, bytes | smachac | ratio | RAM by hand | smachac |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for count in (5, 20, 100):
+        text, _ = header(machines.ring(count), OPTIONS)
+        by_hand = machines.stepped_ring_by_hand(count)
+        hand = HAND + by_hand + FLASH_ENTRY.format(machine="hand::Machine", running="")
+        own = text + FLASH_ENTRY.format(machine="sm::Machine<>", running=".is_running()")
+        sizes = [_sizes(each) for each in (hand, own)]
+        ratio = sizes[1][0] / sizes[0][0]
+        cells = [sizes[0][0], sizes[1][0], f"{ratio:.2f}", sizes[0][1], sizes[1][1]]
+        yield f"| ring of {count} | {' | '.join(map(str, cells))} |"
+
+
+def _sizes(text: str) -> tuple[int, int]:
+    """The bytes of flash and RAM that a machine adds."""
+    with tempfile.TemporaryDirectory() as folder:
+        unit = Path(folder) / "unit.cpp"
+        unit.write_text(text)
+        call = command("arm-none-eabi-g++", *CORTEX, *SECTIONS)
+        subprocess.run([*call, "-c", str(unit), "-o", f"{folder}/unit.o"], check=True)
+        link = ["arm-none-eabi-g++", *CORTEX, "-nostdlib", "-Wl,--gc-sections,-eentry,-uentry"]
+        link += ["-Wl,--unresolved-symbols=ignore-all", f"{folder}/unit.o"]
+        subprocess.run([*link, "-lgcc", "-o", f"{folder}/unit.elf"], check=True)
+        listed = subprocess.run(
+            ["arm-none-eabi-size", f"{folder}/unit.elf"], capture_output=True, text=True, check=True
+        )
+        code, data, zero = map(int, listed.stdout.splitlines()[1].split()[:3])
+        return code + data, data + zero
+
+
 def scale(counts: list[int], size: int, compiler: str, flags: list[str]) -> Iterator[str]:
     """Lines of a table: what compiling machines of so many states costs."""
     yield f"| states | generation, s | {compiler} {' '.join(flags)}, s | MB |"
@@ -199,10 +250,14 @@ def main() -> int:
     parser.add_argument("--containers", type=int, default=0, help="states a container, for --scale")
     parser.add_argument("--compiler", nargs="*", default=["g++", "clang++"])
     parser.add_argument("--flags", default="-O1", help="of the compiler, for --scale")
+    parser.add_argument("--flash", action="store_true", help="flash and RAM on a Cortex-M4")
     parser.add_argument("--step", action="store_true", help="stepped machines")
     parser.add_argument("--steps", type=int, default=STEPS)
     given = parser.parse_args()
     gc.disable()  # as `smachac` does
+    if given.flash:
+        print("\n".join(flash()))
+        return 0
     for compiler in filter(shutil.which, given.compiler):
         if given.step:
             lines = stepped(compiler)

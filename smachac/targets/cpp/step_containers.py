@@ -43,7 +43,8 @@ from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cp
 
 NONE = "State::none_"
 ACTIVE = "states.active_"
-FAILED = "smachac::step::FAILED"
+FAILED = {True: "smachac::step::FAILED", False: "smachac::step::FAILED_INSIDE"}
+"""The codes of the failure of a leaf, and of a container."""
 
 RESERVED = ("active_", "branches_", "items_", "position_")
 """The members of `States` that are no states."""
@@ -170,7 +171,7 @@ def requests(plan: StepPlan) -> Lines:
 
 
 def _turn(plan: StepPlan, child: Node) -> Lines:
-    """The statements of one step of a child: `result` is the code of its result."""
+    """The statements of one step of a child: they set `result` to the code of its result."""
     number = plan.number_of(child)
     if isinstance(child, Leaf):
         return _leaf_turn(plan, child, number)
@@ -204,22 +205,14 @@ def _turn(plan: StepPlan, child: Node) -> Lines:
             *indented(before),
             "}",
         ]
-    result = f"run.contained({number}, {call})"
+    result = f"{call}.code()"
     if may_fail:
-        result = f"run.context.has_failed() ? run.stepped({number}, {FAILED}) : {result}"
+        result = f"run.context.has_failed() ? run.failed_leaf({number}) : {result}"
+    lines += [f"result = {result};"]
     if not after:
-        return [*lines, f"const int result = {result};"]
-    if not may_fail:
-        lines += [f"const int result = {result};", "if (result >= 0) {", *indented(after), "}"]
         return lines
-    return [
-        *lines,
-        f"int result = {result};",
-        "if (result >= 0) {",
-        *indented(after),
-        f"  result = run.kept({number}, result);",
-        "}",
-    ]
+    kept = [f"result = run.kept({number}, result);"] if may_fail else []
+    return [*lines, "if (result >= 0) {", *indented([*after, *kept]), "}"]
 
 
 def _copy(target: str, name: str, source: str, sure: bool) -> str:
@@ -239,15 +232,11 @@ def _copies_may_fail(plan: StepPlan, child: Node, key: str) -> bool:
 
 def _leaf_turn(plan: StepPlan, leaf: Leaf, number: int) -> Lines:
     code = plan.container.leaves[leaf.name]
-    if not code.bounded_outputs and not code.written:
-        return [f"const int result = run.stepped({number}, {code.call});"]
-    changed = "int" if code.bounded_outputs else "const int"
-    lines = [f"{changed} ended = {code.call};"]
+    lines = [f"result = {code.call};"]
     lines += [
-        f"ended = run.within_bound(ended, {out}, {name});" for out, name in code.bounded_outputs
+        f"result = run.within_bound(result, {out}, {name});" for out, name in code.bounded_outputs
     ]
-    lines += [f"run.wrote({number}, {written});" for written in code.written]
-    return [*lines, f"const int result = run.stepped({number}, ended);"]
+    return [*lines, *(f"run.wrote({number}, {written});" for written in code.written)]
 
 
 # State machines and sequences
@@ -259,6 +248,7 @@ def _machine(plan: StepPlan, node: StateMachine | Sequence) -> Lines:
     first = children[node.initial or node.children[0].name]
     others = [child for child in node.children if child is not first]
     lines = [
+        "int result = 0;",
         f"switch ({ACTIVE}) {{",
         f"case {NONE}:",
         f"  run.begin({plan.number}, {plan.number_of(first)});",
@@ -271,9 +261,18 @@ def _machine(plan: StepPlan, node: StateMachine | Sequence) -> Lines:
             f"case State::{identifier(child.name)}: {{{where}",
             *indented(_turn(plan, child)),
             *indented(_result_switch(plan, child, partial(_transition, plan, child))),
+            "  break;",
             "}",
         ]
-    return [*lines, "default:", "  smachac::step::never();", "}"]
+    return [*lines, "default:", "  smachac::step::never();", "}", *_unended(plan)]
+
+
+def _unended(plan: StepPlan) -> Lines:
+    """The statement after a step of a child that has not ended with one of its outcomes."""
+    child = f"nodes_[static_cast<std::size_t>({ACTIVE}) - 1]"
+    if all(isinstance(each, Leaf) for each in plan.node.children):  # their numbers follow
+        child = f"{plan.number} + static_cast<std::size_t>({ACTIVE})"
+    return [f"return run.unended({ACTIVE}, {plan.number}, {child}, result);"]
 
 
 def _transition(plan: StepPlan, child: Node, outcome: str, code: str) -> Lines:
@@ -295,29 +294,23 @@ def _end(plan: StepPlan, child: Node, own: str, code: str) -> str:
 
 
 def _result_switch(plan: StepPlan, child: Node, outcome: Callable[[str, str], Lines]) -> Lines:
-    """The statements after a step of a child. `outcome` gives those for an outcome and the text of
-    its index."""
-    number = plan.number_of(child)
-    caught: Lines = []
-    if child.catches:
-        at = len(results(child))
-        lines = [f"run.caught({number}, {at});", *outcome(child.catches, str(at))]
-        caught = [f"if (result == {FAILED}) {{", *indented(lines), "}"]
+    """The statements after a step of a child that has ended, or whose failure is an outcome.
+    `outcome` gives those for an outcome and the text of its index."""
     cases: Lines = []
     for name in results(child):
         label = f"case smachac::step::code({plan.container.child_outcome(child, name)}):"
         cases += [label, *indented(outcome(name, "result"))]
-    return [
-        "if (result < 0) {",
-        *indented(caught),
-        f"  return run.unended({ACTIVE}, {plan.number}, {number}, result);",
-        "}",
-        "switch (result) {",
-        *cases,
-        "default:",
-        f"  return run.invalid({ACTIVE}, {plan.number}, {number});",
-        "}",
-    ]
+    if child.catches:
+        lines = outcome(child.catches, str(len(results(child))))
+        if isinstance(child, Leaf):
+            lines = [f"run.failed_leaf({plan.number_of(child)});", *lines]
+        cases += [f"case {FAILED[isinstance(child, Leaf)]}:", *indented(lines)]
+    switch = ["switch (result) {", *cases, "default:", "  break;", "}"]
+    if isinstance(child, Leaf):
+        return switch
+    # What runs in it has set `first`, which is that of the branch.
+    running = ["if (result == smachac::step::RUNNING) {", "  return smachac::step::running;", "}"]
+    return [*running, *switch]
 
 
 # Concurrences
@@ -330,11 +323,13 @@ def _concurrence(plan: StepPlan, node: Concurrence) -> Lines:
         "if (branches.idle()) {",
         f"  branches.begin(run, {plan.number}, nodes_);",
         "}",
+        "int result = 0;",
     ]
     any_ = str(node.join == "any").lower()
     for at, child in enumerate(node.children):
         number, count = plan.number_of(child), len(results(child))
-        ended = f"run.valid({number}, result, {count})"
+        function = "ended_leaf" if isinstance(child, Leaf) else "ended_container"
+        ended = f"run.{function}({number}, result, {count})"
         if child.catches:
             ended = f"run.caught_branch({number}, {ended}, {count})"
         where = f" // {place(child)}" if place(child) else ""
@@ -353,7 +348,11 @@ def _concurrence(plan: StepPlan, node: Concurrence) -> Lines:
     ]
     leave = f"branches.leave(run, {plan.number}, nodes_)"
     lines += [f"const bool stopped = {leave};" if ends_preempted(node) else f"{leave};"]
-    lines += ["if (branches.has_failed()) {", "  return smachac::step::failed;", "}"]
+    lines += [
+        "if (branches.has_failed()) {",
+        "  return smachac::step::Unended{smachac::step::FAILED_INSIDE};",
+        "}",
+    ]
     if ends_preempted(node):
         own = plan.container.own_outcome(PREEMPTED)
         lines += ["if (stopped) {", f"  run.recall({plan.number});", f"  return {own};", "}"]
@@ -454,9 +453,11 @@ def _iterator(plan: StepPlan, node: Iterator) -> Lines:
         "if (states.idle()) {",
         *indented(start),
         "}",
+        "int result = 0;",
         *where,
         *_turn(plan, child),
         *_result_switch(plan, child, partial(_item_outcome, plan, node, child)),
+        *_unended(plan),
     ]
 
 

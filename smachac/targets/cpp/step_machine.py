@@ -54,8 +54,8 @@ def machine_class(
     count = sum(1 for _ in walk(machine.root))
     given = ", ".join(map(argument, parameters))
     explicit = ["explicit " if len(parameters) == most else "" for most in (1, 0)]
-    alone = f"{explicit[0]}Machine({', '.join(parameters)})"
-    head = f"{explicit[1]}Machine({', '.join([*parameters, 'Observer &observer'])})"
+    alone = f"constexpr {explicit[0]}Machine({', '.join(parameters)})"
+    head = f"constexpr {explicit[1]}Machine({', '.join([*parameters, 'Observer &observer'])})"
     nobody = ", ".join([*map(argument, parameters), "smachac::step::nobody"])
     states = f", states({given})" if given else ""
     most = size + RUN_BYTES + count
@@ -68,7 +68,7 @@ def machine_class(
         "template <class Observer = smachac::step::NoObserver> class Machine {",
         "public:",
         f"  {alone} : Machine({nobody}) {{}}",
-        f"  {head} : run_(observer, table_){states} {{}}",
+        f"  {head} : run_(observer){states} {{}}",
         "",
         "  /// Makes at most one transition in each active branch. `now` is the time in",
         "  /// nanoseconds of a clock that never goes back. After an outcome or a failure, the",
@@ -88,11 +88,14 @@ def machine_class(
         "    run_.ask(0);",
         "    ask_running_(states, run_);",
         "  }",
-        "  /// The failure of the last run that failed.",
+        "  /// The failure of the last run that failed, and its state.",
         "  [[nodiscard]] const smachac::step::Failure &failure() const { return run_.failure; }",
+        "  [[nodiscard]] const smachac::step::Node &failed_state() const {",
+        "    return table_[run_.failure.node];",
+        "  }",
         "",
         "private:",
-        f"  using Run = smachac::step::Run<Observer, {nodes}>;",
+        f"  using Run = smachac::step::Run<Observer, {nodes}, table_>;",
         "",
         "  Run run_; // the first member: its address is that of the machine",
         "",

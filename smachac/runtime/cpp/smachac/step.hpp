@@ -46,6 +46,8 @@ inline constexpr Failed failed{};
 /// The codes of the results that are no outcome. The code of an outcome is its enumerator.
 inline constexpr int RUNNING = -1;
 inline constexpr int FAILED = -2;
+/// A container has failed with a state in it, which has been reported.
+inline constexpr int FAILED_INSIDE = -3;
 
 /// The result of a container that runs or has failed.
 struct Unended {
@@ -65,7 +67,7 @@ public:
   constexpr Result(Unended unended) : code_(unended.code) {} // NOLINT
 
   [[nodiscard]] constexpr bool is_running() const { return code_ == RUNNING; }
-  [[nodiscard]] constexpr bool has_failed() const { return code_ == FAILED; }
+  [[nodiscard]] constexpr bool has_failed() const { return code_ < RUNNING; }
   [[nodiscard]] constexpr bool has_ended() const { return code_ >= 0; }
   /// The outcome of a state that has ended.
   [[nodiscard]] constexpr Outcome outcome() const { return static_cast<Outcome>(code_); }
@@ -75,7 +77,8 @@ private:
   int code_;
 };
 
-template <class Observer, std::size_t nodes> class Run;
+struct Node;
+template <class Observer, std::size_t nodes, const Node *table> class Run;
 
 /// The context of a state in one step.
 class Context : public Fault {
@@ -87,7 +90,7 @@ public:
   /// The time of the step.
   Nanoseconds now = 0;
   /// Whether this is the first step of this visit of the state.
-  bool first = true;
+  bool first = false;
 
   /// Whether a request to stop is pending for the state.
   [[nodiscard]] bool stop_requested() const { return asked_ != nullptr && *asked_; }
@@ -105,7 +108,7 @@ public:
   }
 
 private:
-  template <class Observer, std::size_t nodes> friend class Run;
+  template <class Observer, std::size_t nodes, const Node *table> friend class Run;
   bool *asked_ = nullptr;
 };
 
@@ -167,6 +170,12 @@ template <class Observer>
 struct wants_writes<Observer, std::void_t<decltype(Observer::writes)>>
     : std::bool_constant<Observer::writes> {};
 
+/// The observer of a run; without one, nothing.
+template <class Observer> struct Observed { Observer &observer; };
+template <> struct Observed<NoObserver> {
+  constexpr explicit Observed(NoObserver &) {}
+};
+
 template <class State, class... Parts>
 using Started =
     decltype(std::declval<State &>().start(std::declval<Context &>(), std::declval<Parts>()...));
@@ -176,30 +185,30 @@ struct has_start<State, std::void_t<Started<State, Parts...>>, Parts...> : std::
 
 } // namespace detail
 
-/// The failure of a run: the state, the reason and the key that it is about, if there is one.
+/// The failure of a run: the number of the state, the reason, and the key that it is about, if
+/// there is one.
 struct Failure {
-  const Node *nodes;
-  std::size_t node;
-  const char *message;
-  const char *key;
-
-  [[nodiscard]] const Node &state() const { return nodes[node]; }
+  std::size_t node = 0;
+  const char *message = nullptr;
+  const char *key = nullptr;
 };
 
 /// The state of a run that all containers share: the context, the pending requests to stop of
 /// `nodes` states (0: no state of the machine can receive one), the failure, and the observer.
-template <class Observer, std::size_t nodes> class Run {
+/// `table` has all states.
+template <class Observer, std::size_t nodes, const Node *table>
+class Run : private detail::Observed<Observer> {
 public:
   static constexpr bool watches = detail::watches<Observer>;
   static constexpr bool writes = detail::wants_writes<Observer>::value;
   static constexpr bool asks = nodes > 0;
 
-  Run(Observer &observer, const Node *table) : observer_(&observer), table_(table) {}
+  constexpr explicit Run(Observer &observer) : detail::Observed<Observer>{observer} {}
   Run(const Run &) = delete;
   Run &operator=(const Run &) = delete;
 
   Context context{};
-  Failure failure{nullptr, 0, nullptr, nullptr};
+  Failure failure{};
 
   // Requests to stop
 
@@ -235,10 +244,11 @@ public:
       ask(first);
     }
   }
-  /// A transition between two states of a container.
+  /// A transition between two states of a container: the exit of one, then the transition.
   template <class State>
   Running go(State &active, State next, std::size_t container, std::size_t from, int result,
              std::size_t to) {
+    send(Event::Kind::exit, from, result);
     send(Event::Kind::transition, from, result, static_cast<int>(to));
     active = next;
     context.first = true;
@@ -257,6 +267,7 @@ public:
   }
   /// The next item of an iterator.
   Running again(std::size_t child, int result) {
+    send(Event::Kind::exit, child, result);
     send(Event::Kind::transition, child, result, static_cast<int>(child));
     context.first = true;
     return running;
@@ -265,6 +276,7 @@ public:
   template <class State, class Outcome>
   Result<Outcome> end(State &active, Outcome with, std::size_t container, std::size_t from,
                       int result) {
+    send(Event::Kind::exit, from, result);
     send(Event::Kind::transition, from, result, -1, code(with));
     active = State::none_;
     if (asked(container) && !asked(from)) {
@@ -272,30 +284,27 @@ public:
     }
     return with;
   }
-  /// The result of a container whose state has not ended: it runs, or has failed with the state.
+  /// The result of a container whose state `from` has not ended with one of its outcomes: it runs,
+  /// has failed, or has ended with a number that is no outcome.
   template <class State>
   Unended unended(State &active, std::size_t container, std::size_t from, int result) {
-    return result == RUNNING ? Unended{RUNNING} : fail(active, container, from);
-  }
-  /// The failure of a state that has ended with none of its outcomes.
-  template <class State>
-  [[gnu::cold, gnu::noinline]] Unended invalid(State &active, std::size_t container,
-                                               std::size_t from) {
-    report(from, "ended without an outcome");
-    return fail(active, container, from);
+    if (result != RUNNING) {
+      return fail(active, container, from, result);
+    }
+    if (context.first) { // a store that most steps need not make
+      context.first = false;
+    }
+    return {RUNNING};
   }
   /// The failure of an outcome that leads nowhere.
   template <class State>
   [[gnu::cold, gnu::noinline]] Unended undeclared(State &active, std::size_t container,
                                                   std::size_t from) {
     report(from, "ended with an outcome that leads nowhere");
-    return fail(active, container, from);
+    return fail(active, container, from, FAILED_INSIDE);
   }
   /// The failure of a container itself.
-  Failed give_up(std::size_t node) {
-    report(node, context.message());
-    return failed;
-  }
+  Unended give_up(std::size_t node) { return {failed_leaf(node)}; }
 
   // States
 
@@ -305,16 +314,9 @@ public:
       send(Event::Kind::enter, node);
     }
   }
-  /// The result of a container in one step.
-  template <class Outcome> int contained(std::size_t node, Result<Outcome> result) {
-    if (watches && result.has_ended()) {
-      send(Event::Kind::exit, node, result.code());
-    }
-    return result.code();
-  }
   /// A step of a state that is an object of a class of the user; the code of its result.
   template <class State, class... Parts>
-  int leaf(std::size_t node, State &state, const Parts &...parts) {
+  [[gnu::always_inline]] int leaf(std::size_t node, State &state, const Parts &...parts) {
     receive(node);
     if (context.first) {
       send(Event::Kind::enter, node);
@@ -343,47 +345,48 @@ public:
     }
     return state.step(*this, userdata...).code();
   }
-  /// The end of a step of a state: its failure or its exit. Returns the code of the result.
-  int stepped(std::size_t node, int result) {
-    if (result >= 0) {
-      if (watches && result < table_[node].count) {
-        send(Event::Kind::exit, node, result);
-      }
-      return result;
-    }
-    if (result != RUNNING) {
+  /// The result of a branch that is a state with `count` outcomes: its exit, or its failure.
+  int ended_leaf(std::size_t node, int result, int count) {
+    if (result == FAILED) {
       return failed_leaf(node);
     }
-    if (context.first) { // a store that most steps need not make
+    if (result == RUNNING && context.first) {
       context.first = false;
     }
-    return RUNNING;
+    return ended_container(node, result, count);
   }
-  /// The failure of a state that becomes its outcome.
-  void caught(std::size_t node, int result) { send(Event::Kind::exit, node, result); }
-  /// As `caught`, for a branch of a concurrence, with its result.
+  /// The result of a branch with `count` outcomes.
+  int ended_container(std::size_t node, int result, int count) {
+    if (result >= count) {
+      report(node, "ended without an outcome");
+      return FAILED_INSIDE;
+    }
+    if (watches && result >= 0) {
+      send(Event::Kind::exit, node, result);
+    }
+    return result;
+  }
+  /// The result of a branch whose failure is an outcome.
   int caught_branch(std::size_t node, int result, int outcome) {
-    if (result != FAILED) {
+    if (result != FAILED_INSIDE) {
       return result;
     }
-    caught(node, outcome);
+    send(Event::Kind::exit, node, outcome);
     return outcome;
-  }
-  /// The result of a branch with `count` outcomes; a failure if it is none of them.
-  int valid(std::size_t node, int result, int count) {
-    if (result < count) {
-      return result;
-    }
-    report(node, "ended without an outcome");
-    return FAILED;
   }
   /// The result of a step; a failure if the copies of outputs had one.
   int kept(std::size_t node, int result) {
-    return context.has_failed() ? stepped(node, FAILED) : result;
+    return context.has_failed() ? failed_leaf(node) : result;
   }
   /// The result of a step; a failure if the state has gone over the bound of an output.
   template <class T> int within_bound(int result, Key<T> &key, const char *name) {
     return key.is_over() ? over(key, name) : result;
+  }
+
+  /// The failure of a state.
+  [[gnu::cold, gnu::noinline]] int failed_leaf(std::size_t node) {
+    report(node, context.message());
+    return FAILED_INSIDE;
   }
 
   // Writes
@@ -410,13 +413,13 @@ public:
   void wrote(std::size_t node, const char *name, Key<T> &key, bool secret = false) {
     if constexpr (writes) {
       if (key.fresh()) {
-        Event event{Event::Kind::write, table_, node, context.now};
+        Event event{Event::Kind::write, table, node, context.now};
         event.key = name;
         event.value = {secret ? nullptr : &key.get(), [](const void *object, const Sink &sink) {
                          write_json(sink,
                                     *static_cast<const typename Key<T>::value_type *>(object));
                        }};
-        observer_->on(event);
+        this->observer.on(event);
       }
     }
   }
@@ -431,11 +434,11 @@ public:
   /// Sends an event to the observer; nothing without one.
   void send(Event::Kind kind, std::size_t node, int result = -1, int to = -1, int with = -1) {
     if constexpr (watches) {
-      Event event{kind, table_, node, context.now};
+      Event event{kind, table, node, context.now};
       event.result = result;
       event.to = to;
       event.with = with;
-      observer_->on(event);
+      this->observer.on(event);
     }
   }
 
@@ -458,34 +461,31 @@ private:
     context.fail("a value beyond its bound", name);
     return FAILED;
   }
-  [[gnu::cold, gnu::noinline]] int failed_leaf(std::size_t node) {
-    report(node, context.message());
-    return FAILED;
-  }
   /// The end of a container with a failure; its request counts as answered if its last state has
   /// none.
   template <class State>
-  [[gnu::cold, gnu::noinline]] Unended fail(State &active, std::size_t container,
-                                            std::size_t from) {
+  [[gnu::cold, gnu::noinline]] Unended fail(State &active, std::size_t container, std::size_t from,
+                                            int result) {
+    if (result != FAILED_INSIDE) {
+      report(from, result == FAILED ? context.message() : "ended without an outcome");
+    }
     active = State::none_;
     if (asked(container) && !asked(from)) {
       recall(container);
     }
-    return {FAILED};
+    return {FAILED_INSIDE};
   }
   [[gnu::cold, gnu::noinline]] void report(std::size_t node, const char *message) {
-    failure = {table_, node, message, context.key()};
+    failure = {node, message, context.key()};
     if constexpr (watches) {
-      Event event{Event::Kind::error, table_, node, context.now};
+      Event event{Event::Kind::error, table, node, context.now};
       event.message = message;
       event.key = context.key();
-      observer_->on(event);
+      this->observer.on(event);
     }
     context.clear();
   }
 
-  Observer *observer_;
-  const Node *table_;
   bool asked_[asks ? nodes : 1]{};
 };
 
@@ -524,11 +524,11 @@ public:
       return false;
     }
     --live_;
-    if (result == FAILED && !failed_) {
+    if (result == FAILED_INSIDE && !failed_) {
       failed_ = true;
       failure_ = run.failure;
     }
-    if (stopping_ || !(any || result == FAILED)) {
+    if (stopping_ || !(any || result == FAILED_INSIDE)) {
       return false;
     }
     stopping_ = true;
@@ -569,7 +569,7 @@ private:
   std::uint16_t live_ = 0;
   bool stopping_ = false;
   bool failed_ = false;
-  Failure failure_{nullptr, 0, nullptr, nullptr};
+  Failure failure_{};
 };
 
 } // namespace step

@@ -16,8 +16,7 @@ class TraceWriter {
 public:
   /// `in_machine`: paths are those in the machine, where a state inside a time limit, retry or loop
   /// has another one in the script.
-  explicit TraceWriter(Sink sink, bool in_machine = false)
-      : sink_(sink), in_machine_(in_machine) {}
+  explicit TraceWriter(Sink sink, bool in_machine = false) : sink_(sink), in_machine_(in_machine) {}
 
   void on(const Event &event) {
     constexpr std::string_view kinds[] = {"start", "enter",   "exit",  "transition",

@@ -362,8 +362,8 @@ public:
   }
 
 protected:
-  KeyOf() = default;
-  explicit KeyOf(KeyState state) : state_(state) {}
+  constexpr KeyOf() = default;
+  constexpr explicit KeyOf(KeyState state) : state_(state) {}
   void mark(KeyState state = KeyState::written) { state_ = state; }
 
 private:
@@ -388,8 +388,8 @@ template <class T> class Key : public detail::KeyOf<Key<T>, T> {
 public:
   using value_type = T;
 
-  Key() = default;
-  Key(T value) // NOLINT: `Key<double> width{0.5}`
+  constexpr Key() = default;
+  constexpr Key(T value) // NOLINT: `Key<double> width{0.5}`
       : detail::KeyOf<Key<T>, T>(detail::KeyState::held), value_(std::move(value)) {}
 
   Key &operator=(const T &value) {
