@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -14,7 +13,8 @@ from tests.cpp.compilers import BARE, WARNINGS
 
 NAME = "arm-none-eabi-g++"
 QEMU = "qemu-system-arm"
-BOARD = Path(__file__).with_name("cortex_m4")
+EXAMPLE = Path(__file__).parents[2] / "examples" / "cpp_control_loop"
+BOARD = EXAMPLE / "board"
 FLAGS = (
     *("-std=c++17", "-mcpu=cortex-m4", "-mthumb", "-Os", "-ffreestanding", *BARE),
     *("-fno-threadsafe-statics", "-fno-use-cxa-atexit", "-fno-tree-loop-distribute-patterns"),
@@ -36,21 +36,12 @@ def compiled(text: str, folder: Path, *flags: str) -> Path:
     return program
 
 
-def object_size(text: str, folder: Path, *flags: str) -> tuple[int, int]:
-    """The bytes of flash and RAM of a translation unit, linked without the start of the board."""
-    if shutil.which(NAME) is None:
-        pytest.skip(f"no {NAME}")
-    source, made = folder / "unit.cpp", folder / "unit.elf"
-    source.write_text(text, "utf-8")
-    call = [NAME, *FLAGS, f"-I{HEADERS}", *flags, str(source), *LINK, "-Wl,-eentry", "-Wl,-uentry"]
-    run = subprocess.run(
-        [*call, "-lgcc", "-o", str(made)], capture_output=True, text=True, check=False
+def sizes(program: Path) -> tuple[int, int]:
+    """The bytes of flash and RAM of a program."""
+    listed = subprocess.run(
+        ["arm-none-eabi-size", str(program)], capture_output=True, text=True, check=True
     )
-    assert run.returncode == 0, run.stderr[:6000]
-    sizes = subprocess.run(
-        ["arm-none-eabi-size", str(made)], capture_output=True, text=True, check=True
-    )
-    code, data, zero = map(int, re.findall(r"\d+", sizes.stdout.splitlines()[1])[:3])
+    code, data, zero = map(int, listed.stdout.splitlines()[1].split()[:3])
     return code + data, data + zero
 
 

@@ -41,3 +41,5 @@ def test_machines_do_what_the_interpreter_does(count: int, tmp_path: Path) -> No
     assert len(every) == count
     program = cortex.compiled(text(every, OUTPUT), tmp_path)
     assert [*disagreements(every, cortex.run(program))] == []
+    flash, ram = cortex.sizes(program)
+    print(f"{count} machines with their paths: flash {flash} bytes, RAM {ram} bytes")
