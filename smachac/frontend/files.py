@@ -467,6 +467,7 @@ def disk_library(
         parse=disk.parse,
         release=disk.release,
         ros=project.ros if ros is None else ros,
+        bounds=project.bounds,
         policy=project.policy,
         settings_read=project.readable,
         robot=lambda name: _robot_file(name, disk, report),
