@@ -440,10 +440,10 @@ def _server(
     def act(body: Mapping[str, object]) -> object:
         if control is None:
             raise ActionError("nothing runs here")
-        words = [body.get(name) for name in ("action", "path", "outcome")]
-        action, path, outcome = (word if isinstance(word, str) else None for word in words)
+        words = [body.get(name) for name in ("action", "path", "outcome", "round")]
+        action, *place = (word if isinstance(word, str) else None for word in words)
         try:
-            control.act(action or "", path, outcome)
+            control.act(action or "", *place)
         except ControlError as error:
             raise ActionError(str(error)) from None
         return control.status()
@@ -516,8 +516,7 @@ class RunView:
 @contextmanager
 def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator[RunView]:
     """The view of a run with `--view`. Raises PortError."""
-    from smachac.ir.script_paths import script_paths
-    from smachac.ir.traversal import walk
+    from smachac.ir.written import written
     from smachac.view.control import Control
     from smachac.view.feed import Feed
     from smachac.view.live import LiveTrace
@@ -525,9 +524,7 @@ def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator
 
     feed = Feed()
     trace = LiveTrace(feed)
-    paths = script_paths(machine.root)
-    places = frozenset(paths.get(path, path) for path, _ in walk(machine.root))
-    control = Control(paths, trace.send, paused=arguments.view_paused, places=places)
+    control = Control(written(machine), trace.send, paused=arguments.view_paused)
     picture = Picture(feed, machine.root.name)
     picture.update(machine, report)
     server = _server(arguments.view, picture, feed, control)

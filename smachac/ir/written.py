@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
 from smachac.ir import graph, nodes
-from smachac.ir.graph import START, EdgeKind
-from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Machine, Node
+from smachac.ir.graph import EdgeKind
+from smachac.ir.nodes import Concurrence, Container, Data, Expression, Leaf, Machine, Node, Value
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import role, script_paths, sugared_child
 from smachac.ir.traversal import outcome_names
@@ -26,13 +26,17 @@ Role = Literal["state", "timeout", "retry", "try", "for_each", "timer", "pause"]
 """What a node of the graph is for its written state: the state itself, a container that was made of
 one of its fields, or a state that such a field adds."""
 
+Round = Literal["try", "item"]
+_ROUNDS: Mapping[str, Round] = {"retry": "try", "for_each": "item"}
+
 BadgeField = Literal["timeout", "retry", "for_each", "catches"]
 
 
 class Badge(NamedTuple):
     """What one field of the script adds to a state.
 
-    `limit` is its value in words: `5 min`, `3 tries`, `wp in waypoints`. `outcome` is the outcome
+    `limit` is its value in words: `5 min`, `3 tries`, `wp in waypoints`; `delay` the pause before
+    each further try, `items` the items of a loop that the script lists. `outcome` is the outcome
     that the field adds, empty if it adds none. After the outcomes `again` of the state, the next
     try or item begins. `path` is the full path of the container that was made of the field.
     """
@@ -43,6 +47,8 @@ class Badge(NamedTuple):
     outcome: str = ""
     again: tuple[str, ...] = ()
     count: int | None = None
+    delay: str = ""
+    items: Value | None = None
 
     @property
     def text(self) -> str:
@@ -59,12 +65,26 @@ class Badge(NamedTuple):
 
 class Part(NamedTuple):
     """A node of the graph as a part of a written state: the path of the state, the role of the
-    node in it, and the paths of the node in the graph and in traces."""
+    node in it, the paths of the node in the graph and in traces, and what begins with each of its
+    starts."""
 
     state: str
     role: Role
     full: str
     shown: str
+    begins: Round | None = None
+
+
+class WrittenEdge(NamedTuple):
+    """An edge inside a container. `source` is the path of a state, None at the start; `target` is
+    the path of a state, or an outcome of the container if `leaves`."""
+
+    container: str
+    source: str | None
+    outcome: str
+    target: str
+    leaves: bool
+    kind: EdgeKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,6 +115,16 @@ class WrittenState:
         """The outcomes of one try or item after which the next one begins."""
         return tuple(dict.fromkeys(name for badge in self.badges for name in badge.again))
 
+    def edges(self) -> Iterator[WrittenEdge]:
+        """The edges inside the state, in the order of the script."""
+        if isinstance(self.node, Leaf):
+            return
+        for edge in graph.edges(self.node):
+            source = f"{self.path}/{edge.source}" if isinstance(edge.source, str) else None
+            leaves = not isinstance(edge.target, str)
+            target = edge.target[1] if leaves else f"{self.path}/{edge.target}"
+            yield WrittenEdge(self.path, source, edge.outcome, target, leaves, edge.kind)
+
     def field_of(self, outcome: str) -> BadgeField | None:
         """The field that adds an outcome; None for an outcome of the state itself."""
         if outcome in outcome_names(self.node) and outcome != self.node.catches:
@@ -110,18 +140,6 @@ class WrittenState:
         field = self.field_of(outcome)
         mine = [part for part in reversed(self.parts) if part.role == field]
         return mine[0] if mine else Part(self.path, "state", self.full, self.path)
-
-
-class WrittenEdge(NamedTuple):
-    """An edge inside a container. `source` is the path of a state, None at the start; `target` is
-    the path of a state, or an outcome of the container if `leaves`."""
-
-    container: str
-    source: str | None
-    outcome: str
-    target: str
-    leaves: bool
-    kind: EdgeKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,17 +171,6 @@ class Written:
         outcomes are those of the written state."""
         part = self.parts.get(full)
         return part is not None and self.states[part.state].outer_full == full
-
-    def edges(self, state: WrittenState) -> Iterator[WrittenEdge]:
-        """The edges inside a state, in the order of the script."""
-        if isinstance(state.node, Leaf):
-            return
-        here = state.path
-        for edge in graph.edges(state.node):
-            source = None if edge.source == START else f"{here}/{edge.source}"
-            leaves = not isinstance(edge.target, str)
-            target = edge.target[1] if leaves else f"{here}/{edge.target}"
-            yield WrittenEdge(here, source, edge.outcome, target, leaves, edge.kind)
 
 
 def written(machine: Machine) -> Written:
@@ -237,9 +244,11 @@ def _folded(outer: Node, full: str, path: str) -> _Folded:
     parts: list[Part] = []
     badges: list[Badge] = []
     node = outer
+    begins: Round | None = None
     while not isinstance(node, Leaf) and (inside := sugared_child(node)) is not None:
         shown = f"{path} ({role(node)})"
-        parts.append(Part(path, _container_role(node), full, shown))
+        parts.append(Part(path, _container_role(node), full, shown, begins))
+        begins = _ROUNDS.get(role(node))
         added: Role = "timer" if isinstance(node, Concurrence) else "pause"
         parts += [
             Part(path, added, f"{full}/{child.name}", f"{shown}/{child.name}")
@@ -249,7 +258,7 @@ def _folded(outer: Node, full: str, path: str) -> _Folded:
         if (badge := _badge(node, full)) is not None:
             badges.append(badge)
         node, full = inside, f"{full}/{inside.name}"
-    parts.append(Part(path, "state", full, path))
+    parts.append(Part(path, "state", full, path, begins))
     return _Folded(node, full, tuple(parts), tuple(reversed(badges)))
 
 
@@ -269,10 +278,12 @@ def _badge(node: Container, full: str) -> Badge | None:
         case nodes.Iterator(sugar="retry"):
             tries, again = _count(node), node.loop_outcomes
             limit = f"{tries} {'try' if tries == 1 else 'tries'}"
-            return Badge("retry", limit, full, node.exhausted_outcome, again, tries)
+            return Badge("retry", limit, full, node.exhausted_outcome, again, tries, _delay(node))
         case nodes.Iterator(sugar="for_each"):
             limit = f"{node.item_key} {items_in_words(node)}".strip()
-            return Badge("for_each", limit, full, "", node.loop_outcomes, _count(node))
+            return Badge(
+                "for_each", limit, full, "", node.loop_outcomes, _count(node), "", node.items
+            )
     return None
 
 
@@ -282,6 +293,13 @@ def _seconds(limit: Concurrence) -> str:
             for variable in child.variables:
                 if isinstance(seconds := variable.value.data, int | float):
                     return duration(float(seconds))
+    return ""
+
+
+def _delay(retry: nodes.Iterator) -> str:
+    data = None if retry.items is None else retry.items.data
+    if isinstance(data, tuple) and data and data[0] == 0.0 and isinstance(data[-1], float):
+        return duration(data[-1])
     return ""
 
 

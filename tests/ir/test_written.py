@@ -56,7 +56,7 @@ def assert_every_node_has_its_place(machine: Machine) -> None:
         assert state.children == tuple(f"{state.path}/{child.name}" for child in inside)
         assert all(view.states[child].parent == state.path for child in state.children)
         assert {part.state for part in state.parts} == {state.path}
-        ends = {edge.target for edge in view.edges(state) if not edge.leaves}
+        ends = {edge.target for edge in state.edges() if not edge.leaves}
         assert ends <= set(state.children)
 
 

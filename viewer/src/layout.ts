@@ -4,7 +4,7 @@
 import type { ElkExtendedEdge, ElkNode, ElkPort } from "elkjs/lib/elk-api";
 import type { Graph, ModelEdge, Path } from "./model";
 import type { Content, Line, Piece } from "./pieces";
-import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, contentOf, exitId, writtenExits } from "./pieces";
+import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, chipsOf, contentOf, exitId, writtenExits } from "./pieces";
 import { fitting, width } from "./text";
 import { kindInWords } from "./model";
 import { inRows } from "./rows";
@@ -182,7 +182,8 @@ export class Layouts {
     const title =
       width(fitting(node.name, "title"), "title") +
       width(fitting(kindInWords(node), "detail"), "detail") +
-      96;
+      chipsOf(node).width +
+      106;
     return { ...readLayout(content, done, title, this.direction), written };
   }
 

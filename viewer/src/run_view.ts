@@ -10,9 +10,10 @@ import { Film } from "./film";
 import { Recording } from "./recording";
 import { foreignPlace, highlightOf, inWords, inline, keyValues, nodeAt, placeOf, seconds } from "./run_marks";
 import type { RunState, TraceEvent } from "./run_state";
-import { activeLeaves } from "./run_state";
+import { activeLeaves, roundInWords } from "./run_state";
 import { Timeline } from "./timeline";
 import type { Viewer } from "./viewer";
+import { WrittenEvents } from "./written_events";
 
 /** The least time between two drawings, and between two states that are followed, in milliseconds; the
  * most lines of the log and keys on the page. */
@@ -35,6 +36,7 @@ export function showRuns(viewer: Viewer, trace: string, film: string): void {
 
 class RunView {
   private readonly recording = new Recording();
+  private readonly written: WrittenEvents;
   private readonly timeline: Timeline;
   private readonly control: Control;
   private readonly status = html("p", { class: "run-status", role: "status" });
@@ -56,6 +58,7 @@ class RunView {
   private loggedTo = -1;
 
   constructor(private readonly viewer: Viewer, token: string | null, private readonly live: boolean) {
+    this.written = new WrittenEvents(() => viewer.graph.parts);
     this.timeline = new Timeline(this.recording, () => this.draw());
     this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
     this.bar = html("div", { class: "run-bar" },
@@ -70,7 +73,7 @@ class RunView {
   }
 
   replay(events: TraceEvent[]): void {
-    this.recording.add(events);
+    this.recording.add(this.written.all(events));
     this.timeline.update();
     this.draw();
   }
@@ -87,6 +90,7 @@ class RunView {
       opened: () => {
         this.link = "";
         this.recording.clear();
+        this.written.clear();
         this.loggedTo = -1;
         this.timeline.follows = true;
         this.changed();
@@ -112,7 +116,7 @@ class RunView {
         this.report(message.broken, message.outdated, message.findings);
         break;
       case "trace":
-        this.recording.add(message.events);
+        this.recording.add(this.written.all(message.events));
         this.arrived = performance.now();
         this.timeline.update();
         this.changed();
@@ -226,9 +230,10 @@ class RunView {
     if (state.error && !state.active.size) return `failed in ${name(state.error.path)}`;
     const status = this.timeline.follows ? this.control.status : null;
     if (status?.ended) return state.error ? `failed in ${name(state.error.path)}: ${state.error.message}` : "ended";
-    const running = activeLeaves(state).map((path) => `${name(path)} ${this.since(state, path)}`);
-    const waits = (status?.at ?? []).map(({ path, outcome }) =>
-      outcome === null ? `paused before ${name(path)}` : `paused after ${name(path)}: ${outcome}`);
+    const round = (path: string): string => (state.rounds.has(path) ? ` (${roundInWords(state, path)})` : "");
+    const running = activeLeaves(state).map((path) => `${name(path)}${round(path)} ${this.since(state, path)}`);
+    const waits = (status?.at ?? []).map(({ path, outcome, round }) =>
+      outcome === null ? `paused before ${round === null ? "" : `${round === "try" ? "a try" : "an item"} of `}${name(path)}` : `paused after ${name(path)}: ${outcome}`);
     if (waits.length) return waits.join(", ");
     if (status?.stopping) return `stopping: ${running.join(", ")}`;
     if (status?.paused) return `pauses before the next state: ${running.join(", ")}`;
@@ -292,7 +297,7 @@ class RunView {
   private facts(node: StateNode): HTMLElement {
     const { graph } = this.viewer;
     const state = this.recording.at(this.timeline.position);
-    const path = node.shown ?? node.path;
+    const { path } = node;
     const visited = state.visited.get(path);
     const rows: HTMLElement[] = [];
     const row = (name: string, value: string): void => {
@@ -319,8 +324,7 @@ class RunView {
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if ((event.target as Element).closest("input, select, textarea")) return;
-    const { selected, graph } = this.viewer;
-    const path = selected === null ? null : (graph.nodes.get(selected)?.shown ?? selected);
+    const path = this.viewer.selected;
     const actions: Record<string, () => void> = {
       ",": () => this.timeline.step(-1),
       ".": () => this.timeline.step(1),
@@ -328,7 +332,7 @@ class RunView {
       s: () => this.control.do({ action: "step" }),
       o: () => this.toggleFollow(),
       r: () => this.control.pauseOrResume(),
-      b: () => path !== null && this.control.toggleBreakpoint(path, null),
+      b: () => path !== null && this.control.toggleBreakpoint({ path, outcome: null, round: null }),
     };
     actions[event.key]?.();
   }
