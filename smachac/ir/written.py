@@ -32,6 +32,10 @@ _ROUNDS: Mapping[str, Round] = {"retry": "try", "for_each": "item"}
 BadgeField = Literal["timeout", "retry", "for_each", "catches"]
 
 
+FEW_BOXES = 40
+"""The states of a picture that can be read on one page."""
+
+
 class Badge(NamedTuple):
     """What one field of the script adds to a state.
 
@@ -125,6 +129,11 @@ class WrittenState:
             target = edge.target[1] if leaves else f"{self.path}/{edge.target}"
             yield WrittenEdge(self.path, source, edge.outcome, target, leaves, edge.kind)
 
+    def next_round(self, outcome: str) -> Round | None:
+        """What begins after an outcome of one try or item; None if the state ends."""
+        found = next((each for each in self.badges if outcome in each.again), None)
+        return None if found is None else _ROUNDS.get(found.field)
+
     def field_of(self, outcome: str) -> BadgeField | None:
         """The field that adds an outcome; None for an outcome of the state itself."""
         if outcome in outcome_names(self.node) and outcome != self.node.catches:
@@ -165,6 +174,17 @@ class Written:
         head, colon, outcome = full.rpartition(":")
         inside = self.parts.get(head)
         return f"{inside.state}{colon}{outcome}" if inside is not None else full
+
+    def fitting_depth(self, most: int = FEW_BOXES) -> int:
+        """The number of levels of containers, 1 or more, that a picture of at most `most` states
+        has open; of all machines the first level is open."""
+        counts: dict[int, int] = {}
+        for state in self.states.values():
+            counts[state.level] = counts.get(state.level, 0) + 1
+        depth, shown = 1, counts.get(1, 0)
+        while (more := counts.get(depth + 1, 0)) and shown + more <= most:
+            depth, shown = depth + 1, shown + more
+        return depth
 
     def is_whole(self, full: str) -> bool:
         """Whether the node at a full path is a written state with all its badges: its visits and

@@ -60,9 +60,9 @@ export interface StateNode {
   initial: Path | null;
   type: string | null;
   badges: Badge[];
-  /** The nodes of the graph that are this state, outermost first: their paths in traces, their roles, and what
-   * begins with each of their starts. */
-  parts?: [shown: string, role: string, begins: Round | null][];
+  /** The nodes of the graph that are this state, outermost first: their paths in traces, their roles, what
+   * begins with each of their starts, and their paths in old traces. */
+  parts?: [shown: string, role: string, begins: Round | null, full: string][];
   /** The outcomes of one try or item after which the next one begins. */
   repeated?: { name: string; failure: boolean }[];
   doc: string;
@@ -120,6 +120,8 @@ export interface StateStatistics {
   mean: number;
   longest: number;
   outcomes: Record<string, number>;
+  /** The numbers of tries and items, in words. */
+  rounds: string;
 }
 
 /** Statistics of many runs, by the path of a state. `never` are the transitions that no run took. */
@@ -184,15 +186,19 @@ export class Parts {
   private readonly known = new Map<string, Part>();
 
   constructor(nodes: readonly StateNode[]) {
+    const old: [string, Part][] = [];
     for (const node of nodes) {
-      const parts = node.parts ?? [[node.path, "state", null] as const];
-      parts.forEach(([shown, role, begins], index) => {
+      const parts = node.parts ?? [[node.path, "state", null, node.path] as const];
+      parts.forEach(([shown, role, begins, full], index) => {
         const field = begins === "try" ? "retry" : "for_each";
         const count = node.badges.find((badge) => badge.field === field)?.count ?? null;
         const added = role === "timer" || role === "pause";
-        this.known.set(shown, { path: node.path, outer: index === 0, added, begins, count });
+        const part = { path: node.path, outer: index === 0, added, begins, count };
+        this.known.set(shown, part);
+        old.push([full, part]);
       });
     }
+    for (const [full, part] of old) if (!this.known.has(full)) this.known.set(full, part);
   }
 
   of(path: string): Part | undefined {

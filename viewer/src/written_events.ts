@@ -4,14 +4,16 @@
 import type { Part, Parts } from "./model";
 import type { TraceEvent } from "./run_state";
 
-/** The tries and items of a state that have begun, in one visit. */
-interface Rounds {
+/** One visit of a state: the tries and items that have begun, and the path in the trace of the part that started
+ * first. */
+interface Visit {
+  first: string;
   try: number;
   item: number;
 }
 
 export class WrittenEvents {
-  private readonly visits = new Map<string, Rounds>();
+  private readonly visits = new Map<string, Visit>();
 
   /** `parts` are those of the machine that is shown now. */
   constructor(private readonly parts: () => Parts) {}
@@ -31,15 +33,15 @@ export class WrittenEvents {
     if (!part) return { ...event, ...to };
     if (part.added) return null;
     const { path } = part;
-    if (part.outer && !part.begins) return { ...event, path, ...to };
     switch (event.event) {
       case "enter":
         return this.enter(event, part);
       case "exit":
         return this.exit(event, part);
       case "transition":
+        return this.visits.has(path) ? null : { ...event, path, ...to };
       case "preempt":
-        return part.outer ? { ...event, path, ...to } : null;
+        return part.outer ? { ...event, path } : null;
       default:
         return { ...event, path };
     }
@@ -49,7 +51,7 @@ export class WrittenEvents {
     const { path, begins } = part;
     const known = this.visits.get(path);
     if (part.outer || !known) {
-      this.visits.set(path, { try: 0, item: 0 });
+      this.visits.set(path, { first: event.path, try: 0, item: 0 });
       return { ...event, path };
     }
     if (!begins) return null;
@@ -61,7 +63,7 @@ export class WrittenEvents {
   private exit(event: TraceEvent, part: Part): TraceEvent | null {
     const { path, begins } = part;
     const known = this.visits.get(path);
-    if (part.outer) {
+    if (part.outer || known?.first === event.path) {
       this.visits.delete(path);
       return { ...event, path };
     }

@@ -28,7 +28,6 @@ from smachac.ir.written import (
     items_in_words,
     written,
 )
-from smachac.ir.written import generated as all_states
 from smachac.runtime.tracing.writer import SECRET
 
 VERSION = 2
@@ -46,15 +45,15 @@ def machine_model(
     findings: Sequence[Diagnostic] = (),
     *,
     live: bool = False,
-    generated: bool = False,
+    view: Written | None = None,
 ) -> dict[str, Any]:
-    """A machine, which may have errors, as JSON data: as it was written, or with the states that
-    are `generated` of fields.
+    """A machine, which may have errors, as JSON data: as it was written, or the states of another
+    `view` of it.
 
     `live`: the page connects to the server that it comes from.
     """
     context = Context(machine)
-    view = all_states(machine) if generated else written(machine)
+    view = written(machine) if view is None else view
     hidden = [flow.span for flow in secret_values(context.types, context.secret_keys)]
     by_state: dict[str, list[int]] = {}
     for index, item in enumerate(findings):
@@ -127,7 +126,7 @@ def _node(
         "tags": list(node.tags),
     }
     if state.parts[0].shown != state.path:
-        data["parts"] = [[part.shown, part.role, part.begins] for part in state.parts]
+        data["parts"] = [[part.shown, part.role, part.begins, part.full] for part in state.parts]
     if state.repeated:
         data["repeated"] = [{"name": name, "failure": fails(node, name)} for name in state.repeated]
     return data | _of_container(state, context)

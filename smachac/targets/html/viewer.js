@@ -38,15 +38,19 @@
   var Parts = class {
     known = /* @__PURE__ */ new Map();
     constructor(nodes) {
+      const old = [];
       for (const node of nodes) {
-        const parts = node.parts ?? [[node.path, "state", null]];
-        parts.forEach(([shown, role, begins], index) => {
+        const parts = node.parts ?? [[node.path, "state", null, node.path]];
+        parts.forEach(([shown, role, begins, full], index) => {
           const field = begins === "try" ? "retry" : "for_each";
           const count2 = node.badges.find((badge2) => badge2.field === field)?.count ?? null;
           const added = role === "timer" || role === "pause";
-          this.known.set(shown, { path: node.path, outer: index === 0, added, begins, count: count2 });
+          const part = { path: node.path, outer: index === 0, added, begins, count: count2 };
+          this.known.set(shown, part);
+          old.push([full, part]);
         });
       }
+      for (const [full, part] of old) if (!this.known.has(full)) this.known.set(full, part);
     }
     of(path) {
       return this.known.get(path);
@@ -1990,15 +1994,15 @@ ${place2.key}`;
       if (!part) return { ...event, ...to };
       if (part.added) return null;
       const { path } = part;
-      if (part.outer && !part.begins) return { ...event, path, ...to };
       switch (event.event) {
         case "enter":
           return this.enter(event, part);
         case "exit":
           return this.exit(event, part);
         case "transition":
+          return this.visits.has(path) ? null : { ...event, path, ...to };
         case "preempt":
-          return part.outer ? { ...event, path, ...to } : null;
+          return part.outer ? { ...event, path } : null;
         default:
           return { ...event, path };
       }
@@ -2007,7 +2011,7 @@ ${place2.key}`;
       const { path, begins } = part;
       const known2 = this.visits.get(path);
       if (part.outer || !known2) {
-        this.visits.set(path, { try: 0, item: 0 });
+        this.visits.set(path, { first: event.path, try: 0, item: 0 });
         return { ...event, path };
       }
       if (!begins) return null;
@@ -2018,7 +2022,7 @@ ${place2.key}`;
     exit(event, part) {
       const { path, begins } = part;
       const known2 = this.visits.get(path);
-      if (part.outer) {
+      if (part.outer || known2?.first === event.path) {
         this.visits.delete(path);
         return { ...event, path };
       }
@@ -2357,8 +2361,9 @@ ${place2.key}`);
     visits.delete(graph.model.root);
     const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
     const times = new Map([...visits.keys()].flatMap((path) => {
-      const { mean } = statistics.states[path];
-      return mean ? [[path, seconds(mean)]] : [];
+      const { mean, rounds } = statistics.states[path];
+      const words = [rounds, mean ? seconds(mean) : ""].filter(Boolean).join(" \xB7 ");
+      return words ? [[path, words]] : [];
     }));
     viewer.highlight({ active: [], taken, visits, times });
     viewer.onMark((picture) => markNever(graph, statistics, picture));
@@ -2403,6 +2408,7 @@ ${place2.key}`);
       "ul",
       { class: "rows" },
       row("visits", String(found.visits)),
+      ...found.rounds ? [row("tries and items", found.rounds)] : [],
       row("mean time", seconds(found.mean)),
       row("longest", seconds(found.longest)),
       ...outcomes2,
