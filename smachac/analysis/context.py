@@ -29,6 +29,7 @@ from smachac.analysis.type_lattice import MisfitKind
 from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
+from smachac.ir import written as written_states
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
 from smachac.ir.secret_keys import SecretKeys, secret_keys
@@ -188,7 +189,12 @@ class Context:
         return script_paths.script_paths(self.machine.root)
 
     @cached_property
-    def plain_paths(self) -> dict[str, str]:
+    def written(self) -> written_states.Written:
+        """The states as they were written."""
+        return written_states.written(self.machine)
+
+    @cached_property
+    def plain_paths(self) -> script_paths.PlainPaths:
         """The paths of the script without roles, by full path; only those that differ."""
         return script_paths.plain_paths(self.machine.root)
 

@@ -8,7 +8,7 @@ path: `sm/DRIVE (timeout)/TIMER`. Paths of the graph are called full paths.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import PathStep
@@ -71,11 +71,24 @@ def script_paths(root: Node) -> dict[str, str]:
     return {each.full: each.shown for each in walk_script(root) if each.shown != each.full}
 
 
-def plain_paths(root: Node) -> dict[str, str]:
-    """The paths in the script without roles, by full path; only those that differ."""
+class PlainPaths(dict[str, str]):
+    """The paths in the script without roles, by full path; only those that differ. `added` are the
+    full paths of the timers and pauses of sugar."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.added: set[str] = set()
+
+
+NO_SUGAR = PlainPaths()
+"""The plain paths of a machine without sugar."""
+
+
+def plain_paths(root: Node) -> PlainPaths:
+    """The plain paths of a machine."""
+    found = PlainPaths()
     if isinstance(root, Leaf) or not _has_sugar(root):
-        return {}
-    found: dict[str, str] = {}
+        return found
     stack: list[tuple[str, str, Container]] = [(root.name, root.name, root)]
     while stack:
         full, plain, container = stack.pop()
@@ -87,6 +100,8 @@ def plain_paths(root: Node) -> dict[str, str]:
             shown = plain if child is inside else f"{plain}/{child.name}"
             if shown != below:
                 found[below] = shown
+            if inside is not None and child is not inside:
+                found.added.add(below)
             if not isinstance(child, Leaf):
                 stack.append((below, shown, child))
     return found
@@ -159,12 +174,12 @@ def name_in_script(node: Node) -> str:
     return node.name
 
 
-def steps_in_script(plain: Mapping[str, str], steps: Sequence[PathStep]) -> list[tuple[int, str]]:
+def steps_in_script(plain: PlainPaths, steps: Sequence[PathStep]) -> list[tuple[int, str]]:
     """The steps of a path as the script shows them: their numbers and labels. `plain` are the plain
     paths.
 
     A state and the containers of its sugar are one step, where they are entered together or end
-    with the same outcome.
+    with the same outcome; timers and pauses are none.
     """
     if not plain:
         return [(at, step.label) for at, step in enumerate(steps)]
@@ -176,6 +191,9 @@ def steps_in_script(plain: Mapping[str, str], steps: Sequence[PathStep]) -> list
             if not (skipped and step.is_outcome):
                 kept.append(at)
             skipped = False
+            continue
+        if step.node in plain.added:
+            skipped = True
             continue
         same = plain.get(step.node, step.node) == plain.get(last, last)
         if same and not steps[kept[-1]].is_outcome:
@@ -191,6 +209,6 @@ def steps_in_script(plain: Mapping[str, str], steps: Sequence[PathStep]) -> list
     return [(at, _label(plain, steps[at])) for at in kept]
 
 
-def _label(plain: Mapping[str, str], step: PathStep) -> str:
+def _label(plain: PlainPaths, step: PathStep) -> str:
     path = plain.get(step.node) if step.node is not None else None
     return step.label if path is None else path.rpartition("/")[2]
