@@ -38,6 +38,7 @@ EXAMPLES = """\
 examples:
   smachac view main.yml                        the picture, drawn again when a file changes
   smachac view machine.py                      the machine in a Python file
+  smachac view main.yml --generated            with the states that fields as `retry` add
   smachac view main.yml --attach run.jsonl     replay a trace; follow it while it is written
   smachac view main.yml --attach run.jsonl --film film.mp4   with the film of `run --record`
   smachac run main.yml --view                  watch a run, and control it
@@ -81,6 +82,9 @@ def view_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=port, default=0, metavar="PORT",
                         help="the port of the page (default: one that is free)")  # fmt: skip
     browser(parser)
+    parser.add_argument("--generated", action="store_true",
+                        help="also show the states that `timeout`, `retry` and `for_each` add"
+                        )  # fmt: skip
     machine_name(parser)
     search_folders(parser)
     colour(parser)
@@ -186,15 +190,17 @@ def _serve(arguments: Namespace, attached: Path | Topic | None, film: Film | Non
     """Serve the picture of a script, and a trace with its film or a ROS topic, until Ctrl-C.
     Raises RosError."""
     from smachac.ir.recursion import deep_recursion
+    from smachac.ir.written import generated, written
     from smachac.sim.video import RATE, SPEED
     from smachac.targets.html.page import FILM_ID
     from smachac.view.feed import Feed
     from smachac.view.picture import Picture
 
     feed = Feed()
-    is_edited = attached is None and not is_python(arguments.script)
+    is_edited = attached is None and not is_python(arguments.script) and not arguments.generated
     data = None if film is None else {FILM_ID: {"type": film.type, "rate": RATE, "speed": SPEED}}
-    picture = Picture(feed, arguments.script.stem, editable=is_edited, data=data)
+    view = generated if arguments.generated else written
+    picture = Picture(feed, arguments.script.stem, editable=is_edited, data=data, view=view)
     script = ViewedScript(arguments, picture)
     edits = edits_of_script(script) if is_edited else None
     try:

@@ -12,8 +12,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import PathStep
-from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
+from smachac.ir.nodes import Container, Leaf, Node, StateMachine
 from smachac.ir.traversal import containers
 
 
@@ -109,62 +108,6 @@ def plain_paths(root: Node) -> PlainPaths:
 
 def _has_sugar(root: Node) -> bool:
     return any(node.sugar for _, node in containers(root))
-
-
-class Sugared(NamedTuple):
-    """A container made of sugar as messages describe it: the path of its state in the script, its
-    role, its limit in words (`3` tries, `20 s`, `5` items; empty if it is not known), and the path
-    in the script of its child."""
-
-    state: str
-    role: str
-    limit: str
-    child: str
-
-
-def sugared_containers(root: Node) -> dict[str, Sugared]:
-    """The containers made of sugar by their paths in the script."""
-    found: dict[str, Sugared] = {}
-    for each in walk_script(root) if _has_sugar(root) else ():
-        child = None if isinstance(each.node, Leaf) else sugared_child(each.node)
-        if child is not None:
-            below = f"{each.plain} ({role(child)})" if role(child) else each.plain
-            found[each.shown] = Sugared(each.plain, role(each.node), _limit(each.node), below)
-    return found
-
-
-def added_states(root: Node) -> frozenset[str]:
-    """The paths in the script of the timers and pauses that sugar adds."""
-    if not _has_sugar(root):
-        return frozenset()
-    return frozenset(each.shown for each in walk_script(root) if each.added)
-
-
-def in_words(role: str, limit: str) -> str:
-    """The role of a container made of sugar with its limit, in words."""
-    match role:
-        case "retry":
-            return f"at most {limit} {'try' if limit == '1' else 'tries'}"
-        case "timeout":
-            return f"time limit of {limit}"
-        case "for_each":
-            return f"loop over {limit or 'the'} item{'s' * (limit != '1')}"
-    return "one try"
-
-
-def role_in_words(node: Node) -> str:
-    """The role of a container made of sugar, in words; empty for all other nodes."""
-    what = role(node)
-    return in_words(what, _limit(node)) if what else ""
-
-
-def _limit(node: Node) -> str:
-    match node:
-        case nodes.Iterator(items=nodes.Value(data=tuple() as items)):
-            return str(len(items))
-        case Concurrence(children=(_, Leaf(variables=(nodes.Variable(value=seconds),)))):
-            return f"{seconds.data:g} s" if isinstance(seconds.data, float) else ""
-    return ""
 
 
 def name_in_script(node: Node) -> str:
