@@ -15,6 +15,7 @@ SURFACES = (
 )
 """The rooms whose output shows states."""
 
+
 @pytest.mark.parametrize("surface", SURFACES)
 def test_no_surface_reads_the_field_that_a_container_was_made_for(surface: str) -> None:
     readers = {

@@ -258,7 +258,7 @@ function drawLine({ line, points }: PlacedLine): SVGGElement {
     const transform = `translate(${end.x} ${end.y}) rotate(${turn})`;
     group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
     const [only, ...others] = line.edges;
-    if (only !== undefined && !others.length) group.append(svg("circle", { class: "grip", cx: end.x, cy: end.y, r: 7, ...origin(only) }));
+    if (only !== undefined && !others.length) group.append(svg("path", { class: "hit", d, ...origin(only) }), svg("circle", { class: "grip", cx: end.x, cy: end.y, r: 7, ...origin(only) }));
   }
   return group;
 }

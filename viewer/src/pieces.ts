@@ -37,6 +37,8 @@ export interface Content {
   path: Path;
   pieces: Piece[];
   lines: Line[];
+  /** The lines that start or end outside of the container, as in the picture of a comparison: they are drawn straight. */
+  far: Line[];
 }
 
 export const EXIT_HEIGHT = 22;
@@ -173,7 +175,10 @@ export function contentOf(
       add(line, edgeId(edge), withFigures(graph, edge, line, labelOf(container, edge, line)));
     }
   }
-  return { path, pieces, lines: [...lines.values()] };
+  const ids = new Set(pieces.map(({ id }) => id));
+  const isInside = ({ from, to }: Line): boolean => ids.has(from) && ids.has(to);
+  const all = [...lines.values()];
+  return { path, pieces, lines: all.filter(isInside), far: all.filter((line) => !isInside(line)) };
 }
 
 interface Exit {

@@ -144,9 +144,8 @@ class RunView {
     const [first] = this.errors;
     const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
     const picture = outdated ? ". The picture is that of the last version without errors." : "";
-    this.viewer.notice(first
-      ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}`
-      : "");
+    const text = first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "";
+    this.viewer.notice(text, this.errorList());
     this.viewer.refresh();
   }
 
@@ -156,6 +155,7 @@ class RunView {
       html("li", { class: "error" },
         html("p", {}, html("strong", {}, `error ${each.code}`), " ", each.message),
         each.help ? html("p", { class: "help" }, `help: ${each.help}`) : null,
+        ...each.related.map(({ file, line, message }) => html("p", { class: "help" }, `${file}:${line}: ${message}`)),
         each.file ? html("p", { class: "place" }, `${each.file}:${each.line}`) : null)));
   }
 

@@ -269,7 +269,10 @@ ${target2}`;
         add2(line, edgeId(edge), withFigures(graph, edge, line, labelOf(container, edge, line)));
       }
     }
-    return { path, pieces, lines: [...lines.values()] };
+    const ids = new Set(pieces.map(({ id }) => id));
+    const isInside = ({ from, to }) => ids.has(from) && ids.has(to);
+    const all = [...lines.values()];
+    return { path, pieces, lines: all.filter(isInside), far: all.filter((line) => !isInside(line)) };
   }
   function exitsOf(container) {
     const repeated = container.repeated ?? [];
@@ -552,7 +555,7 @@ ${target2}`;
       const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
       group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
       const [only, ...others] = line.edges;
-      if (only !== void 0 && !others.length) group.append(svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
+      if (only !== void 0 && !others.length) group.append(svg("path", { class: "hit", d, ...origin(only) }), svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
     }
     return group;
   }
@@ -750,7 +753,7 @@ ${target2}`;
   // src/transition_drag.ts
   var FAR_ENOUGH = 4;
   var HANDLE_RADIUS = 6;
-  function drawTransitions(viewer, drawn) {
+  function drawTransitions(viewer, drawn, clicked) {
     const { frame, world } = viewer;
     frame.classList.add("editable");
     viewer.onMark((picture) => addHandles(viewer.graph, picture, viewer.selected));
@@ -761,7 +764,7 @@ ${target2}`;
       event.preventDefault();
       drag(viewer.graph, frame, world, event, origin2, {
         dropped: (target2) => drawn(origin2.path, origin2.outcome, target2),
-        clicked: () => void viewer.select(origin2.path)
+        clicked: () => clicked(origin2.path, origin2.outcome)
       });
     }, { capture: true });
   }
@@ -864,6 +867,7 @@ ${target2}`;
   // src/edit_fields.ts
   var NOWHERE = "";
   var TRANSITION = "Change a transition";
+  var BEHIND = "Add a state behind it";
   function labelled(text, control) {
     control.id = `edit-${text.toLowerCase().replaceAll(" ", "-")}`;
     return html("p", { class: "field" }, html("label", { for: control.id }, text), control);
@@ -887,8 +891,9 @@ ${target2}`;
       if (hasTransitions(graph, state)) forms.push(transition(graph, state, parent));
       forms.push(rename(state));
     }
-    if (parent) forms.push(add("Add a state behind it", parent, types, state));
-    if (isContainer(state) && state.children.length) forms.push(add("Add a state inside", state, types));
+    if (parent) forms.push(add(BEHIND, graph, parent, types, state));
+    const last = graph.nodes.get(state.children.at(-1) ?? "");
+    if (isContainer(state) && last && state.kind !== "iterator") forms.push(add("Add a state inside", graph, state, types, last));
     if (parent) {
       forms.push(remove(graph, state, parent), contain(graph, state, parent));
     }
@@ -940,30 +945,42 @@ ${target2}`;
       }
     };
   }
-  function add(title, parent, types, after) {
+  function add(title, graph, parent, types, after) {
     const [nameLabel, name] = textField("Name of the new state");
     const [typeLabel, type] = choice("State type", []);
     const doc = html("p", { class: "help" });
-    const outcomes2 = after && parent.kind === "machine" ? after.outcomes.map(({ name: name2 }) => [name2, name2]) : [];
-    const [onLabel, on] = choice("Outcome that leads to it", [[NOWHERE, "(none yet)"], ...outcomes2]);
+    const outcomes2 = parent.kind === "machine" ? after.outcomes.map(({ name: name2 }) => [name2, name2]) : [];
+    const label = title === BEHIND ? "Outcome that leads to it" : `Outcome of ${after.name} that leads to it`;
+    const [onLabel, on] = choice(label, [...outcomes2, [NOWHERE, "(none yet)"]]);
+    on.value = outcomes2.length ? entrance(graph, after) : NOWHERE;
     void types.then((known2) => {
       const describe = () => {
         doc.textContent = known2.find((each) => each.name === type.value)?.doc ?? "";
       };
-      type.replaceChildren(...known2.map((each) => html("option", { value: each.name }, each.name)));
+      const groups = /* @__PURE__ */ new Map();
+      for (const each of known2) groups.set(each.group, [...groups.get(each.group) ?? [], each]);
+      type.replaceChildren(...[...groups].map(([group, some]) => html("optgroup", { label: group }, ...some.map((each) => html("option", { value: each.name, title: each.doc }, each.name)))));
       type.addEventListener("change", describe);
       describe();
     });
     return {
       title,
       fields: [nameLabel, typeLabel, doc, ...outcomes2.length ? [onLabel] : []],
+      fill(outcome) {
+        on.value = outcome;
+        name.focus();
+      },
       planned() {
         const given = { name: name.value.trim(), type: type.value };
-        if (after) given["after"] = lastName(after.path);
+        given["after"] = lastName(after.path);
         if (on.value !== NOWHERE) given["on"] = on.value;
         return { edit: { operation: "add", path: parent.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
       }
     };
+  }
+  function entrance(graph, state) {
+    const led = new Set((graph.leaving.get(state.path) ?? []).map(({ outcome }) => outcome));
+    return (state.outcomes.find(({ name }) => !led.has(name)) ?? state.outcomes.find(({ success }) => success) ?? state.outcomes[0])?.name ?? NOWHERE;
   }
   function remove(graph, state, parent) {
     const others = targets(graph, parent).filter(([value]) => value !== lastName(state.path));
@@ -1202,7 +1219,11 @@ ${target2}`;
       this.forget();
       viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
       document.addEventListener("keydown", (event) => this.key(event));
-      drawTransitions(viewer, (path, outcome, target2) => void this.propose(path, outcome, target2));
+      drawTransitions(
+        viewer,
+        (path, outcome, target2) => void this.propose(path, outcome, target2),
+        (path, outcome) => void this.insert(path, outcome)
+      );
     }
     viewer;
     token;
@@ -1236,15 +1257,22 @@ ${target2}`;
       this.chosen()?.fill?.(outcome, target2);
       await this.look();
     }
+    /** Offer a new state on a transition. */
+    async insert(path, outcome) {
+      await this.viewer.select(path);
+      this.kinds.value = BEHIND;
+      this.showFields();
+      this.chosen()?.fill?.(outcome, "");
+    }
     /** The form of the selected state; what is typed in stays while the state and the machine stay. */
     fill(node) {
       const { graph } = this.viewer;
       const path = node?.path ?? null;
       if (this.filledFor?.graph === graph && this.filledFor.path === path) return this.form;
       if (this.filledFor?.path !== path && !this.said.classList.contains("done")) this.say("");
+      const before = this.filledFor?.path === path ? this.kinds.value : "";
       this.filledFor = { graph, path };
       this.forms = formsOf(graph, node, this.types);
-      const before = this.kinds.value;
       this.kinds.replaceChildren(...this.forms.map(({ title }) => html("option", { value: title }, title)));
       if (this.forms.some(({ title }) => title === before)) this.kinds.value = before;
       this.showFields();
@@ -1329,13 +1357,35 @@ ${target2}`;
     return answer.ok ? answer.content.types : [];
   }
   function described(preview) {
-    const lines = preview.diff.replace(/\n$/, "").split("\n").map((line) => html("span", { class: line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null }, line));
+    const texts = preview.diff.replace(/\n$/, "").split("\n");
+    const lines = texts.map((line, index) => {
+      const look3 = line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null;
+      return html("span", { class: look3 }, ...markedWords(line, otherLine(texts, index)));
+    });
     const parts = [
       html("pre", { class: "diff", tabindex: "0", role: "region", "aria-label": "Change of the script" }, html("code", {}, ...lines))
     ];
     if (preview.added.length) parts.push(html("h4", {}, "New findings"), findings(preview.added));
     if (preview.removed.length) parts.push(html("h4", {}, "Findings that disappear"), findings(preview.removed));
     return parts;
+  }
+  function otherLine(lines, index) {
+    const line = lines[index];
+    const [sign, step] = line.startsWith("-") ? ["+", 1] : ["-", -1];
+    const other = lines[index + Number(step)];
+    const isChange = (text) => /^[+-](?![+-]{2} )/.test(text);
+    return other?.startsWith(String(sign)) && isChange(line) && isChange(other) ? other : null;
+  }
+  function markedWords(line, other) {
+    if (other === null) return [line];
+    const [words, others] = [line, other].map((text) => text.slice(1).split(/(\s+|[[\]{},:])/));
+    let start = 0;
+    while (start < words.length && words[start] === others[start]) start += 1;
+    let end2 = 0;
+    while (end2 < Math.min(words.length, others.length) - start && words.at(-1 - end2) === others.at(-1 - end2)) end2 += 1;
+    const middle = words.slice(start, words.length - end2).join("");
+    if (!middle) return [line];
+    return [line[0] + words.slice(0, start).join(""), html("mark", {}, middle), words.slice(words.length - end2).join("")];
   }
 
   // src/control.ts
@@ -2165,7 +2215,8 @@ ${place2.key}`;
       const [first] = this.errors;
       const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
       const picture = outdated ? ". The picture is that of the last version without errors." : "";
-      this.viewer.notice(first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "");
+      const text = first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "";
+      this.viewer.notice(text, this.errorList());
       this.viewer.refresh();
     }
     errorList() {
@@ -2175,6 +2226,7 @@ ${place2.key}`;
         { class: "error" },
         html("p", {}, html("strong", {}, `error ${each.code}`), " ", each.message),
         each.help ? html("p", { class: "help" }, `help: ${each.help}`) : null,
+        ...each.related.map(({ file, line, message }) => html("p", { class: "help" }, `${file}:${line}: ${message}`)),
         each.file ? html("p", { class: "place" }, `${each.file}:${each.line}`) : null
       )));
     }
@@ -2734,6 +2786,9 @@ out `);
         return { ...scene, ...size };
       }
       this.compose(root, { x: 0, y: 0 }, 0, placed, scene);
+      for (const [container, { far }] of placed) {
+        scene.lines.push(...far.flatMap((line) => this.straight(container, line, scene)));
+      }
       const { full } = placed.get(root);
       return { ...scene, ...full };
     }
@@ -2764,15 +2819,37 @@ out `);
       const content = contentOf(this.graph, path, open, sizes);
       const done = await this.computed(content, placed);
       const title = width(fitting(node.name, "title"), "title") + width(fitting(kindInWords(node), "detail"), "detail") + chipsOf(node).width + 106;
-      return { ...readLayout(content, done, title, this.direction), written };
+      return { ...readLayout(content, done, title, this.direction), far: content.far, written };
     }
     async computed(content, placed) {
       const graph = (fast) => elkGraph(content, placed, this.direction, fast, Boolean(this.graph.model.statistics));
-      if (content.lines.length > VERY_MANY || reach(content) > FAR) {
-        return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+      const rows = () => inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+      if (content.lines.length > VERY_MANY || reach(content) > FAR) return rows();
+      const simple = () => this.compute(graph(true)).catch(rows);
+      return content.lines.length > MANY ? simple() : this.compute(graph(false)).catch(simple);
+    }
+    /** A line from one part of the scene to another one; none where both are in one closed container. */
+    straight(container, line, scene) {
+      const from = this.placeOf(container, line.from, scene);
+      const to = this.placeOf(container, line.to, scene);
+      if (!from || !to || from === to) return [];
+      const points = straightLine(from, to);
+      const [start, end2] = [points[0], points[1]];
+      const widest = Math.max(0, ...line.labels.map((text) => width(fitting(text, "label"), "label")));
+      const size = { width: widest + 10, height: LINE_HEIGHT * line.labels.length + 4 };
+      const label = line.labels.length ? { x: (start.x + end2.x - size.width) / 2, y: (start.y + end2.y - size.height) / 2, ...size } : null;
+      return [{ container, line, points, label }];
+    }
+    /** Where an end of a line is: a state, the closed container that hides it, or a mark of the container. */
+    placeOf(container, id, scene) {
+      const mark = scene.pieces.find((each) => each.container === container && each.piece.id === id);
+      if (mark) return mark;
+      for (let node = this.graph.nodes.get(id); node; node = node.parent === null ? void 0 : this.graph.nodes.get(node.parent)) {
+        const { path } = node;
+        const box = scene.boxes.find((each) => each.path === path);
+        if (box) return box;
       }
-      if (content.lines.length > MANY) return this.compute(graph(true));
-      return this.compute(graph(false)).catch(() => this.compute(graph(true)));
+      return void 0;
     }
     size(path, written = []) {
       const node = this.graph.nodes.get(path);
@@ -2802,6 +2879,16 @@ out `);
       }
     }
   };
+  function straightLine(from, to) {
+    const centre = ({ x, y, width: width2, height }) => ({ x: x + width2 / 2, y: y + height / 2 });
+    const border = (area, other) => {
+      const { x, y } = centre(area);
+      const [dx, dy] = [other.x - x, other.y - y];
+      const scale = Math.min(1, ...[dx ? area.width / 2 / Math.abs(dx) : 1, dy ? area.height / 2 / Math.abs(dy) : 1]);
+      return { x: x + dx * scale, y: y + dy * scale };
+    };
+    return [border(from, centre(to)), border(to, centre(from))];
+  }
   function moved(point, by) {
     return { ...point, x: point.x + by.x, y: point.y + by.y };
   }
@@ -2959,7 +3046,8 @@ ${name}`;
     });
     const lines = (done.edges ?? []).map((edge, index) => {
       const section2 = edge.sections?.[0];
-      const points = section2 ? [section2.startPoint, ...section2.bendPoints ?? [], section2.endPoint] : [];
+      const { from, to } = content.lines[index];
+      const points = section2 ? [section2.startPoint, ...section2.bendPoints ?? [], section2.endPoint] : straightLine(areaOf(places.get(from)), areaOf(places.get(to)));
       const box = edge.labels?.[0];
       const label = box && { x: box.x ?? 0, y: box.y ?? 0, width: box.width ?? 0, height: box.height ?? 0 };
       return {
@@ -2972,6 +3060,9 @@ ${name}`;
     const start = pieces[0];
     const entry = down ? start.x + start.width / 2 : start.y + start.height / 2;
     return { direction, ...frames(pieces, done, least, down), entry, pieces, lines };
+  }
+  function areaOf({ x = 0, y = 0, width: width2 = 0, height = 0 } = {}) {
+    return { x, y, width: width2, height };
   }
   function frames(pieces, done, least, down) {
     const exits = pieces.filter((each) => each.piece.what === "exit");
@@ -3194,7 +3285,7 @@ ${name}`;
     const world = svg("g", {});
     const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
     const panel = html("aside", { "aria-label": "Details" });
-    const notice = html("p", { class: "notice", role: "status" });
+    const notice = html("div", { class: "notice", role: "status" });
     const progressText = html("span", { role: "status" });
     const progress = html(
       "p",
@@ -3469,8 +3560,9 @@ ${name}`;
       setModel,
       expect,
       fit: whole,
-      notice(text) {
-        notice.textContent = text;
+      notice(text, more = null) {
+        if (text && more) notice.replaceChildren(html("details", {}, html("summary", {}, text), more));
+        else notice.textContent = text;
       },
       onSelect(listener) {
         listeners.push(listener);
