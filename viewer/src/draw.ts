@@ -25,6 +25,12 @@ export interface Picture {
   root: SVGGElement;
   states: Map<Path, SVGGElement>;
   lines: { line: PlacedLine; element: SVGGElement }[];
+  /** The lines that start or end at each state. */
+  linesAt: Map<string, SVGGElement[]>;
+  /** What is marked now: the selected state, the one that the keyboard reaches, and the run. */
+  selected: Path | null;
+  focusable: Path | null;
+  run: Highlight | null;
 }
 
 export function draw(graph: Graph, scene: Scene): Picture {
@@ -43,7 +49,16 @@ export function draw(graph: Graph, scene: Scene): Picture {
   const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) =>
     drawLabel(line, label, grounds.get(container) ?? "")));
   const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
-  return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
+  const linesAt = new Map<string, SVGGElement[]>();
+  for (const { line, element } of lines) {
+    for (const end of new Set([line.line.from, line.line.to])) {
+      const known = linesAt.get(end);
+      if (known) known.push(element);
+      else linesAt.set(end, [element]);
+    }
+  }
+  const root = svg("g", {}, tree, edges, marks, labels);
+  return { root, states, lines, linesAt, selected: null, focusable: null, run: null };
 }
 
 function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
@@ -287,21 +302,26 @@ function background({ x, y, width, height }: Area): SVGElement {
   return svg("rect", { x, y, width, height, rx: 4 });
 }
 
-/** Mark the selected state and the lines that start or end at it. */
-export function markSelection(picture: Picture, path: Path | null): void {
-  for (const [each, element] of picture.states) {
-    const chosen = each === path;
-    element.classList.toggle("selected", chosen);
-    element.setAttribute("aria-selected", String(chosen));
-    element.setAttribute("tabindex", chosen ? "0" : "-1");
+/** Mark the selected state and the lines that start or end at it. `focusable` is the state that the keyboard
+ * reaches. Only what changes is touched: a machine may have thousands of states. */
+export function markSelection(picture: Picture, path: Path | null, focusable: Path): void {
+  for (const [each, chosen] of [[picture.selected, false], [path, true]] as const) {
+    if (each === null) continue;
+    const element = picture.states.get(each);
+    element?.classList.toggle("selected", chosen);
+    element?.setAttribute("aria-selected", String(chosen));
+    for (const line of picture.linesAt.get(each) ?? []) line.classList.toggle("near", chosen);
   }
-  for (const { line, element } of picture.lines) {
-    element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
-  }
+  if (picture.focusable !== null) picture.states.get(picture.focusable)?.setAttribute("tabindex", "-1");
+  picture.states.get(focusable)?.setAttribute("tabindex", "0");
+  picture.selected = path;
+  picture.focusable = focusable;
 }
 
 /** Mark what a run does. A state inside a closed container marks that container. */
 export function markRun(graph: Graph, picture: Picture, run: Highlight | null): void {
+  if (picture.run === run) return;
+  picture.run = run;
   const active = drawnStates(graph, picture, run?.active);
   const waiting = drawnStates(graph, picture, run?.waiting);
   const breakpoints = drawnStates(graph, picture, run?.breakpoints);

@@ -186,8 +186,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
 
   function mark(): void {
     if (!picture) return;
-    markSelection(picture, selected);
-    if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
+    markSelection(picture, selected, selected ?? graph.model.root);
     markRun(graph, picture, run);
     for (const each of markers) each(picture);
   }

@@ -358,7 +358,16 @@ ${target2}`;
     const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
     const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) => drawLabel(line, label, grounds.get(container) ?? "")));
     const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
-    return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
+    const linesAt = /* @__PURE__ */ new Map();
+    for (const { line, element } of lines) {
+      for (const end2 of /* @__PURE__ */ new Set([line.line.from, line.line.to])) {
+        const known2 = linesAt.get(end2);
+        if (known2) known2.push(element);
+        else linesAt.set(end2, [element]);
+      }
+    }
+    const root = svg("g", {}, tree, edges, marks, labels);
+    return { root, states, lines, linesAt, selected: null, focusable: null, run: null };
   }
   function drawState(graph, node, box) {
     const siblings = node.parent === null ? [node.path] : graph.nodes.get(node.parent)?.children ?? [];
@@ -579,18 +588,22 @@ ${target2}`;
   function background({ x, y, width: width2, height }) {
     return svg("rect", { x, y, width: width2, height, rx: 4 });
   }
-  function markSelection(picture, path) {
-    for (const [each, element] of picture.states) {
-      const chosen = each === path;
-      element.classList.toggle("selected", chosen);
-      element.setAttribute("aria-selected", String(chosen));
-      element.setAttribute("tabindex", chosen ? "0" : "-1");
+  function markSelection(picture, path, focusable) {
+    for (const [each, chosen] of [[picture.selected, false], [path, true]]) {
+      if (each === null) continue;
+      const element = picture.states.get(each);
+      element?.classList.toggle("selected", chosen);
+      element?.setAttribute("aria-selected", String(chosen));
+      for (const line of picture.linesAt.get(each) ?? []) line.classList.toggle("near", chosen);
     }
-    for (const { line, element } of picture.lines) {
-      element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
-    }
+    if (picture.focusable !== null) picture.states.get(picture.focusable)?.setAttribute("tabindex", "-1");
+    picture.states.get(focusable)?.setAttribute("tabindex", "0");
+    picture.selected = path;
+    picture.focusable = focusable;
   }
   function markRun(graph, picture, run) {
+    if (picture.run === run) return;
+    picture.run = run;
     const active = drawnStates(graph, picture, run?.active);
     const waiting = drawnStates(graph, picture, run?.waiting);
     const breakpoints = drawnStates(graph, picture, run?.breakpoints);
@@ -3381,8 +3394,7 @@ ${name}`;
     }
     function mark() {
       if (!picture) return;
-      markSelection(picture, selected);
-      if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
+      markSelection(picture, selected, selected ?? graph.model.root);
       markRun(graph, picture, run);
       for (const each of markers) each(picture);
     }
