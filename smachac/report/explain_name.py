@@ -50,11 +50,15 @@ def explain_name(context: Context, report: Report, name: str, form: str) -> str:
 
 def _states(context: Context, name: str) -> list[str]:
     """The paths in the script of the states of a name: the end of a path in the script, or of one
-    in traces (`LOOK (timeout)/TIMER`)."""
+    in traces, also without its brackets (`LOOK/TIMER`)."""
     view = context.written
     found = [path for path in view.states if _ends(path, name)]
     if not found:
-        found = [part.state for shown, part in view.traced.items() if _ends(shown, name)]
+        found = [
+            part.state
+            for shown, part in view.traced.items()
+            if _ends(shown, name) or _ends(f"{part.state}/{shown.rpartition('/')[2]}", name)
+        ]
     return list(dict.fromkeys(found))
 
 
