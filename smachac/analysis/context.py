@@ -32,6 +32,7 @@ from smachac.ir import nodes, script_paths, traversal
 from smachac.ir import written as written_states
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
+from smachac.ir.script_paths import PlainPaths
 from smachac.ir.secret_keys import SecretKeys, secret_keys
 from smachac.pysource.user_code import CodeFacts, ProjectCode
 
@@ -194,7 +195,7 @@ class Context:
         return written_states.written(self.machine)
 
     @cached_property
-    def plain_paths(self) -> script_paths.PlainPaths:
+    def plain_paths(self) -> PlainPaths:
         """The paths of the script without roles, by full path; only those that differ."""
         return script_paths.plain_paths(self.machine.root)
 

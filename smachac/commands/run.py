@@ -365,7 +365,7 @@ def sugar_of(machine: Machine) -> Sugar:
             if part.role != "state":
                 states[part.shown] = state.path
             if part.begins is not None:
-                count = badges["retry" if part.begins == "try" else "for_each"].count
+                count = badges["retry" if part.begins == "try" else "for_each"].number
                 of = "" if count is None else str(count)
                 repeated[around] = Repeated(part.shown, words[part.begins], of)
             if part.role == "timeout":

@@ -42,7 +42,8 @@ class Badge(NamedTuple):
     `limit` is its value in words: `5 min`, `3 tries`, `wp in waypoints`; `delay` the pause before
     each further try, `items` the items of a loop that the script lists. `outcome` is the outcome
     that the field adds, empty if it adds none. After the outcomes `again` of the state, the next
-    try or item begins. `path` is the full path of the container that was made of the field.
+    one of `number` tries or items begins. `path` is the full path of the container that was made of
+    the field.
     """
 
     field: BadgeField
@@ -50,7 +51,7 @@ class Badge(NamedTuple):
     path: str
     outcome: str = ""
     again: tuple[str, ...] = ()
-    count: int | None = None
+    number: int | None = None
     delay: str = ""
     items: Value | None = None
 

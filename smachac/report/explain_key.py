@@ -112,7 +112,7 @@ def _in_script(context: Context, parts: Mapping[str, KeyPart]) -> KeyExplanation
     found = []
     for path, part in own.items():
         inside, outer = part.inside, around(context.flow, path)
-        while inside is not None and outer in parts and outer not in own:
+        while inside and outer is not None and outer in parts and outer not in own:
             inside, outer = parts[outer].inside, around(context.flow, outer)
         found.append(replace(part, inside=inside))
     return tuple(found)

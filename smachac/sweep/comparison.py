@@ -5,32 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import Any
 
-from smachac.sweep.summary import Summary
+from smachac.sweep.summary import Difference, Summary
 from smachac.sweep.text import EXCEPTION, end_text
 from smachac.verify.trace_statistics import wilson_interval
 
 
 class BaselineError(Exception):
     """A file is no report of a sweep; the message gives the reason."""
-
-
-class Difference(NamedTuple):
-    """The share of runs with a property before and after, and the difference with its interval.
-    `what` is empty for the successes, else what failed first."""
-
-    what: str
-    before: float
-    after: float
-    difference: float
-    interval: tuple[float, float]
-
-    @property
-    def is_clear(self) -> bool:
-        """Whether the interval does not contain 0."""
-        low, high = self.interval
-        return low > 0 or high < 0
 
 
 def read_baseline(text: str) -> Summary:

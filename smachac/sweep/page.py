@@ -7,8 +7,7 @@ from html import escape
 from typing import Any
 
 from smachac.report.terminal import visible
-from smachac.sweep.comparison import Difference
-from smachac.sweep.summary import Summary
+from smachac.sweep.summary import Difference, Summary
 from smachac.sweep.text import EXCEPTION, count_text, end_text, first_text, points
 from smachac.verify.statistics_report import percent, seconds
 from smachac.verify.trace_statistics import rounds_in_words

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import outcome_names
@@ -26,6 +26,23 @@ PARTS = 10
 """The parts into which the range of a varied number is divided."""
 
 Summary = dict[str, Any]
+
+
+class Difference(NamedTuple):
+    """The share of runs with a property before and after, and the difference with its interval.
+    `what` is empty for the successes, else what failed first."""
+
+    what: str
+    before: float
+    after: float
+    difference: float
+    interval: tuple[float, float]
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the interval does not contain 0."""
+        low, high = self.interval
+        return low > 0 or high < 0
 
 
 class Totals:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree as ET
 
 from smachac.report.junit import xml_text
 from smachac.report.terminal import on_one_line
-from smachac.sweep.summary import Summary
+from smachac.sweep.summary import Difference, Summary
 from smachac.sweep.task import Run
 from smachac.verify.statistics_report import percent, seconds, table
 from smachac.verify.trace_statistics import rounds_in_words
-
-if TYPE_CHECKING:
-    from smachac.sweep.comparison import Difference
 
 MOST_LINES = 10
 """Limit on the groups of failures and on the missing transitions in the text; JSON has all."""

@@ -272,4 +272,7 @@ class Control:
 
 
 def _round(text: str | None) -> Round | None:
-    return text if text == "try" or text == "item" else None
+    match text:
+        case "try" | "item":
+            return text
+    return None

@@ -13,11 +13,11 @@ from smachac.ir.script_paths import role, script_paths, walk_script
 from smachac.ir.traversal import outcome_names, walk
 from smachac.ir.written import duration, generated, written
 from tests.ir.test_script_paths import EACH, LIMIT, RETRY, SLOWLY, machine
+from tests.support.examples import seeds
 from tests.support.sugared_scripts import random_script
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*/main.yml"))
-SEEDS = range(300)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.parent.name)
@@ -29,7 +29,7 @@ def test_each_state_of_an_example_is_one_state_of_the_view(path: Path) -> None:
     assert_every_node_has_its_place(found)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("seed", seeds(40, 100, 300))
 def test_each_state_of_a_random_script_is_one_state_of_the_view(seed: int) -> None:
     script = random_script(seed)
     found = script.machine()

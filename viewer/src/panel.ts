@@ -76,7 +76,7 @@ function heading(graph: Graph, node: StateNode, actions: PanelActions): HTMLElem
     html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) ? ` (${node.type})` : ""),
   );
   if (node.badges.length) {
-    made.append(html("ul", { class: "badges" }, ...node.badges.map((badge) => html("li", {}, badgeInWords(badge)))));
+    made.append(html("ul", { class: "badges" }, ...node.badges.map((badge) => html("li", {}, badgeInWords(badge, node)))));
   }
   if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
   if (node.unknown) made.append(html("p", { class: "doc" }, `Not known exactly: ${node.unknown}.`));
@@ -87,11 +87,11 @@ function heading(graph: Graph, node: StateNode, actions: PanelActions): HTMLElem
 }
 
 /** What a badge does, in a sentence. */
-function badgeInWords(badge: Badge): string {
+function badgeInWords(badge: Badge, node: StateNode): string {
   const again = badge.again.join(" or ");
   switch (badge.field) {
     case "timeout":
-      return `${badge.text}: then it ends with ${badge.outcome}`;
+      return `${badge.text}: then ${node.outcomes.some(({ name }) => name === badge.outcome) ? "it" : "a try"} ends with ${badge.outcome}`;
     case "retry":
       return `${badge.text}: the next one after ${again}; after the last one it ends with ${badge.outcome}`;
     case "for_each":
@@ -199,7 +199,7 @@ function machineSections(graph: Graph, actions: PanelActions): (HTMLElement | nu
   const heading = html("section", { "data-section": "machine" },
     html("p", { class: "path" }, model.source),
     html("h2", {}, model.name),
-    html("p", { class: "kind" }, `${model.nodes.length} states, ${model.edges.length} transitions`),
+    html("p", { class: "kind" }, `${counted(model.nodes.length - 1, "state")}, ${counted(model.edges.length, "transition")}`),
     root?.doc ? html("p", { class: "doc" }, root.doc) : null,
   );
   return [
@@ -209,6 +209,10 @@ function machineSections(graph: Graph, actions: PanelActions): (HTMLElement | nu
     section("Legend", legend(model)),
     section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)]))),
   ];
+}
+
+function counted(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? "" : "s"}`;
 }
 
 function machineFindings(graph: Graph, actions: PanelActions): HTMLElement {

@@ -50,6 +50,7 @@ class RunView {
   private follows = false;
   private followed = 0;
   private shownNode: StateNode | null = null;
+  private filledFor = "";
   private errors: Finding[] = [];
   private link = "";
   private arrived = performance.now();
@@ -287,7 +288,8 @@ class RunView {
   /** The section of the selected state; it is filled again as the run goes on. */
   private fillPart(node: StateNode | null): void {
     if (!node) return;
-    const focused = this.part.contains(document.activeElement);
+    const focused = this.filledFor === node.path && this.part.contains(document.activeElement);
+    this.filledFor = node.path;
     const control = this.control.partFor(node);
     if (!focused || !control) this.part.replaceChildren(...(control ? [control] : []));
     else this.part.querySelector(".facts")?.remove();

@@ -599,8 +599,8 @@ def name_clash(context: Context) -> Iterator[Finding]:
                     ),
                     node=f"{path}/{child.name}",
                 )
-    for path, container in context.containers:
-        yield from _trace_clashes(path, container)
+    for path, around in context.containers:
+        yield from _trace_clashes(path, around)
 
 
 def _trace_clashes(path: str, container: Container) -> Iterator[Finding]:

@@ -140,7 +140,7 @@ def badge_data(badge: Badge) -> dict[str, Any]:
         "text": badge.text,
         "outcome": badge.outcome or None,
         "again": list(badge.again),
-        "count": badge.count,
+        "count": badge.number,
     }
 
 

@@ -1073,7 +1073,7 @@ ${target2}`;
       html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) ? ` (${node.type})` : "")
     );
     if (node.badges.length) {
-      made.append(html("ul", { class: "badges" }, ...node.badges.map((badge2) => html("li", {}, badgeInWords(badge2)))));
+      made.append(html("ul", { class: "badges" }, ...node.badges.map((badge2) => html("li", {}, badgeInWords(badge2, node)))));
     }
     if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
     if (node.unknown) made.append(html("p", { class: "doc" }, `Not known exactly: ${node.unknown}.`));
@@ -1082,11 +1082,11 @@ ${target2}`;
     }
     return made;
   }
-  function badgeInWords(badge2) {
+  function badgeInWords(badge2, node) {
     const again = badge2.again.join(" or ");
     switch (badge2.field) {
       case "timeout":
-        return `${badge2.text}: then it ends with ${badge2.outcome}`;
+        return `${badge2.text}: then ${node.outcomes.some(({ name }) => name === badge2.outcome) ? "it" : "a try"} ends with ${badge2.outcome}`;
       case "retry":
         return `${badge2.text}: the next one after ${again}; after the last one it ends with ${badge2.outcome}`;
       case "for_each":
@@ -1193,7 +1193,7 @@ ${target2}`;
       { "data-section": "machine" },
       html("p", { class: "path" }, model.source),
       html("h2", {}, model.name),
-      html("p", { class: "kind" }, `${model.nodes.length} states, ${model.edges.length} transitions`),
+      html("p", { class: "kind" }, `${counted(model.nodes.length - 1, "state")}, ${counted(model.edges.length, "transition")}`),
       root?.doc ? html("p", { class: "doc" }, root.doc) : null
     );
     return [
@@ -1203,6 +1203,9 @@ ${target2}`;
       section("Legend", legend(model)),
       section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)])))
     ];
+  }
+  function counted(count2, noun) {
+    return `${count2} ${noun}${count2 === 1 ? "" : "s"}`;
   }
   function machineFindings(graph, actions) {
     const list = findings(graph.model.findings);
@@ -2156,6 +2159,7 @@ ${place2.key}`;
     follows = false;
     followed = 0;
     shownNode = null;
+    filledFor = "";
     errors = [];
     link = "";
     arrived = performance.now();
@@ -2366,7 +2370,8 @@ ${place2.key}`;
     /** The section of the selected state; it is filled again as the run goes on. */
     fillPart(node) {
       if (!node) return;
-      const focused = this.part.contains(document.activeElement);
+      const focused = this.filledFor === node.path && this.part.contains(document.activeElement);
+      this.filledFor = node.path;
       const control = this.control.partFor(node);
       if (!focused || !control) this.part.replaceChildren(...control ? [control] : []);
       else this.part.querySelector(".facts")?.remove();
