@@ -168,6 +168,10 @@ def _script_inside(path: Path) -> str:
     return f"name a script{example}; `smachac check` also accepts folders"
 
 
+LONG_TEXT = 100_000
+"""In characters: the tree of a longer text is not kept after the text was read."""
+
+
 class Disk:
     """The files of one or several runs: each file is read once, each text is parsed once, until
     `replace` or `refresh` forgets it.
@@ -231,9 +235,9 @@ class Disk:
         return tree
 
     def release(self, source: Source) -> None:
-        """Forget the tree of a text, unless an editor needs it: it takes half of the memory of a
-        check."""
-        if self._pieces is None:
+        """Forget the tree of a long text, unless an editor needs it: it takes half of the memory of
+        a check. Of a short text the search for repairs uses it."""
+        if self._pieces is None and len(source.text) > LONG_TEXT:
             self._trees.pop(source, None)
 
     def _parse_in_pieces(self, source: Source) -> Tree | None:

@@ -123,6 +123,7 @@ def _with_texts(library: Library, changed: Mapping[str, Source]) -> Library:
         script=lambda name, caller: now(library.script(name, caller)),
         template=lambda file: now(library.template(file)),
         own_template=lambda file: now(library.own_template(file)),
+        release=lambda source: None,
         parse=lambda source, report: (parse_mended if source in new else library.parse)(
             source, report
         ),
