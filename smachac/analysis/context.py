@@ -29,8 +29,10 @@ from smachac.analysis.type_lattice import MisfitKind
 from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
+from smachac.ir import written as written_states
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
+from smachac.ir.script_paths import PlainPaths
 from smachac.ir.secret_keys import SecretKeys, secret_keys
 from smachac.pysource.user_code import CodeFacts, ProjectCode
 
@@ -187,7 +189,12 @@ class Context:
         return script_paths.script_paths(self.machine.root)
 
     @cached_property
-    def plain_paths(self) -> dict[str, str]:
+    def written(self) -> written_states.Written:
+        """The states as they were written."""
+        return written_states.written(self.machine)
+
+    @cached_property
+    def plain_paths(self) -> PlainPaths:
         """The paths of the script without roles, by full path; only those that differ."""
         return script_paths.plain_paths(self.machine.root)
 

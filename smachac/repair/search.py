@@ -82,11 +82,12 @@ def clusters_of(
     """
     found: list[Cluster] = []
     wanted = {identity(item) for item in shown}
-    for analysis in batch.analyses.values():
-        mine = [item for item in analysis.report if identity(item) in wanted]
-        if not mine:
-            continue
+    for name, known in batch.analyses.items():
+        mine = [item for item in known.report if identity(item) in wanted]
         most = MOST_CLUSTERS - len(found)
+        if not most or all(item.severity is Severity.INFO for item in mine):
+            continue
+        analysis = batch.whole(name)
         for cluster in clusters(analysis, mine, again(analysis, extra), most):
             found.append(cluster)
             wanted -= {identity(item) for item in (cluster.finding, *cluster.explained)}

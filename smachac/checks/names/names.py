@@ -36,6 +36,7 @@ from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
 from smachac.ir.outcome_names import OF_SMACH
+from smachac.ir.script_paths import role, sugared_child
 from smachac.ir.traversal import outcome_names, written_children
 
 EXCEPTIONS = "error"
@@ -558,7 +559,8 @@ def name_clash(context: Context) -> Iterator[Finding]:
     """A state has the name of an outcome of its container, or a name that is not valid in paths.
 
     A transition to a name of both kinds leads to the state: the robot continues where its task
-    should end. With a `/` in a name, two states can have the same path in traces and messages.
+    should end. With a `/` in a name, two states can have the same path in traces and messages;
+    the same happens with the name `MOVE (retry)` beside a state `MOVE` with `retry`.
 
     Wrong:
         name: sm
@@ -605,6 +607,36 @@ def name_clash(context: Context) -> Iterator[Finding]:
                     ),
                     node=f"{path}/{child.name}",
                 )
+    for path, around in context.containers:
+        yield from _trace_clashes(path, around)
+
+
+def _trace_clashes(path: str, container: Container) -> Iterator[Finding]:
+    """The states with a name that traces have for a part of another state: `A (retry)` for the
+    tries of `A`."""
+    parts: dict[str, Node] = {}
+    for child in container.children:
+        node: Node | None = child
+        while node is not None and not isinstance(node, Leaf) and role(node):
+            parts[f"{child.name} ({role(node)})"] = child
+            node = sugared_child(node)
+    for child in container.children:
+        if (other := parts.get(child.name)) is not None:
+            field = child.name[len(other.name) + 2 : -1]
+            field = "retry" if field == "try" else field
+            yield Finding(
+                span=child.span,
+                message=f"`{child.name}` is the name that traces have for `{field}` of"
+                f" `{other.name}`",
+                arguments=(child.name, other.name),
+                help="rename the state, also in the transitions that lead to it",
+                effect="a trace does not show which of the two it is about",
+                related=(
+                    *other_place(other.span, f"the state with `{field}`"),
+                    *calls(child, child.span),
+                ),
+                node=f"{path}/{child.name}",
+            )
 
 
 @rule(

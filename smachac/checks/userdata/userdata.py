@@ -114,13 +114,13 @@ def read_before_write(context: Context) -> Iterator[Finding]:
 
 
 def _dropped(container: Container) -> frozenset[str]:
-    """The keys that the code of a state in a container sets, also those that its interface does not
-    declare."""
+    """The keys that the code of a state in a container sets, and its interface does not declare."""
     return frozenset(
         word.text
         for child in container.children
         if isinstance(child, nodes.Leaf) and child.class_facts is not None
         for word in child.class_facts.writes
+        if all(key.name != word.text for key in child.outputs)
     )
 
 
