@@ -131,7 +131,7 @@ def _attributes(module: Module, names: _Names) -> Iterator[tuple[MessageRef, Wor
             found = names.modules.get(ast.unparse(node.value))
             if found is not None:
                 span = module.text.span(node)
-                span = span._replace(start=max(span.end - len(node.attr), 0))
+                span = Span(span.source, max(span.end - len(node.attr), 0), span.end)
                 yield MessageRef(found[1], found[0], node.attr), Word(node.attr, span)
 
 

@@ -232,20 +232,17 @@ def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Ite
         targets = _targets(container, child, left, free, steps)
         if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
             for outcome in left:
-                again = _before_detour(steps, child, targets[outcome.name])
-                yield _unhandled(path, container, child, outcome, targets[outcome.name], again)
+                yield _unhandled(path, container, child, outcome, targets[outcome.name])
         else:
             yield _several_unhandled(path, container, child, targets)
 
 
 class _Steps(NamedTuple):
-    """The transitions in a container: `order` are the numbers of its states, `before` by target the
-    first three states that lead there, `alike` by outcome its targets with their numbers, `used`
-    the names that are targets."""
+    """The transitions in a container: `order` are the numbers of its states, `alike` by outcome its
+    targets with their numbers, `used` the names that are targets."""
 
     names: Sequence[str]
     order: Mapping[str, int]
-    before: Mapping[str, Sequence[Node]]
     alike: Mapping[str, Mapping[str, int]]
     used: AbstractSet[str]
 
@@ -254,18 +251,15 @@ def _steps(container: Linear) -> _Steps:
     names = [child.name for child in written_children(container)]
     order = {name: at for at, name in enumerate(names)}
     ends = outcome_names(container)
-    before: dict[str, list[Node]] = {}
+    used: set[str] = set()
     alike: dict[str, dict[str, int]] = {}
     for child in container.children:
         for step in child.transitions:
-            states = before.setdefault(step.target, [])
-            is_new = child.name in order and not (states and states[-1] is child)
-            if is_new and len(states) < 3:
-                states.append(child)
+            used.add(step.target)
             if step.target in order or step.target in ends:
                 targets = alike.setdefault(step.outcome, {})
                 targets.setdefault(step.target, len(targets))
-    return _Steps(names, order, before, alike, before.keys())
+    return _Steps(names, order, alike, used)
 
 
 def unentered(container: Linear) -> list[str]:
@@ -312,15 +306,6 @@ def _is_only_good(child: Node, outcome: str) -> bool:
     """Whether all other outcomes of a state are failures or a stop, and one is a failure."""
     others = [name for name in outcome_names(child) if name not in (outcome, PREEMPTED)]
     return bool(others) and all(fails(child, name) for name in others)
-
-
-def _before_detour(steps: _Steps, child: Node, target: str) -> str:
-    """The only state that leads to a state, if another of its outcomes leads to `target`, which is
-    meant for a success of that state: it may have to run again. Empty without one."""
-    before = [state for state in steps.before.get(child.name, ()) if state is not child]
-    if len(before) != 1 or all(step.target != target for step in before[0].transitions):
-        return ""
-    return before[0].name
 
 
 def _target(container: Linear, child: Node, outcome: str, succeeds: bool, steps: _Steps) -> str:
@@ -430,10 +415,6 @@ def _unhandled(
         )
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
-    if fails(child, outcome.name):
-        again = ""
-    if again:
-        again = f", or `{notation.entry(child, outcome.name, again)}` to run `{again}` again"
     missing = notation.entry(child, outcome.name, target)
     field = _field_that_adds(child, outcome.name)
     origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
@@ -447,7 +428,7 @@ def _unhandled(
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{missing}` to the transitions of `{child.name}`{again}",
+        help=f"{why}add `{missing}` to the transitions of `{child.name}`",
         related=(
             *(other_place(outcome.span, origin) if inside and outcome.span != child.span else ()),
             *calls(child, child.span),
@@ -497,21 +478,18 @@ def implicit_exit(context: Context) -> Iterator[Finding]:
     for path, container in context.linear:
         for child in container.children if not container.sugar else ():
             steps = [step for step in child.transitions if step.origin == "implicit"]
-            if steps:
+            if steps and not unknown_outcomes(child):
                 yield from _implicit(path, container, child, steps)
 
 
 def _implicit(
     path: str, container: Linear, child: Node, steps: Iterable[Transition]
 ) -> Iterator[Finding]:
-    misspelt = {meant for _, meant in unknown_outcomes(child)}
     beside = any(
         step.origin == "written" and not fails(child, step.outcome) and step.outcome != PREEMPTED
         for step in child.transitions
     )
     for step in steps:
-        if step.outcome in misspelt:
-            continue
         forgotten = beside and fails(child, step.outcome)
         added = f"`{notation.entry(child, step.outcome, step.target)}`"
         yield Finding(
