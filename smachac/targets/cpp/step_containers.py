@@ -161,7 +161,8 @@ def requests(plan: StepPlan) -> Lines:
         *indented(inner),
         "}",
         "",
-        "template <class Run> void ask_running_(States &states, Run &run) {",
+        "template <class Run>",
+        "void ask_running_(States &states, Run &run) {",
         *indented(running),
         "}",
     ]

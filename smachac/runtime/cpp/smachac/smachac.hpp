@@ -667,6 +667,10 @@ private:
   }
 };
 
+/// A type, for arguments of a class only: a pointer to an Observer takes the other `run`.
+template <class Watch, class Result>
+using IfClass = std::enable_if_t<std::is_class_v<Watch>, Result>;
+
 /// The context of a run with an observer of any class with `on(const Event &)`. It receives the
 /// events start, enter, exit, transition, error and finish, without a virtual call, a lock or a
 /// text that is made for it: a transition that ends a container has the outcome `with`, and no
