@@ -1,4 +1,4 @@
-// Made by smachac 0.1.0 from main.yml (sha256 9f64a446864cea9d).
+// Made by smachac 0.1.0 from main.yml (sha256 3ae44269bb7cb387).
 #pragma once
 
 #include "smachac/smachac.hpp"
@@ -1841,13 +1841,13 @@ inline Outcome execute(States &states, Userdata &, Run &around) {
 namespace delivery_round { // main.yml:2
 
 enum class Outcome : std::uint8_t {
-  delivered,
+  done,
   aborted,
   preempted,
 };
 
 constexpr const char *name(Outcome outcome) {
-  constexpr const char *names[] = {"delivered", "aborted", "preempted"};
+  constexpr const char *names[] = {"done", "aborted", "preempted"};
   return names[static_cast<std::size_t>(outcome)];
 }
 
@@ -2003,7 +2003,7 @@ inline Outcome execute(States &states, Userdata &ud, Run &run) {
       run.enter(places, state);
       switch (CHARGE::execute(states.CHARGE_, ud.CHARGE_, run)) {
       case CHARGE::Outcome::full:
-        return run.end_asked(places, state, "full", Outcome::delivered);
+        return run.end_asked(places, state, "full", Outcome::done);
       case CHARGE::Outcome::no_current:
         run.go(places, state, "no_current", State::DOCK_AGAIN);
         goto DOCK_AGAIN;
@@ -2019,7 +2019,7 @@ inline Outcome execute(States &states, Userdata &ud, Run &run) {
       run.enter(places, state);
       switch (states.DOCK_AGAIN.execute()) {
       case types::DOCK_AGAIN::Outcome::docked:
-        return run.end(places, state, "docked", Outcome::delivered);
+        return run.end(places, state, "docked", Outcome::done);
       case types::DOCK_AGAIN::Outcome::missed:
         run.go(places, state, "missed", State::CALL_OPERATOR);
         goto CALL_OPERATOR;

@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 9f64a446864cea9d).
+# Made by smachac 0.1.0 from main.yml (sha256 3ae44269bb7cb387).
 """The state machine `delivery_round`."""
 
 import os
@@ -211,7 +211,7 @@ def build():
     """Build the state machine `delivery_round`."""
     # main.yml:2
     delivery_round = stoppable_again(
-        smach.StateMachine(outcomes=["delivered", "aborted", "preempted"]),
+        smach.StateMachine(outcomes=["done", "aborted", "preempted"]),
     )
     delivery_round.userdata.rooms = [12, 14, 17]
     delivery_round.userdata.failed_rooms = 0
@@ -483,7 +483,7 @@ def build():
             "CHARGE",
             ends_preempted(sm_charge),
             transitions={
-                "full": "delivered",
+                "full": "done",
                 "no_current": "DOCK_AGAIN",
                 "timeout": "CALL_OPERATOR",
                 "preempted": "preempted",
@@ -494,7 +494,7 @@ def build():
         smach.StateMachine.add(
             "DOCK_AGAIN",
             ScriptedState(outcomes=["docked", "missed"]),
-            transitions={"docked": "delivered", "missed": "CALL_OPERATOR"},
+            transitions={"docked": "done", "missed": "CALL_OPERATOR"},
         )
 
         # main.yml:84
