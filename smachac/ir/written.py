@@ -310,7 +310,10 @@ def _badge(node: Container, full: str) -> Badge | None:
             limit = f"{tries} {'try' if tries == 1 else 'tries'}"
             return Badge("retry", limit, full, node.exhausted_outcome, again, tries, _delay(node))
         case nodes.Iterator(sugar="for_each"):
-            limit = f"{node.item_key} {items_in_words(node)}".strip()
+            # A remapped key has another name in the state than in the script.
+            word = node.item_span.text
+            item = word if word.isidentifier() else node.item_key
+            limit = f"{item} {items_in_words(node)}".strip()
             return Badge(
                 "for_each", limit, full, "", node.loop_outcomes, _count(node), "", node.items
             )

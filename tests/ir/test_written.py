@@ -142,7 +142,16 @@ states:
     found = analyse_script(Source("m.yml", text)).machine
     assert found is not None
     state = written(found).states["sm/A"]
-    assert [badge.text for badge in state.badges] == ["exception \N{RIGHTWARDS ARROW} error", "2 tries"]
+    texts = [badge.text for badge in state.badges]
+    assert texts == ["exception \N{RIGHTWARDS ARROW} error", "2 tries"]
     assert state.field_of("error") == "catches"
     (whole, inner) = [each for each in generated(found).states.values() if each.name == "A"]
     assert (whole.repeated, inner.repeated) == ((), ())
+
+
+def test_the_item_of_a_loop_has_its_name_in_the_script() -> None:
+    path = ROOT / "tests" / "cases" / "sugar" / "main.yml"
+    found = analyse_script(path).machine
+    assert found is not None
+    (badge,) = written(found).states["tour/VISIT"].badges
+    assert badge.text == "for each wp in waypoints"
