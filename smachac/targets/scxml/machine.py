@@ -1,0 +1,625 @@
+"""The states of an SCXML document.
+
+A state machine is a compound state with a final state for each outcome, which gives the outcome as
+donedata; a concurrence is a parallel state whose transitions are its rules; an iterator is a
+compound state with an index. Requests to stop are in the data of the document (functions.js).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import PurePath
+
+from smachac.analysis.type_inference import Types, infer
+from smachac.diagnostics.diagnostic import Report
+from smachac.diagnostics.source import NOWHERE, Span, assert_never
+from smachac.ir import nodes
+from smachac.ir.concurrence_rules import by_priority
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
+from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.script_paths import script_paths
+from smachac.ir.secret_keys import secret_keys
+from smachac.ir.traversal import (
+    containers,
+    enclosing,
+    leads_to_child,
+    outcome_names,
+    remapping,
+    walk,
+)
+from smachac.ir.types import ANY
+from smachac.records import dataclass
+from smachac.runtime.tracing.writer import SECRET
+from smachac.targets import COMMENT_WIDTH, comment_lines
+from smachac.targets.errors import unsupported_by_target
+from smachac.targets.scxml.document import (
+    Comment,
+    Element,
+    Identifiers,
+    element,
+    script,
+    taken_data,
+)
+from smachac.targets.scxml.document import EVENTS, OWN_DATA
+from smachac.targets.scxml.expressions import (
+    Reads,
+    UnsupportedError,
+    js_function,
+    js_member,
+    js_object,
+    js_string,
+    js_value,
+)
+
+Content = list[Element | Comment]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Way:
+    """A way on after an outcome of a state: the state of the document that follows, and the guard,
+    empty if there is none. `to` is the target in traces; empty in a concurrence, whose branches
+    have no transitions."""
+
+    target: str
+    to: str = ""
+    guard: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scope:
+    """A container: its state, the name of its userdata, and the types of its keys."""
+
+    path: str
+    node: Container
+    id: str
+    data: str
+
+
+class Plan:
+    """A machine with the identifiers of its states and data, and the report of what SCXML cannot
+    express of it. `traced`: the document logs each event of a trace."""
+
+    def __init__(self, machine: Machine, report: Report, *, traced: bool) -> None:
+        self.machine = machine
+        self.report = report
+        self.traced = traced
+        self.types: Types = infer(machine)
+        self.around = enclosing(machine.root)
+        self.shown = script_paths(machine.root)
+        self.secret = secret_keys(machine) if traced else {}
+        self._states = Identifiers(EVENTS)
+        data = Identifiers(taken_data(), joiner="_")
+        self.ids: dict[str, str] = {}
+        self.scopes: dict[str, Scope] = {}
+        self._finals: dict[tuple[str, str], str] = {}
+        for path, node in walk(machine.root):
+            around = path.rpartition("/")[0] if path not in self.around else self.around[path][0]
+            self.ids[path] = self._states.new(node.name, self.ids.get(around, ""))
+            if not isinstance(node, Leaf):
+                outer = self.scopes[around].data if around in self.scopes else ""
+                name = data.new(node.name, outer)
+                self.scopes[path] = Scope(path=path, node=node, id=self.ids[path], data=name)
+
+    def refuse(self, span: Span, message: str, help: str | None = None, *names: str) -> None:
+        self.report.append(unsupported_by_target(span, "SCXML", message, help, names))
+
+    def final(self, path: str, outcome: str) -> str:
+        """The final state of a container, or of the region of a branch, for an outcome."""
+        if (path, outcome) not in self._finals:
+            name = outcome if path == self.machine.root.name else f"{self.ids[path]}-{outcome}"
+            self._finals[path, outcome] = self._states.new(name)
+        return self._finals[path, outcome]
+
+    def region(self, path: str) -> str:
+        return self.final(path, "branch ")
+
+    def failed(self, path: str) -> str:
+        """The final state after an exception in a branch or in the machine that nothing catches."""
+        return self.final(path, "failed ")
+
+    def finals(self, path: str) -> dict[str, str]:
+        """The final states that were named so far for a container or branch, by outcome."""
+        return {outcome: id for (where, outcome), id in self._finals.items() if where == path}
+
+    def next(self, path: str) -> str:
+        return self.final(path, "next ")
+
+    def log(self, event: str, path: str, **fields: str) -> Element | None:
+        """A trace event; the fields are expressions."""
+        if not self.traced:
+            return None
+        named = {"event": js_string(event), "path": js_string(path), **fields}
+        return element("log", label="trace", expr=f"JSON.stringify({js_object(named.items())})")
+
+    def logged(self, path: str, outcome: str, way: Way) -> Content:
+        """The trace events of the exit of a leaf or concurrence and of its transition."""
+        return _present(self.log("exit", path, outcome=js_string(outcome)), *self.moved(path, outcome, way))
+
+    def moved(self, path: str, outcome: str, way: Way) -> Content:
+        if not way.to:
+            return []
+        moved = self.log("transition", path, outcome=js_string(outcome), to=js_string(way.to))
+        return _present(moved)
+
+
+def _present(*found: Element | Comment | None) -> Content:
+    return [each for each in found if each is not None]
+
+
+def ways(plan: Plan, path: str, outcome: str) -> list[Way]:
+    """The ways on after an outcome of a state, the guarded ones first; none if there is no
+    transition."""
+    where, around = plan.around[path]
+    match around:
+        case StateMachine() | nodes.Sequence():
+            return _step(plan, where, around, path, outcome)
+        case Concurrence():
+            return [Way(target=plan.final(path, outcome))]
+        case nodes.Iterator():
+            return _iteration(plan, where, around, path, outcome)
+    return assert_never(around)
+
+
+def _step(
+    plan: Plan, where: str, around: StateMachine | nodes.Sequence, path: str, outcome: str
+) -> list[Way]:
+    names = {child.name: child for child in around.children}
+    (node,) = (child for child in around.children if f"{where}/{child.name}" == path)
+    for edge in node.transitions:
+        if edge.outcome != outcome:
+            continue
+        if leads_to_child(edge, frozenset(names)):
+            target = f"{where}/{edge.target}"
+            return [Way(target=plan.ids[target], to=target)]
+        return [Way(target=plan.final(where, edge.target), to=f"{where}:{edge.target}")]
+    return []
+
+
+def _iteration(
+    plan: Plan, where: str, around: nodes.Iterator, path: str, outcome: str
+) -> list[Way]:
+    scope, renamed = plan.scopes[where], dict(around.final_map)
+    (child,) = around.children
+
+    def end(result: str, guard: str = "") -> Way:
+        return Way(target=plan.final(where, result), to=f"{where}:{result}", guard=guard)
+
+    own = renamed.get(outcome, outcome)
+    stopped = requested(scope.id)
+    after_stop = PREEMPTED if around.sugar else own
+    if outcome in around.loop_outcomes or (
+        not around.loop_outcomes
+        and outcome not in outcome_names(child)
+        and not (isinstance(child, Leaf) and child.open)
+    ):
+        more = f"{scope.data}_at < {scope.data}_items.length"
+        exhausted = renamed.get(around.exhausted_outcome, around.exhausted_outcome)
+        return [
+            Way(target=plan.ids[path], to=path, guard=f"!{stopped} && {more}"),
+            end(exhausted, f"!{stopped}"),
+            end(after_stop),
+        ]
+    return [end(PREEMPTED, stopped), end(own)] if around.sugar else [end(own)]
+
+
+def fault_target(plan: Plan, path: str) -> str:
+    """The final state after an exception in a state machine or iterator that no state in it
+    catches."""
+    node = plan.scopes[path].node
+    while not node.catches:
+        if path not in plan.around or isinstance(plan.around[path][1], Concurrence):
+            return plan.failed(path)
+        path, node = plan.around[path]
+    return plan.final(path, node.catches)
+
+
+def faults(plan: Plan, path: str, node: Node, event: str, *, guard: str = "", message: str = "") -> Content:
+    """The transitions after an exception in a leaf or concurrence. `message` is an expression."""
+    error = [plan.log("error", path, message=message)] if message else []
+    if node.catches:
+        return [
+            transition(
+                event,
+                way,
+                *_present(*error, *plan.logged(path, node.catches, way)),
+                guard=guard,
+            )
+            for way in ways(plan, path, node.catches)
+        ]
+    where, around = plan.around[path]
+    target = plan.failed(path) if isinstance(around, Concurrence) else fault_target(plan, where)
+    return [transition(event, Way(target=target), *_present(*error), guard=guard)]
+
+
+def transition(
+    event: str | None, way: Way, *content: Element | Comment, guard: str = ""
+) -> Element:
+    guards = [each for each in (guard, way.guard) if each]
+    several = [f"({each})" if "||" in each else each for each in guards]
+    cond = " && ".join(several if len(guards) > 1 else guards)
+    return element("transition", *content, event=event, cond=cond or None, target=way.target)
+
+
+def requested(id: str) -> str:
+    return js_member("requested", id)
+
+
+STOPS = (
+    element(
+        "foreach",
+        element("send", target="#_internal", eventexpr="'stop.' + state"),
+        array="stopped",
+        item="state",
+    ),
+)
+"""Passes a request to the states in the data `stopped`."""
+
+
+def place(node: Node) -> Content:
+    """The comments above a state: its place in the script, and its documentation."""
+    found: Content = []
+    if node.span.source is not NOWHERE.source:
+        found.append(Comment(f"{PurePath(node.span.source.name).name}:{node.span.line}"))
+    return found + [Comment(line) for line in comment_lines(node.doc, COMMENT_WIDTH)]
+
+
+def entry(plan: Plan, path: str) -> Content:
+    """The content at the entry of any state: requests to stop, the item of an iterator."""
+    found: Content = []
+    id = plan.ids[path]
+    if path in plan.around:
+        where, around = plan.around[path]
+        outer = plan.scopes[where]
+        match around:
+            case StateMachine() | nodes.Sequence():
+                found.append(script(f"enter({js_string(outer.id)}, {js_string(id)});"))
+            case nodes.Iterator():
+                at, items = f"{outer.data}_at", f"{outer.data}_items"
+                item = js_member(outer.data, around.item_key)
+                code = f"{item} = {items}[{at}]; {at} = {at} + 1;"
+                found.append(script(f"{code} start({js_string(outer.id)}, [{js_string(id)}]);"))
+    return found + _present(plan.log("enter" if path in plan.around else "start", path))
+
+
+def copied_in(plan: Plan, path: str, node: Container) -> Content:
+    if path not in plan.around or not node.inputs:
+        return []
+    outer, names = plan.scopes[plan.around[path][0]].data, keys_outside(plan, path, node)
+    pairs: dict[str, list[str]] = {}
+    for key in node.inputs:
+        pairs.setdefault(names(key.name), []).append(key.name)
+    return _copies(outer, plan.scopes[path].data, [(o, k) for o, ks in pairs.items() for k in ks])
+
+
+def copied_out(plan: Plan, path: str, node: Container) -> Content:
+    if path not in plan.around or not node.outputs:
+        return []
+    outer, names = plan.scopes[plan.around[path][0]].data, keys_outside(plan, path, node)
+    pairs = [(key.name, names(key.name)) for key in node.outputs]
+    return _copies(plan.scopes[path].data, outer, pairs)
+
+
+def _copies(source: str, target: str, pairs: Sequence[tuple[str, str]]) -> Content:
+    """Copies of keys; a key that is copied to several needs a call for each."""
+    found: Content = []
+    left = list(pairs)
+    while left:
+        taken = dict(reversed(left))
+        found.append(script(f"copy({source}, {target}, {names_object(taken)});"))
+        left = [pair for pair in left if taken[pair[0]] != pair[1]]
+    return found
+
+
+def names_object(names: Mapping[str, str]) -> str:
+    return js_object((key, js_string(to)) for key, to in names.items())
+
+
+def keys_outside(plan: Plan, path: str, node: Node):  # type: ignore[no-untyped-def]
+    """The name of a key of a state in its container: the child of an iterator has no remapping."""
+    around = plan.around[path][1]
+    names = {} if isinstance(around, nodes.Iterator) else remapping(node)
+    return lambda key: names.get(key, key)
+
+
+def container(plan: Plan, path: str) -> Content:
+    """The state of a container below the root, with its transitions."""
+    node = plan.scopes[path].node
+    match node:
+        case StateMachine() | nodes.Sequence():
+            return [*place(node), _machine(plan, path, node)]
+        case Concurrence():
+            return [*place(node), *_in_region(plan, path, _concurrence(plan, path, node))]
+        case nodes.Iterator():
+            return [*place(node), _iterator(plan, path, node)]
+    return assert_never(node)
+
+
+def state(plan: Plan, path: str, node: Node) -> Content:
+    """A state with the comments above it."""
+    from smachac.targets.scxml.leaves import leaf
+
+    if isinstance(node, Leaf):
+        return [*place(node), *_in_region(plan, path, leaf(plan, path, node))]
+    return container(plan, path)
+
+
+def _in_region(plan: Plan, path: str, inner: Element) -> Content:
+    """A branch of a concurrence in a region with final states; any other state as it is."""
+    if path not in plan.around or not isinstance(plan.around[path][1], Concurrence):
+        return [inner]
+    node = next(child for child in plan.around[path][1].children
+                if f"{plan.around[path][0]}/{child.name}" == path)  # fmt: skip
+    region = plan.region(path)
+    for outcome in outcome_names(node):
+        plan.final(path, outcome)
+    finals = [element("final", id=id) for outcome, id in plan.finals(path).items()
+              if outcome not in ("branch ", "next ")]  # fmt: skip
+    return [element("state", inner, *finals, id=region, initial=plan.ids[path])]
+
+
+def _machine(plan: Plan, path: str, node: StateMachine | nodes.Sequence) -> Element:
+    initial = f"{path}/{node.initial or node.children[0].name}"
+    inside = [each for child in node.children for each in state(plan, f"{path}/{child.name}", child)]
+    leave = [script(f"leave({js_string(plan.ids[path])});")]
+    return element(
+        "state",
+        onentry([*entry(plan, path), *copied_in(plan, path, node)]),
+        *inside,
+        *_finals(plan, path, node, leave),
+        *_after(plan, path, node),
+        id=plan.ids[path],
+        initial=plan.ids[initial],
+    )
+
+
+def onentry(content: Content) -> Element | None:
+    return element("onentry", *content) if content else None
+
+
+def _finals(plan: Plan, path: str, node: Container, ending: Content) -> Iterator[Element]:
+    """The final states of a container, which give its outcome as donedata."""
+    for outcome in outcome_names(node):
+        plan.final(path, outcome)
+    for outcome, id in plan.finals(path).items():
+        if outcome in ("branch ", "next "):
+            continue
+        if outcome == "failed ":
+            yield element("final", id=id)
+            continue
+        content: Content = []
+        if outcome != node.catches:
+            content = [*ending, *copied_out(plan, path, node)]
+        content += _present(plan.log("exit", path, outcome=js_string(outcome)))
+        data = element("donedata", element("content", expr=js_string(outcome)))
+        yield element("final", onentry(content), data, id=id)
+
+
+def _after(plan: Plan, path: str, node: Container) -> Iterator[Element]:
+    """The transitions after a container has ended; a branch of a concurrence has none."""
+    where, around = plan.around[path]
+    if isinstance(around, Concurrence):
+        return
+    event = f"done.state.{plan.ids[path]}"
+    for outcome in plan.finals(path):
+        if outcome in ("branch ", "next ", "failed "):
+            continue
+        guard = f"_event.data === {js_string(outcome)}"
+        found = ways(plan, path, outcome)
+        for way in found:
+            yield transition(event, way, *plan.moved(path, outcome, way), guard=guard)
+        if not found:  # an outcome that the container does not declare
+            error = plan.log("error", path, message=js_string("undeclared outcome"))
+            target = Way(target=fault_target(plan, where))
+            yield transition(event, target, *_present(error), guard=guard)
+
+
+def _concurrence(plan: Plan, path: str, node: Concurrence) -> Element:
+    id, children = plan.ids[path], {f"{path}/{child.name}": child for child in node.children}
+    names = ", ".join(js_string(plan.ids[child]) for child in children)
+    start = script(f"start({js_string(id)}, [{names}]);")
+    regions = [each for where, child in children.items() for each in state(plan, where, child)]
+    ends = [_end(plan, path, node, where, child) for where, child in children.items()]
+    return element(
+        "parallel",
+        onentry([*entry(plan, path), *copied_in(plan, path, node), start]),
+        *regions,
+        *ends,
+        *_joined(plan, path, node),
+        id=id,
+    )
+
+
+def _end(plan: Plan, path: str, node: Concurrence, where: str, child: Node) -> Element:
+    """The end of a branch: under `join: any`, and after an exception, the others get a request."""
+    wrapped = isinstance(child, Leaf | Concurrence)
+    region = plan.region(where) if wrapped else plan.ids[where]
+    failed = plan.finals(where).get("failed ")
+    stop = "true" if node.join == "any" else f"In({js_string(failed)})" if failed else "false"
+    given = f"{js_string(plan.ids[path])}, {js_string(plan.ids[where])}, {stop}"
+    if stop == "false":
+        return element("transition", script(f"end({given});"), event=f"done.state.{region}")
+    ended = element("assign", location="stopped", expr=f"end({given})")
+    return element("transition", ended, *STOPS, event=f"done.state.{region}")
+
+
+def _joined(plan: Plan, path: str, node: Concurrence) -> Iterator[Element]:
+    """The transitions of a concurrence: after an exception, after a request to a time limit, the
+    rules from more to fewer conditions, the default outcome."""
+    id = plan.ids[path]
+    event = f"done.state.{id}"
+    join = script(f"join({js_string(id)});")
+    failed = [f"In({js_string(final)})" for child in node.children
+              if (final := plan.finals(f"{path}/{child.name}").get("failed "))]  # fmt: skip
+    if failed:
+        for each in faults(plan, path, node, event, guard=" || ".join(failed)):
+            assert isinstance(each, Element)
+            yield Element(each.tag, each.attributes, (join, *each.content))
+    if node.sugar:
+        served = script(f"delete {requested(id)};")
+        yield from _outcome(plan, path, node, PREEMPTED, requested(id), [join, served])
+    for rule in by_priority(node):
+        tests = [f"In({js_string(plan.final(f'{path}/{one.child}', one.outcome))})" for one in rule.when]
+        guard = " && ".join(dict.fromkeys(tests))
+        yield from _outcome(plan, path, node, rule.outcome, guard, [join])
+    if node.default_outcome:  # without one, the rules cover every combination
+        yield from _outcome(plan, path, node, node.default_outcome, "", [join])
+
+
+def _outcome(
+    plan: Plan, path: str, node: Concurrence, outcome: str, guard: str, content: Content
+) -> Iterator[Element]:
+    for way in ways(plan, path, outcome):
+        leave = [*content, *copied_out(plan, path, node), *plan.logged(path, outcome, way)]
+        yield transition(f"done.state.{plan.ids[path]}", way, *leave, guard=guard)
+
+
+def _iterator(plan: Plan, path: str, node: nodes.Iterator) -> Element:
+    scope = plan.scopes[path]
+    (child,) = node.children
+    where, first = f"{path}/{child.name}", plan.next(path)
+    items, at = f"{scope.data}_items", f"{scope.data}_at"
+    inside = state(plan, where, child)
+    exhausted = dict(node.final_map).get(node.exhausted_outcome, node.exhausted_outcome)
+    empty = [Way(target=plan.final(path, exhausted))]
+    if node.sugar:
+        stopped = Way(target=plan.final(path, PREEMPTED), guard=requested(scope.id))
+        empty.insert(0, stopped)
+    there = f"{items} !== null"
+    error = plan.log("error", path, message="_event.data.reason")
+    choose = element(
+        "state",
+        transition(None, Way(target=plan.ids[where], guard=f"{there} && {items}.length > 0")),
+        *(transition(None, way, guard=there) for way in empty),
+        transition(
+            "error.execution",
+            Way(target=fault_target(plan, path), guard=f"{items} === null"),
+            *_present(error),
+        ),
+        id=first,
+    )
+    answers = "true" if node.sugar else f"{at} > 0"
+    return element(
+        "state",
+        onentry(
+            [
+                *entry(plan, path),
+                *copied_in(plan, path, node),
+                element("assign", location=at, expr="0"),
+                element("assign", location=items, expr="null"),
+                element("assign", location=items, expr=_items(plan, scope, node)),
+            ]
+        ),
+        choose,
+        *inside,
+        *_finals(plan, path, node, [script(f"finish({js_string(scope.id)}, {answers});")]),
+        *_after(plan, path, node),
+        id=scope.id,
+        initial=first,
+    )
+
+
+def _items(plan: Plan, scope: Scope, node: nodes.Iterator) -> str:
+    """The expression for the items of an iterator."""
+    if node.items_key:
+        return f"items({js_member(scope.data, node.items_key)})"
+    if node.items is None:
+        return "items(null)"
+    data = node.items.data
+    try:
+        if not isinstance(data, nodes.Expression):
+            value = js_value(data)
+            return value if isinstance(data, tuple) else f"items({value})"
+        return f"items({js_function(data, reads_of(plan, scope)).text})"
+    except UnsupportedError as error:
+        plan.refuse(node.items.span, str(error), error.help)
+        return "null"
+
+
+def reads_of(plan: Plan, scope: Scope) -> Reads:
+    """What code reads that may read every key of a container."""
+    known = {key: js_member(scope.data, key) for key in keys_of(plan, scope)}
+    return Reads(
+        keys={key: (text, plan.types.keys.get((scope.path, key), ANY)) for key, text in known.items()},
+        other=lambda key: js_member(scope.data, key),
+    )
+
+
+def keys_of(plan: Plan, scope: Scope) -> list[str]:
+    """The keys of a container of which something is known."""
+    node = scope.node
+    found = [preset.key for preset in node.userdata]
+    found += [key.name for key in (*node.inputs, *node.outputs)]
+    if isinstance(node, nodes.Iterator):
+        found.append(node.item_key)
+    for child in node.children:
+        names = keys_outside(plan, f"{scope.path}/{child.name}", child)
+        found += [names(key.name) for key in (*child.inputs, *child.outputs)]
+    return list(dict.fromkeys(found))
+
+
+def root(plan: Plan) -> list[Element | Comment]:
+    """The outermost machine and its final states."""
+    node, path = plan.machine.root, plan.machine.root.name
+    scope = plan.scopes[path]
+    initial = f"{path}/{node.initial or node.children[0].name}"
+    inside = [each for child in node.children for each in state(plan, f"{path}/{child.name}", child)]
+    stores = [f"{each.data} = userdata({each.data});" for each in plan.scopes.values()]
+    take = f"Object.assign({scope.data}, inputs); if (preempted) request({js_string(scope.id)});"
+    stop = element("assign", location="stopped", expr=f"request({js_string(scope.id)})")
+    for outcome in outcome_names(node):
+        plan.final(path, outcome)
+    finals: Content = []
+    for outcome, id in plan.finals(path).items():
+        if outcome == "failed ":
+            finals.append(element("final", id=id))
+            continue
+        outputs = names_object({key.name: key.name for key in node.outputs})
+        finals.append(
+            element(
+                "final",
+                onentry(_present(script(f"leave({js_string(scope.id)});"),
+                                 plan.log("finish", path, outcome=js_string(outcome)))),
+                element(
+                    "donedata",
+                    element("param", name="outcome", expr=js_string(outcome)),
+                    element("param", name="outputs", expr=f"view({scope.data}, {outputs})"),
+                ),
+                id=id,
+            )
+        )  # fmt: skip
+    begin = onentry([script(" ".join([*stores, take])), *entry(plan, path)])
+    machine = element(
+        "state",
+        begin,
+        element("transition", stop, *STOPS, event="preempt"),
+        *inside,
+        id=scope.id,
+        initial=plan.ids[initial],
+    )
+    return [*place(node), machine, *finals]
+
+
+def datamodel(plan: Plan) -> Element:
+    """The data of the document: userdata, and what requests to stop need."""
+    found = []
+    for scope in plan.scopes.values():
+        entries = []
+        for preset in scope.node.userdata:
+            try:
+                entries.append((preset.key, js_value(preset.value.data)))
+            except UnsupportedError as error:
+                plan.refuse(preset.span, str(error), error.help, preset.key)
+        found.append(element("data", id=scope.data, expr=f"({js_object(dict(entries).items())})"))
+        if isinstance(scope.node, nodes.Iterator):
+            found.append(element("data", id=f"{scope.data}_items", expr="null"))
+            found.append(element("data", id=f"{scope.data}_at", expr="0"))
+    inside = {
+        scope.id: [plan.ids[f"{scope.path}/{child.name}"] for child in scope.node.children]
+        for scope in plan.scopes.values()
+    }
+    tables = {name: "({})" for name in ("previous", "ready", "requested", "running", "stopping")}
+    table = json.dumps(inside, ensure_ascii=False)
+    tables |= {"inputs": "({})", "preempted": "false", "inside": f"({table})", "stopped": "[]", "state": "null"}
+    found += [element("data", id=name, expr=expr) for name, expr in sorted(tables.items())]
+    return element("datamodel", *found)
