@@ -3,8 +3,9 @@
 // The input is one JSON object: `host` and `scion`, the paths of scion_host.js and of the package;
 // `documents`, texts of SCXML; `cases`. A case has `document` (its number), `inputs`, `stopped`,
 // `most` (the limit on visits), and by the identifier of each leaf: its path in `paths`, its steps
-// in `rows`, and the inputs that it records in `reads`. The trace of each case is printed as lines
-// of JSON, and then a line `--`.
+// in `rows` (those of verify, or `exact` ones that say whether they answer a request), and the inputs that it records in `reads`. `asked`: the path of a state and the number
+// of the visit in which the machine gets a request to stop. The trace of each case is printed as
+// lines of JSON, and then a line `--`.
 "use strict";
 
 const given = JSON.parse(require("fs").readFileSync(0, "utf-8"));
@@ -53,7 +54,7 @@ function player(one, events, clock) {
     else signal.addEventListener("abort", resolve, {once: true});
   });
   const soon = () => new Promise(resolve => clock.soon(resolve));
-  return ({id, visit, inputs, outputs, outcomes, signal, stop}) => {
+  return ({id, visit, inputs, outputs, outcomes, signal, stop, answer}) => {
     const able = outcomes.includes("preempted"), path = one.paths[id], row = one.rows[id];
     if (row === undefined) return undefined;
     for (const key of one.reads[id] || []) {
@@ -63,9 +64,10 @@ function player(one, events, clock) {
     const step = row[visit - 1];
     if (step === undefined || left < 0) throw new Error("is not in the script");
     const perform = () => {
-      if (signal.aborted && able) return "preempted";
-      if (step.error) throw new Error(step.error);
+      if (step.answered) answer();
+      else if (signal.aborted && able && !step.exact) return "preempted";
       Object.assign(outputs, step.writes);
+      if (step.error) throw new Error(step.error);
       return step.outcome;
     };
     if (!step.stop && !(step.wait && !signal.aborted)) return perform();
@@ -83,16 +85,21 @@ function player(one, events, clock) {
 
 async function main() {
   const models = [];
+  let session = null;
+  scxml.core.on("new", created => { session = created; });
   for (const [at, text] of given.documents.entries()) models.push(await load(scxml, `document${at}`, text));
   for (const one of given.cases) {
     const clock = virtualClock(), events = [];
     const play = player(one, events, clock);
+    let [path, visits] = one.asked || ["", 0];
     const states = one.rows ? new Proxy({}, {get: (table, type) => (given.scripted ? play : undefined)}) : {};
     const run = start(scxml, models[one.document], states, {
       inputs: one.inputs, stopped: one.stopped, clock,
       onEvent: event => {
         events.push(event);
-        if (one.asked && event.event === "enter" && event.path === one.asked[0] && --one.asked[1] === 0) run.stop();
+        if (event.event === "enter" && event.path === path && --visits === 0) {
+          session._internalEventQueue.push({name: "preempt"});  // while the state is entered
+        }
       }
     });
     run.ended.catch(() => {});

@@ -11,7 +11,7 @@
 //   };
 //
 // `signal` is an AbortSignal: a request to stop aborts it. The outcome `preempted` answers the
-// request. SIGINT and SIGTERM request a stop of the machine; its exit codes are those of smachac.
+// request, as does a call of `answer`; `stop` requests a stop of the machine. SIGINT and SIGTERM request a stop of the machine; its exit codes are those of smachac.
 "use strict";
 
 /** Waits and other work of a real machine. A test passes a virtual clock. */
@@ -94,23 +94,25 @@ function start(scxml, model, states, options) {
     if (ended || !machine.isIn(id)) return;
     const visit = visits[id] = (visits[id] || 0) + 1;
     const outcomes = params.outcomes, outputs = {}, abort = running[id].abort;
+    let served = false;
     const answer = (name, data) => post({name, invokeid: id, data});
     const finished = outcome => {
       if (!outcomes.includes(outcome)) throw new Error(`"${outcome}" is not one of its outcomes`);
-      const answered = abort.signal.aborted && outcome === "preempted";
+      const answered = served || (abort.signal.aborted && outcome === "preempted");
       delete running[id];
       answer(`${id}.${outcome}`, {outputs, answered});
     };
     const failed = reason => {
       delete running[id];
       error = error || reason;
-      answer(`fault.${id}`, {outputs, answered: false, message: String(reason && reason.message || reason)});
+      answer(`fault.${id}`, {outputs, answered: served, message: String(reason && reason.message || reason)});
     };
     try {
       const work = (states[src] || BUILT_IN[src]);
       if (!work) throw new Error(`the table has no function for the state type "${src}"`);
       const found = work({
         id, visit, outcomes, outputs, signal: abort.signal, stop: request,
+        answer: () => { served = true; },
         inputs: strict(params.inputs || {}), variables: params.variables || {}
       });
       if (found && typeof found.then === "function") found.then(finished).catch(failed);
@@ -152,8 +154,7 @@ function start(scxml, model, states, options) {
     machine.on("onExitInterpreter", () => {
       ended = true;
       const final = machine.getConfiguration()[0];
-      const failed = final === "failed" || final.startsWith("failed_");
-      if (failed) reject(error || new Error("an expression of the document has no value"));
+      if (final === "fault") reject(error || new Error("an expression of the document has no value"));
       else resolve(result || final);
     });
   });

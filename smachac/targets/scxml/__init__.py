@@ -50,10 +50,12 @@ def document(machine: Machine, report: Report, *, traced: bool) -> str:
     _refuse_structure(plan)
     if has_errors(report):
         return ""
-    data = datamodel(plan)
     states = root(plan)
-    code = "\n\n".join(functions_in(_texts([data, *states])))
-    script = element("script", *([Code(code)] if code else []))
+    texts = _texts(states)
+    code = functions_in(texts)
+    used = frozenset(word for text in [*texts, *code] for word in re.findall(r"\w+", text))
+    data = datamodel(plan, used)
+    script = element("script", Code("\n\n".join(code)))
     scxml = element(
         "scxml",
         data,
@@ -65,12 +67,8 @@ def document(machine: Machine, report: Report, *, traced: bool) -> str:
         name=machine.root.name,
         initial=plan.ids[machine.root.name],
     )
-    head = ['<?xml version="1.0" encoding="UTF-8"?>', *lines_of(element_comment(made_by(machine)))]
+    head = ['<?xml version="1.0" encoding="UTF-8"?>', f"<!-- {made_by(machine)} -->"]
     return "\n".join([*head, *lines_of(scxml), ""])
-
-
-def element_comment(text: str) -> Comment:
-    return Comment(text)
 
 
 def _texts(states: list[Element | Comment]) -> list[str]:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from smachac.analysis.expression_types import body_of, type_of
-from smachac.analysis.type_lattice import BOOL, FLOAT, INT, NONE, STR, item_of, mapping, plain
+from smachac.analysis.type_lattice import BOOL, NONE, STR, item_of, mapping, plain, present
 from smachac.diagnostics.source import assert_never
 from smachac.ir.expressions import (
     Attribute,
@@ -129,7 +129,7 @@ def _real(value: float) -> str:
         return "NaN"
     if abs(value) == float("inf"):
         return "Infinity" if value > 0 else "-Infinity"
-    return repr(int(value)) if value.is_integer() and abs(value) < SMALL else repr(value)
+    return f"{value:.0f}" if value.is_integer() and abs(value) < SMALL else repr(value)
 
 
 def _no_key(key: str) -> str:
@@ -177,6 +177,11 @@ def _truth(value: Js) -> str:
     return value.at(_OR) if value.type == BOOL else f"truth({value.text})"
 
 
+def _name(type_: Type) -> str:
+    """The name of the type of a value that is not None."""
+    return plain(present(type_)).name
+
+
 def _is_number(type_: Type) -> bool:
     return plain(type_).name in ("int", "float", "bool")
 
@@ -221,7 +226,12 @@ class _Printer:
             case Name() | Attribute():
                 raise _unsupported(expr, "the name is not defined in JavaScript")
             case Index(value, index):
-                return _call("item", self.print(value), self.print(index))
+                place = self.print(index)
+                if _name(place.type) == "float" or (
+                    place.type == ANY and isinstance(index, Binary | Unary | Conditional | Call)
+                ):
+                    raise _unsupported(expr, "the place of an item must be an integer or a text")
+                return _call("item", self.print(value), place)
             case Call():
                 return self._called(expr)
             case Lambda():
@@ -279,6 +289,8 @@ class _Printer:
             case "*" if numbers:
                 text = f"{left.at(_PRODUCT)} * {right.at(_PRODUCT + 1)}"
                 return Js(text=f"whole({text})") if integers else Js(text=text, binding=_PRODUCT)
+            case "*" if not _repeats(left, right) and not _repeats(right, left):
+                raise _unsupported(expr, "the types of its operands are not known")
             case "%" if plain(left.type) == STR:
                 raise _unsupported(expr, "`%` is for numbers here")
             case "**":
@@ -289,7 +301,7 @@ class _Printer:
         match expr:
             case Binary(_, _, Constant(int(exponent))) if exponent >= 0 and _is_whole(left.type):
                 return _call("power", left, right)
-            case Binary(_, Name() | Attribute(), Constant(2)) if plain(left.type) == FLOAT:
+            case Binary(_, Name() | Attribute(), Constant(2)) if _name(left.type) == "float":
                 text = f"{left.at(_PRODUCT)} * {left.at(_PRODUCT + 1)}"
                 return Js(text=text, binding=_PRODUCT)
         raise _unsupported(expr, "the last digit of a power differs between engines")
@@ -297,9 +309,7 @@ class _Printer:
     def _comparison(self, first: Expr, rest: Sequence[tuple[str, Expr]]) -> Js:
         left, tests = self.print(first), []
         for at, (sign, operand) in enumerate(rest):
-            if sign in ("in", "not in") and isinstance(operand, TupleDisplay):
-                operand = ListDisplay(operand.items)
-            right = self.print(self._sequence(operand) if sign in ("in", "not in") else operand)
+            right = self._items(operand) if sign in ("in", "not in") else self.print(operand)
             tests.append(_compared(sign, left, right))
             if at + 1 < len(rest) and not isinstance(operand, Constant | Name | Attribute):
                 raise _unsupported(operand, "the middle of a chain of comparisons is computed")
@@ -308,8 +318,15 @@ class _Printer:
             return tests[0]
         return Js(text=" && ".join(test.at(_AND + 1) for test in tests), binding=_AND)
 
-    def _sequence(self, expr: Expr) -> Expr:
-        return ListDisplay(expr.items) if isinstance(expr, TupleDisplay) else expr
+    def _items(self, expr: Expr) -> Js:
+        """A value of which only the items are used: it can be a tuple or a range."""
+        if isinstance(expr, TupleDisplay):
+            return self.print(ListDisplay(expr.items))
+        if isinstance(expr, Call) and dotted(expr.function) == "range":
+            given = [self.print(argument) for argument in expr.arguments]
+            if not expr.keywords and not any(_name(each.type) == "float" for each in given):
+                return _call("range", *given, type=self.type(expr))
+        return self.print(expr)
 
     def _boolean(self, operator: str, operands: Sequence[Expr]) -> Js:
         values = [self.print(operand) for operand in operands]
@@ -328,9 +345,12 @@ class _Printer:
         name = dotted(expr.function)
         if name is None or name not in FUNCTIONS or name in self.bound:
             raise _unsupported(expr, "the function is not one of the portable ones")
-        given = [self.print(self._sequence(each)) for each in expr.arguments]
+        given = [self._items(each) for each in expr.arguments]
         item = item_of(given[0].type) if len(given) == 1 else ANY
         named = {key: self._argument(value, item) for key, value in expr.keywords}
+        if name == "str" and len(given) == 1 and _name(given[0].type) == "float":
+            if not _is_real(expr.arguments[0]):
+                raise _unsupported(expr, "the number can be an integer, which Python prints as one")
         try:
             return FUNCTIONS[name](given, named)
         except (KeyError, ValueError, IndexError):
@@ -344,6 +364,23 @@ class _Printer:
         body = replace(self, bound=bound).print(value.body).at(_TEST)
         body = f"({body})" if body.startswith("{") else body
         return Js(text=f"{_parameter(name) if name else '()'} => {body}", binding=_ARROW)
+
+
+def _is_real(expr: Expr) -> bool:
+    """Whether the value of an expression is a float whatever it reads; a key of the type `float`
+    can hold an integer."""
+    match expr:
+        case Constant(value):
+            return isinstance(value, float)
+        case Unary(_, operand):
+            return _is_real(operand)
+        case Binary("/", _, _):
+            return True
+        case Binary(_, left, right):
+            return _is_real(left) or _is_real(right)
+        case Conditional(_, then, otherwise):
+            return _is_real(then) and _is_real(otherwise)
+    return isinstance(expr, Call) and dotted(expr.function) == "float"
 
 
 def _parameter(name: str) -> str:
@@ -393,6 +430,12 @@ def _compared(sign: str, left: Js, right: Js) -> Js:
     return _call("less" if sign in ("<", ">") else "atMost", one, other)
 
 
+def _repeats(values: Js, times: Js) -> bool:
+    """Whether a product is certainly no text or list that is repeated by a float."""
+    unknown = values.type == times.type == ANY
+    return unknown or (_name(values.type) not in ("int", "float", "bool") and _is_whole(times.type))
+
+
 def _literal(value: Js) -> Type:
     return plain(value.type)
 
@@ -420,7 +463,9 @@ def _abs(given: Sequence[Js], named: Named) -> Js:
 
 def _float(given: Sequence[Js], named: Named) -> Js:
     value = _one(given, named)
-    return value if plain(value.type) == FLOAT else _call("real", value)
+    if _is_whole(value.type):
+        return Js(text=f"{value.at(_SUM)} + 0", binding=_SUM)  # no integer is -0
+    return value if plain(value.type).name == "float" else _call("real", value)
 
 
 def _str(given: Sequence[Js], named: Named) -> Js:
@@ -465,14 +510,11 @@ def _sorted(given: Sequence[Js], named: Named) -> Js:
     values = _one(given)
     if set(named) - {"key", "reverse"}:
         raise ValueError
-    more = [_truth(named["reverse"]) if "reverse" in named else "false"] if named else []
-    return _call("sorted", values, *more, *([named["key"]] if "key" in named else []))
-
-
-def _range(given: Sequence[Js], named: Named) -> Js:
-    if named or not 1 <= len(given) <= 3 or any(plain(e.type) == FLOAT for e in given):
+    reverse = named.get("reverse", Js(text="false", type=BOOL))
+    if reverse.type != BOOL:
         raise ValueError
-    return _call("range", *given)
+    more = [reverse] if named else []
+    return _call("sorted", values, *more, *([named["key"]] if "key" in named else []))
 
 
 FUNCTIONS: Mapping[str, Callable[[Sequence[Js], Named], Js]] = {
@@ -484,15 +526,15 @@ FUNCTIONS: Mapping[str, Callable[[Sequence[Js], Named], Js]] = {
     "list": lambda given, named: Js(text=f"items({_one(given, named).text}).slice()"),
     "max": _extreme(),
     "min": _extreme("true"),
-    "range": _range,
     "round": _round,
     "sorted": _sorted,
     "str": _str,
     "sum": _sum,
 }
-"""The portable functions whose results JavaScript can represent: `tuple` and `dict` are missing."""
+"""The portable functions whose results JavaScript can represent. `tuple` and `dict` are missing; a `range` is accepted only where its
+items are used."""
 
 __all__ = [
-    "INT", "Js", "Reads", "UnsupportedError", "js_function", "js_member", "js_object", "js_string",
+    "Js", "Reads", "UnsupportedError", "js_function", "js_member", "js_object", "js_string",
     "js_truth", "js_value",
 ]  # fmt: skip

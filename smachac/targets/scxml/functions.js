@@ -151,7 +151,9 @@ function times(one, other) {
   if (sequence(other)) return times(other, one);
   if (!sequence(one)) return whole(number(one) * number(other));
   const count = Math.max(0, number(other));
-  if (!Number.isInteger(count)) throw new TypeError("a list cannot be repeated so often");
+  if (!Number.isInteger(count)) throw new TypeError("a list is repeated by integers only");
+  if (one.length === 0) return one;
+  if (count * one.length > 100000) throw new RangeError("more than 100000 items");
   if (typeof one === "string") return one.repeat(count);
   return [].concat(...Array(count).fill(one));
 }
@@ -179,12 +181,8 @@ function floored(one, other) {
 
 // `one ** other` of integers, `other` not negative.
 function power(one, other) {
-  let result = 1;
-  for (let left = number(other); left > 0; left -= 1) {
-    result = whole(result * number(one));
-    if (result === 0 || (result === 1 && Number(one) === 1)) return result;
-  }
-  return result;
+  const found = Math.pow(number(one), other);
+  return Number.isFinite(found) ? whole(Math.round(found)) : whole(Number.MAX_VALUE);
 }
 
 // The truth of a value: empty texts, lists and mappings are false.
@@ -234,6 +232,7 @@ function contains(item, values) {
   }
   if (Array.isArray(values)) return values.some(value => equal(item, value));
   if (values === null || typeof values !== "object") throw new TypeError(`${kind(values)} has no items`);
+  if (item !== null && typeof item === "object") throw new TypeError("a list is no key");
   return typeof item === "string" && Object.prototype.hasOwnProperty.call(values, item);
 }
 
@@ -349,10 +348,9 @@ function sorted(values, reverse, key) {
 
 // `max(values, key=...)`; `min` with `smallest`.
 function largest(values, key, smallest) {
-  const found = items(values), of = key || (value => value);
-  if (found.length === 0) throw new RangeError("no items");
-  return found.reduce((best, value) => {
-    const [one, other] = smallest ? [of(value), of(best)] : [of(best), of(value)];
-    return less(one, other) ? value : best;
-  });
+  const pairs = items(values).map(value => [key ? key(value) : value, value]);
+  if (pairs.length === 0) throw new RangeError("no items");
+  return pairs.reduce((best, pair) => {
+    return (smallest ? less(pair[0], best[0]) : less(best[0], pair[0])) ? pair : best;
+  })[1];
 }

@@ -7,9 +7,9 @@ compound state with an index. Requests to stop are in the data of the document (
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePath
+from typing import Literal
 
 from smachac.analysis.type_inference import Types, infer
 from smachac.diagnostics.diagnostic import Report
@@ -54,6 +54,10 @@ from smachac.targets.scxml.expressions import (
 
 Content = list[Element | Comment]
 
+Extra = Literal["branch", "failed", "next"]
+"""The region of a branch; the final state after an exception that no state catches; the first state
+of an iterator."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Way:
@@ -93,6 +97,7 @@ class Plan:
         self.ids: dict[str, str] = {}
         self.scopes: dict[str, Scope] = {}
         self._finals: dict[tuple[str, str], str] = {}
+        self._extras: dict[tuple[str, Extra], str] = {}
         for path, node in walk(machine.root):
             around = path.rpartition("/")[0] if path not in self.around else self.around[path][0]
             self.ids[path] = self._states.new(node.name, self.ids.get(around, ""))
@@ -100,6 +105,9 @@ class Plan:
                 outer = self.scopes[around].data if around in self.scopes else ""
                 name = data.new(node.name, outer)
                 self.scopes[path] = Scope(path=path, node=node, id=self.ids[path], data=name)
+
+        for outcome in outcome_names(machine.root):
+            self.final(machine.root.name, outcome)
 
     def refuse(self, span: Span, message: str, help: str | None = None, *names: str) -> None:
         self.report.append(unsupported_by_target(span, "SCXML", message, help, names))
@@ -111,19 +119,21 @@ class Plan:
             self._finals[path, outcome] = self._states.new(name)
         return self._finals[path, outcome]
 
-    def region(self, path: str) -> str:
-        return self.final(path, "branch ")
-
-    def failed(self, path: str) -> str:
-        """The final state after an exception in a branch or in the machine that nothing catches."""
-        return self.final(path, "failed ")
-
     def finals(self, path: str) -> dict[str, str]:
         """The final states that were named so far for a container or branch, by outcome."""
         return {outcome: id for (where, outcome), id in self._finals.items() if where == path}
 
-    def next(self, path: str) -> str:
-        return self.final(path, "next ")
+    def extra(self, path: str, what: Extra) -> str:
+        """A state that the document has beside those of the machine, for one of these."""
+        if (path, what) not in self._extras:
+            inner = f"{self.ids[path]}-{what}"
+            is_fault = path == self.machine.root.name
+            self._extras[path, what] = FAULT if is_fault else self._states.new(inner)
+        return self._extras[path, what]
+
+    def failed(self, path: str) -> str | None:
+        """The final state after an exception that nothing catches, if one was named so far."""
+        return self._extras.get((path, "failed"))
 
     def log(self, event: str, path: str, **fields: str) -> Element | None:
         """A trace event; the fields are expressions."""
@@ -141,6 +151,10 @@ class Plan:
             return []
         moved = self.log("transition", path, outcome=js_string(outcome), to=js_string(way.to))
         return _present(moved)
+
+
+FAULT = "fault"
+"""The final state of a document after an exception that no state catches. No other has this name."""
 
 
 def _present(*found: Element | Comment | None) -> Content:
@@ -209,7 +223,7 @@ def fault_target(plan: Plan, path: str) -> str:
     node = plan.scopes[path].node
     while not node.catches:
         if path not in plan.around or isinstance(plan.around[path][1], Concurrence):
-            return plan.failed(path)
+            return plan.extra(path, "failed")
         path, node = plan.around[path]
     return plan.final(path, node.catches)
 
@@ -228,7 +242,7 @@ def faults(plan: Plan, path: str, node: Node, event: str, *, guard: str = "", me
             for way in ways(plan, path, node.catches)
         ]
     where, around = plan.around[path]
-    target = plan.failed(path) if isinstance(around, Concurrence) else fault_target(plan, where)
+    target = plan.extra(path, "failed") if isinstance(around, Concurrence) else fault_target(plan, where)
     return [transition(event, Way(target=target), *_present(*error), guard=guard)]
 
 
@@ -350,11 +364,12 @@ def _in_region(plan: Plan, path: str, inner: Element) -> Content:
         return [inner]
     node = next(child for child in plan.around[path][1].children
                 if f"{plan.around[path][0]}/{child.name}" == path)  # fmt: skip
-    region = plan.region(path)
     for outcome in outcome_names(node):
         plan.final(path, outcome)
-    finals = [element("final", id=id) for outcome, id in plan.finals(path).items()
-              if outcome not in ("branch ", "next ")]  # fmt: skip
+    failed = plan.failed(path)
+    ids = [*plan.finals(path).values(), *([failed] if failed else [])]
+    finals = [element("final", id=id) for id in ids]
+    region = plan.extra(path, "branch")
     return [element("state", inner, *finals, id=region, initial=plan.ids[path])]
 
 
@@ -382,17 +397,14 @@ def _finals(plan: Plan, path: str, node: Container, ending: Content) -> Iterator
     for outcome in outcome_names(node):
         plan.final(path, outcome)
     for outcome, id in plan.finals(path).items():
-        if outcome in ("branch ", "next "):
-            continue
-        if outcome == "failed ":
-            yield element("final", id=id)
-            continue
         content: Content = []
         if outcome != node.catches:
             content = [*ending, *copied_out(plan, path, node)]
         content += _present(plan.log("exit", path, outcome=js_string(outcome)))
         data = element("donedata", element("content", expr=js_string(outcome)))
         yield element("final", onentry(content), data, id=id)
+    if failed := plan.failed(path):
+        yield element("final", id=failed)
 
 
 def _after(plan: Plan, path: str, node: Container) -> Iterator[Element]:
@@ -402,8 +414,6 @@ def _after(plan: Plan, path: str, node: Container) -> Iterator[Element]:
         return
     event = f"done.state.{plan.ids[path]}"
     for outcome in plan.finals(path):
-        if outcome in ("branch ", "next ", "failed "):
-            continue
         guard = f"_event.data === {js_string(outcome)}"
         found = ways(plan, path, outcome)
         for way in found:
@@ -433,8 +443,8 @@ def _concurrence(plan: Plan, path: str, node: Concurrence) -> Element:
 def _end(plan: Plan, path: str, node: Concurrence, where: str, child: Node) -> Element:
     """The end of a branch: under `join: any`, and after an exception, the others get a request."""
     wrapped = isinstance(child, Leaf | Concurrence)
-    region = plan.region(where) if wrapped else plan.ids[where]
-    failed = plan.finals(where).get("failed ")
+    region = plan.extra(where, "branch") if wrapped else plan.ids[where]
+    failed = plan.failed(where)
     stop = "true" if node.join == "any" else f"In({js_string(failed)})" if failed else "false"
     given = f"{js_string(plan.ids[path])}, {js_string(plan.ids[where])}, {stop}"
     if stop == "false":
@@ -450,7 +460,7 @@ def _joined(plan: Plan, path: str, node: Concurrence) -> Iterator[Element]:
     event = f"done.state.{id}"
     join = script(f"join({js_string(id)});")
     failed = [f"In({js_string(final)})" for child in node.children
-              if (final := plan.finals(f"{path}/{child.name}").get("failed "))]  # fmt: skip
+              if (final := plan.failed(f"{path}/{child.name}"))]  # fmt: skip
     if failed:
         for each in faults(plan, path, node, event, guard=" || ".join(failed)):
             assert isinstance(each, Element)
@@ -477,7 +487,7 @@ def _outcome(
 def _iterator(plan: Plan, path: str, node: nodes.Iterator) -> Element:
     scope = plan.scopes[path]
     (child,) = node.children
-    where, first = f"{path}/{child.name}", plan.next(path)
+    where, first = f"{path}/{child.name}", plan.extra(path, "next")
     items, at = f"{scope.data}_items", f"{scope.data}_at"
     inside = state(plan, where, child)
     exhausted = dict(node.final_map).get(node.exhausted_outcome, node.exhausted_outcome)
@@ -564,35 +574,17 @@ def root(plan: Plan) -> list[Element | Comment]:
     scope = plan.scopes[path]
     initial = f"{path}/{node.initial or node.children[0].name}"
     inside = [each for child in node.children for each in state(plan, f"{path}/{child.name}", child)]
+    finals = [_root_final(plan, outcome, id) for outcome, id in plan.finals(path).items()]
+    if failed := plan.failed(path):
+        finals.append(element("final", id=failed))
     stores = [f"{each.data} = userdata({each.data});" for each in plan.scopes.values()]
-    take = f"Object.assign({scope.data}, inputs); if (preempted) request({js_string(scope.id)});"
-    stop = element("assign", location="stopped", expr=f"request({js_string(scope.id)})")
-    for outcome in outcome_names(node):
-        plan.final(path, outcome)
-    finals: Content = []
-    for outcome, id in plan.finals(path).items():
-        if outcome == "failed ":
-            finals.append(element("final", id=id))
-            continue
-        outputs = names_object({key.name: key.name for key in node.outputs})
-        finals.append(
-            element(
-                "final",
-                onentry(_present(script(f"leave({js_string(scope.id)});"),
-                                 plan.log("finish", path, outcome=js_string(outcome)))),
-                element(
-                    "donedata",
-                    element("param", name="outcome", expr=js_string(outcome)),
-                    element("param", name="outputs", expr=f"view({scope.data}, {outputs})"),
-                ),
-                id=id,
-            )
-        )  # fmt: skip
-    begin = onentry([script(" ".join([*stores, take])), *entry(plan, path)])
+    take = f"Object.assign({scope.data}, inputs);"
+    stop = f"if (preempted) request({js_string(scope.id)});"
+    told = element("assign", location="stopped", expr=f"request({js_string(scope.id)})")
     machine = element(
         "state",
-        begin,
-        element("transition", stop, *STOPS, event="preempt"),
+        element("onentry", script(" ".join([*stores, take, stop])), *entry(plan, path)),
+        element("transition", told, *STOPS, event="preempt"),
         *inside,
         id=scope.id,
         initial=plan.ids[initial],
@@ -600,8 +592,28 @@ def root(plan: Plan) -> list[Element | Comment]:
     return [*place(node), machine, *finals]
 
 
-def datamodel(plan: Plan) -> Element:
-    """The data of the document: userdata, and what requests to stop need."""
+def _root_final(plan: Plan, outcome: str, id: str) -> Element:
+    """A final state of the document. Its donedata are the outcome and the outputs."""
+    node = plan.machine.root
+    scope = plan.scopes[node.name]
+    outputs = names_object({key.name: key.name for key in node.outputs})
+    view = f"view({scope.data}, {outputs})"
+    finish = plan.log("finish", scope.path, outcome=js_string(outcome))
+    return element(
+        "final",
+        onentry([script(f"leave({js_string(scope.id)});"), *_present(finish)]),
+        element(
+            "donedata",
+            element("param", name="outcome", expr=js_string(outcome)),
+            element("param", name="outputs", expr=view) if node.outputs else None,
+        ),
+        id=id,
+    )
+
+
+def datamodel(plan: Plan, used: frozenset[str]) -> Element:
+    """The data of the document: userdata, and what requests to stop need, of the names in
+    `used`."""
     found = []
     for scope in plan.scopes.values():
         entries = []
@@ -618,8 +630,18 @@ def datamodel(plan: Plan) -> Element:
         scope.id: [plan.ids[f"{scope.path}/{child.name}"] for child in scope.node.children]
         for scope in plan.scopes.values()
     }
-    tables = {name: "({})" for name in ("previous", "ready", "requested", "running", "stopping")}
-    table = json.dumps(inside, ensure_ascii=False)
-    tables |= {"inputs": "({})", "preempted": "false", "inside": f"({table})", "stopped": "[]", "state": "null"}
-    found += [element("data", id=name, expr=expr) for name, expr in sorted(tables.items())]
+    names = ((id, f"[{', '.join(map(js_string, states))}]") for id, states in inside.items())
+    tables = {
+        "inputs": "({})",
+        "preempted": "false",
+        "previous": "({})",
+        "requested": "({})",
+        "running": "({})",
+        "stopped": "[]",
+        "state": "null",
+        "inside": f"({js_object(names)})",
+        "ready": "({})",
+        "stopping": "({})",
+    }
+    found += [element("data", id=name, expr=expr) for name, expr in tables.items() if name in used]
     return element("datamodel", *found)
