@@ -61,8 +61,8 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--targets", type=names, metavar="A,B,...",
-                        help="targets to compare: python, cpp, scxml (default: those of --program and"
-                        " --header, else python)")  # fmt: skip
+                        help="targets to compare: python, cpp, scxml (default: those of --program"
+                        " and --header, else python)")  # fmt: skip
     parser.add_argument("--program", type=as_path, metavar="FILE",
                         help="compare this Python file, not a newly generated one")  # fmt: skip
     parser.add_argument("--header", type=as_path, metavar="FILE",

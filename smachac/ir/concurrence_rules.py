@@ -29,7 +29,7 @@ def outcome_of(node: Concurrence, ended: Mapping[str, object]) -> str:
 
 
 def by_priority(node: Concurrence) -> list[OutcomeRule]:
-    """The rules, that which decides first: the first of them that matches determines the outcome."""
+    """The rules by priority: the first of them that matches determines the outcome."""
     numbered = enumerate(node.rules)
     found = sorted(numbered, key=lambda each: (len(each[1].when), each[0]), reverse=True)
     return [rule for _, rule in found]

@@ -12,7 +12,7 @@ import pytest
 from smachac.interpreter.userdata import Userdata
 from smachac.ir.nodes import Leaf
 from smachac.runtime.tracing.compare import compare
-from smachac.targets.scxml.machine import Plan
+from smachac.targets.scxml.plan import Plan
 from tests.conformance_ir.ir_vectors import Replay, machine_of
 from tests.conformance_ir.test_ir_vectors import CASES, RUN
 from tests.scxml.scion import played, text_of
@@ -66,7 +66,7 @@ class _Recorded(Replay):
         if outcome not in {each.name for each in leaf.outcomes}:
             self.left_out = NO_OUTCOME
         assert outcome != "preempted" or row["answered"] or not userdata.preempted
-        return outcome
+        return str(outcome)
 
 
 def _in_machine(case: Json) -> Json:

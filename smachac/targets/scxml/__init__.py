@@ -22,7 +22,8 @@ from smachac.targets.scxml.document import (
     functions_in,
     lines_of,
 )
-from smachac.targets.scxml.machine import Plan, datamodel, root
+from smachac.targets.scxml.machine import datamodel, root
+from smachac.targets.scxml.plan import Plan
 
 HOST = "scion_host.js"
 

@@ -9,6 +9,7 @@ What has no equal meaning raises UnsupportedError.
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -16,6 +17,7 @@ from dataclasses import replace
 from smachac.analysis.expression_types import body_of, type_of
 from smachac.analysis.type_lattice import BOOL, NONE, STR, item_of, mapping, plain, present
 from smachac.diagnostics.source import assert_never
+from smachac.interpreter.evaluator import EvaluationError, evaluate
 from smachac.ir.expressions import (
     Attribute,
     Binary,
@@ -34,6 +36,7 @@ from smachac.ir.expressions import (
     Unary,
     dotted,
     parse_expression,
+    parts,
     print_expression,
 )
 from smachac.ir.nodes import Data, Expression, Struct
@@ -47,10 +50,57 @@ SMALL = 10**6
 """The largest constant whose addition needs no test of the sum: a counter does not reach 2**53."""
 
 RESERVED = frozenset(
-    "arguments await break case catch class const continue debugger default delete do else enum"
-    " eval export extends false finally for function if implements import in instanceof interface"
-    " let new null package private protected public return static super switch this throw true try"
-    " typeof undefined var void while with yield".split()
+    [
+        "arguments",
+        "await",
+        "break",
+        "case",
+        "catch",
+        "class",
+        "const",
+        "continue",
+        "debugger",
+        "default",
+        "delete",
+        "do",
+        "else",
+        "enum",
+        "eval",
+        "export",
+        "extends",
+        "false",
+        "finally",
+        "for",
+        "function",
+        "if",
+        "implements",
+        "import",
+        "in",
+        "instanceof",
+        "interface",
+        "let",
+        "new",
+        "null",
+        "package",
+        "private",
+        "protected",
+        "public",
+        "return",
+        "static",
+        "super",
+        "switch",
+        "this",
+        "throw",
+        "true",
+        "try",
+        "typeof",
+        "undefined",
+        "var",
+        "void",
+        "while",
+        "with",
+        "yield",
+    ]
 )
 """Words that are no names in JavaScript."""
 
@@ -109,8 +159,47 @@ def js_value(data: Data) -> str:
         case Struct(entries=entries):
             return js_object((key, js_value(value)) for key, value in entries)
         case Expression():
-            return js_function(data, Reads(keys={}, other=_no_key), constant=True).text
+            return js_value(_constant(data))
     return assert_never(data)
+
+
+CONSTANTS: Mapping[str, float] = {
+    f"math.{name}": getattr(math, name) for name in ("e", "inf", "nan", "pi", "tau")
+}
+"""The constants of Python's module `math`."""
+
+
+def _constant(expression: Expression) -> Data:
+    """The value of code that reads nothing. A message, `Point(x=1.0)`, is a mapping of the fields
+    that are given, as in the client libraries of ROS for JavaScript."""
+    tree = parse_expression(expression.text)
+    if tree is None:
+        raise UnsupportedError(f"`{expression.text}` is Python code, not a portable expression")
+    names: dict[str, object] = {**CONSTANTS}
+    todo = [tree]
+    while todo:
+        part = todo.pop()
+        todo += parts(part)
+        if isinstance(part, Call) and not part.arguments:
+            name = dotted(part.function) or ""
+            if name.rpartition(".")[2][:1].isupper():
+                names[name] = lambda **fields: fields
+    try:
+        return _data(evaluate(tree, names))
+    except EvaluationError as error:
+        raise UnsupportedError(f"`{expression.text}` has no value in JavaScript") from error
+
+
+def _data(value: object) -> Data:
+    """A value of Python as data of a script."""
+    match value:
+        case None | bool() | int() | float() | str():
+            return value
+        case list():
+            return tuple(map(_data, value))
+        case dict() if all(isinstance(key, str) for key in value):
+            return Struct(entries=tuple((key, _data(item)) for key, item in value.items()))
+    raise UnsupportedError(f"a {type(value).__name__} is not a value that a host receives")
 
 
 def js_object(entries: object) -> str:
@@ -132,10 +221,6 @@ def _real(value: float) -> str:
     return f"{value:.0f}" if value.is_integer() and abs(value) < SMALL else repr(value)
 
 
-def _no_key(key: str) -> str:
-    raise UnsupportedError(f"the userdata `{key}` is not there")
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Js:
     """A printed expression: its text, its precedence, and its type."""
@@ -154,16 +239,11 @@ _ARROW, _TEST, _OR, _AND, _EQUAL, _LESS, _SUM, _PRODUCT, _SIGNED, _CALL = (
 )
 
 
-def js_function(expression: Expression, reads: Reads, *, constant: bool = False) -> Js:
-    """The result of a function of the script. `constant`: it is a value, which reads nothing.
-    Raises UnsupportedError."""
+def js_function(expression: Expression, reads: Reads) -> Js:
+    """The result of a function of the script. Raises UnsupportedError."""
     tree = parse_expression(expression.text)
     if tree is None:
         raise UnsupportedError(f"`{expression.text}` is Python code, not a portable expression")
-    if constant:
-        if isinstance(tree, Lambda):
-            raise UnsupportedError("a function is not a value that a host receives")
-        return _Printer(parameters=(), reads=reads).print(tree)
     body, parameters = body_of(tree)
     return _Printer(parameters=parameters, reads=reads).print(body)
 
@@ -348,9 +428,9 @@ class _Printer:
         given = [self._items(each) for each in expr.arguments]
         item = item_of(given[0].type) if len(given) == 1 else ANY
         named = {key: self._argument(value, item) for key, value in expr.keywords}
-        if name == "str" and len(given) == 1 and _name(given[0].type) == "float":
-            if not _is_real(expr.arguments[0]):
-                raise _unsupported(expr, "the number can be an integer, which Python prints as one")
+        floats = len(given) == 1 and _name(given[0].type) == "float"
+        if name == "str" and floats and not _is_real(expr.arguments[0]):
+            raise _unsupported(expr, "the number can be an integer, which Python prints as one")
         try:
             return FUNCTIONS[name](given, named)
         except (KeyError, ValueError, IndexError):
@@ -401,7 +481,9 @@ def _is_small(expr: Expr) -> bool:
     if not isinstance(expr, Binary):
         return False
     sides = (expr.left, expr.right)
-    return any(isinstance(s, Constant) and isinstance(s.value, int) and s.value <= SMALL for s in sides)
+    return any(
+        isinstance(s, Constant) and isinstance(s.value, int) and s.value <= SMALL for s in sides
+    )
 
 
 _BINARY = {
@@ -449,11 +531,10 @@ def _plain_numbers(left: Js, right: Js) -> bool:
 Named = Mapping[str, Js]
 
 
-def _one(given: Sequence[Js], named: Named = {}) -> Js:
-    (only,) = given
-    if named:
+def _one(given: Sequence[Js], named: Named) -> Js:
+    if named or len(given) != 1:
         raise ValueError
-    return only
+    return given[0]
 
 
 def _abs(given: Sequence[Js], named: Named) -> Js:
@@ -507,7 +588,7 @@ def _listed(given: Sequence[Js]) -> Js:
 
 
 def _sorted(given: Sequence[Js], named: Named) -> Js:
-    values = _one(given)
+    values = _one(given, {})
     if set(named) - {"key", "reverse"}:
         raise ValueError
     reverse = named.get("reverse", Js(text="false", type=BOOL))
@@ -531,10 +612,5 @@ FUNCTIONS: Mapping[str, Callable[[Sequence[Js], Named], Js]] = {
     "str": _str,
     "sum": _sum,
 }
-"""The portable functions whose results JavaScript can represent. `tuple` and `dict` are missing; a `range` is accepted only where its
-items are used."""
-
-__all__ = [
-    "Js", "Reads", "UnsupportedError", "js_function", "js_member", "js_object", "js_string",
-    "js_truth", "js_value",
-]  # fmt: skip
+"""The portable functions whose results JavaScript can represent. `tuple` and `dict` are missing; a
+`range` is accepted only where its items are used."""

@@ -1,11 +1,11 @@
-"""Leaves: the work of a host, which `<invoke>` starts, or expressions and delays of the document."""
+"""Leaves: the work of a host, which `<invoke>` starts; expressions and delays of the document."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
 from smachac.ir import nodes
-from smachac.ir.leaf import default_outcome, functions, variable, variable_of
+from smachac.ir.leaf import default_outcome, functions, type_text, variable, variable_of
 from smachac.ir.nodes import Expression, Leaf, VariableRole
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import own_outcomes, remapping
@@ -23,7 +23,7 @@ from smachac.targets.scxml.expressions import (
     js_truth,
     js_value,
 )
-from smachac.targets.scxml.machine import (
+from smachac.targets.scxml.plan import (
     Content,
     Plan,
     Scope,
@@ -105,9 +105,7 @@ class _Leaf:
             other=lambda key: f"undeclared({js_string(key)})",
         )
 
-    def code(
-        self, expression: Expression, make: Callable[[Expression, Reads], str]
-    ) -> str:
+    def code(self, expression: Expression, make: Callable[[Expression, Reads], str]) -> str:
         """An expression of the leaf; what JavaScript cannot express is reported."""
         try:
             return make(expression, self.reads())
@@ -122,10 +120,12 @@ class _Leaf:
         """The functions in the variable with a role, by name; other values are reported."""
         held, found = variable_of(self.node, role), functions(self.node, role)
         data = held.value.data if held is not None else None
-        if held is not None and data is not None:
-            if found is None or not isinstance(data, nodes.Struct) or len(found) < len(data.entries):
-                message = f"`{held.name}` is not a mapping of names to functions"
-                self.plan.refuse(held.span, message, None, self.node.name)
+        if held is None or data is None:
+            return {}
+        whole = isinstance(data, nodes.Struct) and len(found or ()) == len(data.entries)
+        if found is None or not whole:
+            message = f"`{held.name}` is not a mapping of names to functions"
+            self.plan.refuse(held.span, message, None, self.node.name)
         return found or {}
 
     def exits(self, outcome: str, event: str, *content: Element | Comment) -> Content:
@@ -177,7 +177,9 @@ def _callbacks(leaf: _Leaf) -> Element:
     calls = leaf.calls()
     raised = element("raise", event=event)
     if not calls:
-        return element("state", onentry([*entry(leaf.plan, leaf.path), raised]), *leaf.exits(outcome, event))
+        return element(
+            "state", onentry([*entry(leaf.plan, leaf.path), raised]), *leaf.exits(outcome, event)
+        )
     begin, after = leaf.computed(*calls, raised)
     return element("state", begin, *leaf.exits(outcome, event), *after)
 
@@ -189,7 +191,11 @@ def _conditional(leaf: _Leaf) -> Element:
     if not isinstance(otherwise, str) or otherwise not in own:
         leaf.plan.refuse(leaf.node.span, "the state has no `default_outcome` among its outcomes")
         otherwise = own[0] if own else ""
-    tests = [(outcome, leaf.code(conditions[outcome], js_truth)) for outcome in own if outcome in conditions]
+    tests = [
+        (outcome, leaf.code(conditions[outcome], js_truth))
+        for outcome in own
+        if outcome in conditions
+    ]
     names = [*(outcome for outcome, _ in tests), otherwise]
 
     def choice(word: Callable[[str], str]) -> str:
@@ -204,7 +210,9 @@ def _conditional(leaf: _Leaf) -> Element:
     else:
         event = choice(lambda name: f"{leaf.id}.{name}")
     begin, after = leaf.computed(*content, element("send", target="#_internal", eventexpr=event))
-    exits = [each for name in dict.fromkeys(names) for each in leaf.exits(name, f"{leaf.id}.{name}")]
+    exits = [
+        each for name in dict.fromkeys(names) for each in leaf.exits(name, f"{leaf.id}.{name}")
+    ]
     return element("state", begin, *exits, *(after if tests else ()))
 
 
@@ -305,7 +313,10 @@ def _variables(leaf: _Leaf) -> dict[str, str]:
         if held.role in _FUNCTIONS:
             continue
         try:
-            found[held.name] = js_value(held.value.data)
+            if held.role in nodes.DEFINITION_KINDS:
+                found[held.name] = js_string(type_text(held))
+            else:
+                found[held.name] = js_value(held.value.data)
         except UnsupportedError as error:
             names = (leaf.node.name, held.name)
             leaf.plan.refuse(held.span, f"`{held.name}`: {error}", error.help, *names)

@@ -23,7 +23,7 @@ from smachac.interpreter.behaviours import is_made_of_functions
 from smachac.ir.nodes import Leaf, Machine, Node, Outcome, StateMachine
 from smachac.ir.traversal import walk
 from smachac.targets.scxml import document
-from smachac.targets.scxml.machine import Plan
+from smachac.targets.scxml.plan import Plan
 from smachac.verify.guidance import possible_leaf_outcomes
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError
 
