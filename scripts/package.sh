@@ -43,6 +43,7 @@ for name in python3.{10..14}; do
     "$venv/bin/python" -m pip install -q --disable-pip-version-check "$package"
     try "$venv/bin/smachac"
     [[ -s $venv/share/man/man1/smachac.1 ]]
+    (cd "$folder" && "$venv/bin/smachac" docs tutorial >/dev/null)
     echo "$name: ${package##*/} works"
     rm -rf "$venv"
   done

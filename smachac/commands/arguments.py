@@ -62,6 +62,25 @@ def time_limit(parser: argparse.ArgumentParser) -> None:
                         f" (default: {DEFAULT:,})")  # fmt: skip
 
 
+def report_output(parser: argparse.ArgumentParser, *formats: str) -> None:
+    """`--format`, of which the first format is the default, and `-o FILE`; see report_file.py."""
+
+    def known(text: str) -> str:
+        return "md" if text == "markdown" else text
+
+    if formats:
+        parser.add_argument("--format", type=known, choices=formats, default=formats[0],
+                            help=FORMAT)  # fmt: skip
+    parser.add_argument("-o", "--output", dest="report_file", type=as_path, metavar="FILE",
+                        help="write the report to a file, not to standard output")  # fmt: skip
+
+
+def quiet(parser: argparse.ArgumentParser) -> None:
+    """`--quiet`."""
+    parser.add_argument("-q", "--quiet", action="store_true",
+                        help="print findings and errors only")  # fmt: skip
+
+
 def dry_run(parser: argparse.ArgumentParser) -> None:
     """`--check` and `--diff` of the commands that change scripts."""
     parser.add_argument("--check", action="store_true",

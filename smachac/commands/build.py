@@ -13,6 +13,7 @@ from smachac.commands.arguments import (
     colour,
     machine_name,
     memory_limit,
+    quiet,
     search_folders,
     time_limit,
 )
@@ -54,6 +55,7 @@ def build_arguments(parser: argparse.ArgumentParser) -> None:
                         help="write nothing; exit with 1 if a file is not up to date")  # fmt: skip
     parser.add_argument("--force", action="store_true",
                         help="overwrite files that smachac did not generate")  # fmt: skip
+    quiet(parser)
     machine_name(parser)
     search_folders(parser)
     memory_limit(parser)
@@ -172,10 +174,11 @@ def _put(files: Files, arguments: Namespace) -> int:
             print(f"{shown(path)} {what}; --force overwrites it", file=sys.stderr)
         return FINDINGS
     try:
-        for path in write_files(folder, files):
-            print(f"wrote {shown(path)}")
+        written = write_files(folder, files)
     except (OSError, PartlyWrittenError) as error:
         words = getattr(error, "strerror", None) or error
         print(f"cannot write to {shown(folder)}: {words}", file=sys.stderr)
         return FINDINGS
+    for path in written if not arguments.quiet else ():
+        print(f"wrote {shown(path)}")
     return OK

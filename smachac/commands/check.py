@@ -10,11 +10,12 @@ import time
 from argparse import Namespace
 
 from smachac.commands.arguments import (
-    FORMAT,
     SCRIPTS,
     as_path,
     colour,
     memory_limit,
+    quiet,
+    report_output,
     search_folders,
     time_limit,
 )
@@ -40,7 +41,8 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 examples:
   smachac check                                  all scripts below the current folder
-  smachac check main.yml --format sarif          a report for code scanning
+  smachac check main.yml --format concise        one line for each finding
+  smachac check . --format sarif -o smachac.sarif   a report for code scanning, in a file
   smachac check . --select SM3,SM4 --strict      only SM3xx and SM4xx; warnings fail too
   smachac check . --changed-since origin/main    scripts whose files a pull request changes
   smachac check . --baseline known.json --write-baseline   record the findings of old code
@@ -54,7 +56,7 @@ examples:
 exit codes: 0 success, 1 findings that fail, 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
-FORMATS = ("text", "json", "sarif", "github", "junit")
+FORMATS = ("text", "concise", "json", "sarif", "github", "junit")
 
 PAUSE = 0.3
 """Seconds between two reads of the times of watched files."""
@@ -64,7 +66,8 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", nargs="*", type=as_path, help=SCRIPTS)
     search_folders(parser)
-    parser.add_argument("--format", choices=FORMATS, default="text", help=FORMAT)
+    report_output(parser, *FORMATS)
+    quiet(parser)
     parser.add_argument("--notes", action="store_true", help="show notes, not only their number")
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     for name, what in (("select", "report only these codes"), ("ignore", "ignore these codes")):
@@ -110,6 +113,8 @@ def check_command(arguments: Namespace) -> int:
             return usage(f"there is no code `{code}`", code, list(CODES))
     if arguments.write_baseline and arguments.baseline is None:
         return usage("--write-baseline needs --baseline FILE")
+    if arguments.watch and arguments.report_file is not None:
+        return usage("--watch prints a report after each change, --output writes one: choose one")
     try:
         with limited_memory(arguments.memory_limit):
             if arguments.watch:
@@ -296,12 +301,15 @@ def _put(
             from smachac.report.github import render_github
 
             sys.stdout.write(render_github(listed))
-            _put_coverage(coverage, arguments)
-            print(_summary(found, coverage, notes))
+            _put_summary(found, coverage, notes, arguments)
+        case "concise":
+            from smachac.report.concise import render_concise
+
+            sys.stdout.write(render_concise(listed))
+            _put_summary(found, coverage, notes, arguments)
         case _:
             print_report(listed, arguments, sys.stdout, clusters)
-            _put_coverage(coverage, arguments)
-            print(_summary(found, coverage, notes))
+            _put_summary(found, coverage, notes, arguments)
 
 
 def _coverage_data(coverage: Mapping[str, Coverage]) -> list[dict[str, Any]]:
@@ -312,23 +320,24 @@ def _coverage_data(coverage: Mapping[str, Coverage]) -> list[dict[str, Any]]:
     return coverage_data(coverage)
 
 
-def _put_coverage(coverage: Mapping[str, Coverage], arguments: Namespace) -> None:
-    """Print how much of the machines in Python files is known."""
+def _put_summary(
+    found: Batch, coverage: Mapping[str, Coverage], notes: list[str], arguments: Namespace
+) -> None:
+    """Print how much of the machines in Python files is known; then the numbers of findings and
+    scripts, and the notes."""
+    from smachac.report.text import summary
+
+    if arguments.quiet:
+        return
     if coverage:
         from smachac.report.coverage import coverage_lines
 
         for line in coverage_lines(coverage, every=arguments.notes):
             print(shown(line))
-
-
-def _summary(found: Batch, coverage: Mapping[str, Coverage], notes: list[str]) -> str:
-    """The last line of the output: the numbers of findings and scripts, and the notes."""
-    from smachac.report.text import summary
-
     words = summary(found.report)
     if len(found.reports) != 1:
         words += f"; {len(found.reports)} {'files' if coverage else 'scripts'} checked"
-    return f"{words} ({', '.join(notes)})" if notes else words
+    print(f"{words} ({', '.join(notes)})" if notes else words)
 
 
 def _write_baseline(arguments: Namespace, report: Report) -> int:
@@ -358,7 +367,7 @@ def _write_baseline(arguments: Namespace, report: Report) -> int:
 
 def _notices(arguments: Namespace) -> TextIO:
     """The stream for lines that are not part of a report that programs read."""
-    return sys.stdout if arguments.format == "text" else sys.stderr
+    return sys.stdout if arguments.format in ("text", "concise") else sys.stderr
 
 
 def _read_baseline(path: Path) -> Baseline:

@@ -46,6 +46,7 @@ COMMANDS = {
     "targets": ("targets", "list the targets and their options"),
     "completion": ("completion", "print the completion of commands for a shell"),
     "doctor": ("doctor", "list what is installed and what is missing"),
+    "docs": ("docs", "print a page of the documentation"),
     "schema": ("schema", "print the JSON Schema of a kind of file"),
     "lsp": ("lsp", "serve an editor (language server)"),
 }
@@ -63,11 +64,19 @@ examples:
   smachac fmt                                format all scripts below the current folder
 
 `smachac COMMAND --help` shows the options of a command, `man smachac` those of all.
-The tutorial and the reference are in the folder docs/ of the repository.
+`smachac docs tutorial` prints the tutorial, `smachac docs` lists the pages of the reference.
 
 exit codes: 0 success, 1 findings or failure, 2 wrong usage, 70 a bug in smachac,
 130 interrupted, 141 the reader of the output ended early
 """
+
+
+FIRST_STEPS = """\
+There is no script in this folder or below.
+
+smachac new my_robot       create a project with a script that can be checked and run
+smachac check machine.py   find the errors in a machine in Python for SMACH
+smachac --help             all commands, with examples"""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -133,6 +142,24 @@ def _guarded(words: Sequence[str]) -> int:
         return BUG
 
 
+def _first_step() -> int:
+    """Print what to do first in the current folder; the exit code."""
+    from pathlib import Path
+
+    from smachac.commands.output import USAGE
+    from smachac.frontend.discovery import NothingFoundError, scripts_of
+    from smachac.frontend.files import Disk
+
+    try:
+        scripts_of([Path()], Disk())
+    except NothingFoundError:
+        print(FIRST_STEPS, file=sys.stderr)
+    else:
+        print("smachac check     find the errors in the scripts below this folder\n"
+              "smachac --help    all commands, with examples", file=sys.stderr)  # fmt: skip
+    return USAGE
+
+
 def _is_required(module: str) -> bool:
     """Whether a module belongs to a package that smachac requires."""
     from smachac.commands.doctor import MODULES
@@ -142,11 +169,19 @@ def _is_required(module: str) -> bool:
 
 
 def _run(words: Sequence[str]) -> int:
+    if not words:
+        return _first_step()
     command = next((word for word in words if word in COMMANDS), "")
     given, unknown = command_line(command).parse_known_args(words)
     if unknown:
         given.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
-    code: int = _function(given.command, "command")(given)
+    command = _function(given.command, "command")
+    path = getattr(given, "report_file", None)
+    if path is not None and str(path) != "-":
+        from smachac.commands.report_file import to_file
+
+        return to_file(path, lambda: command(given))
+    code: int = command(given)
     return code
 
 

@@ -9,7 +9,7 @@ import sys
 from argparse import Namespace
 from dataclasses import replace
 
-from smachac.commands.arguments import FORMAT, as_path, colour, machine_name, search_folders
+from smachac.commands.arguments import as_path, colour, machine_name, report_output, search_folders
 from smachac.commands.output import OK, print_report, usage
 from smachac.commands.python_files import (
     UNREAD,
@@ -36,7 +36,7 @@ examples:
   smachac diff old.yml new.yml                    two files
   smachac diff main.yml                           what changed since the last commit
   smachac diff main.yml --from v1.0 --to v2.0     two git revisions
-  smachac diff --from origin/main --format markdown > comment.md   all scripts, for a pull request
+  smachac diff --from origin/main --format md > comment.md   all scripts, for a pull request
   smachac diff machine.py --from v1.0            the machines in a Python file
   smachac diff src --python --from origin/main   all scripts, and all Python files with machines
   smachac diff old.yml new.yml --format dot | dot -Tsvg > diff.svg   a picture in red and green
@@ -46,7 +46,7 @@ exit codes: 0 equal, 1 different or a script that cannot be read, 2 wrong usage,
 70 a bug in smachac
 """
 
-FORMATS = ("text", "markdown", "json", "dot", "html")
+FORMATS = ("text", "md", "json", "dot", "html")
 DIFFERENT = 1
 
 
@@ -60,7 +60,7 @@ def diff_arguments(parser: argparse.ArgumentParser) -> None:
                         )  # fmt: skip
     parser.add_argument("--to", dest="new", metavar="REV",
                         help="the git revision after (default: the files as they are)")  # fmt: skip
-    parser.add_argument("--format", choices=FORMATS, default="text", help=FORMAT)
+    report_output(parser, *FORMATS)
     parser.add_argument("--python", action="store_true", help="in folders, also compare Python"
                         " files that build machines for SMACH")  # fmt: skip
     machine_name(parser)
@@ -203,7 +203,7 @@ def _put(arguments: Namespace, pairs: Sequence[Pair]) -> int:
             return _put_picture(different or found)
         case "json":
             sys.stdout.write(render_json(found))
-        case "markdown":
+        case "md":
             sys.stdout.write(render_markdown(found))
         case _:
             sys.stdout.write(render_text(found))

@@ -6,7 +6,7 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import FORMAT
+from smachac.commands.arguments import report_output
 from smachac.commands.output import FINDINGS, OK
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -57,7 +57,7 @@ PROGRAMS = (
 
 def doctor_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("--format", choices=("text", "json"), default="text", help=FORMAT)
+    report_output(parser, "text", "json")
 
 
 def doctor_command(arguments: Namespace) -> int:

@@ -7,7 +7,7 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import colour, machine_name, search_folders
+from smachac.commands.arguments import colour, machine_name, report_output, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.python_files import MachineError, is_python, one_analysis
 
@@ -44,8 +44,7 @@ def explain_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scenario", metavar="NAME",
                         help="with --properties: the counterexample of the property with this name"
                         " or number, as a scenario for `run --mock`")  # fmt: skip
-    parser.add_argument("--format", choices=("text", "json", "md", "csv"), default="text",
-                        help="format of the output; md and csv only with --failures")  # fmt: skip
+    report_output(parser, "text", "json", "md", "csv")  # the last two with --failures only
     machine_name(parser)
     search_folders(parser)
     colour(parser)

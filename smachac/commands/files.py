@@ -193,6 +193,6 @@ def put_changes(
     except (OSError, ChangedError, PartlyWrittenError) as error:
         print(not_written(error), file=sys.stderr)
         return FINDINGS
-    for name, word in words.items():
+    for name, word in words.items() if not arguments.quiet else ():
         print(f"{word} {shown(name)}")
     return OK

@@ -7,7 +7,7 @@ import os
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import SCRIPTS, as_path, colour, dry_run
+from smachac.commands.arguments import SCRIPTS, as_path, colour, dry_run, quiet
 from smachac.commands.output import FINDINGS, print_report, shown, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -31,6 +31,7 @@ def fmt_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", nargs="*", type=as_path, help=SCRIPTS)
     dry_run(parser)
+    quiet(parser)
     spelling = parser.add_mutually_exclusive_group()
     for name in ("short", "long"):
         spelling.add_argument(f"--{name}hand", dest="spelling", action="store_const", const=name,

@@ -8,7 +8,7 @@ import re
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import FORMAT, as_path, search_folders
+from smachac.commands.arguments import as_path, report_output, search_folders
 from smachac.commands.output import FINDINGS, OK, shown, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -51,7 +51,7 @@ def migrate_arguments(parser: argparse.ArgumentParser) -> None:
         "folder", nargs="*", type=as_path, help="folders (default: the current one)"
     )
     search_folders(parser)
-    parser.add_argument("--format", choices=("text", "json", "md"), default="text", help=FORMAT)
+    report_output(parser, "text", "json", "md")
 
 
 def migrate_command(arguments: Namespace) -> int:

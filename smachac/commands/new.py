@@ -7,7 +7,7 @@ import os
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import colour
+from smachac.commands.arguments import colour, quiet
 from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -44,6 +44,7 @@ def new_arguments(parser: argparse.ArgumentParser) -> None:
                             help=f"an {name} key of the state type (repeatable)")  # fmt: skip
     parser.add_argument("--outcome", action="append", default=[], metavar="NAME",
                         help="an outcome of the state type (repeatable)")  # fmt: skip
+    quiet(parser)
     colour(parser)
 
 
@@ -65,10 +66,10 @@ def new_command(arguments: Namespace) -> int:
     if not words[0].strip() or not words[0].isprintable():
         return usage(f"`{words[0]}` is not a name for a folder")
     schemas = {each: schema_text(each) for each in ("script", "interface", "project")}
-    return _put(folder, project(Path(os.path.realpath(folder)).name, schemas))
+    return _put(folder, project(Path(os.path.realpath(folder)).name, schemas), arguments)
 
 
-def _put(folder: Path, files: Files) -> int:
+def _put(folder: Path, files: Files, arguments: Namespace) -> int:
     """Write files, unless one of them exists; the exit code."""
     from smachac.commands.files import present_files, write_files
     from smachac.commands.writing import PartlyWrittenError
@@ -83,12 +84,13 @@ def _put(folder: Path, files: Files) -> int:
     if there:
         return FINDINGS
     try:
-        for path in write_files(folder, files):
-            print(f"created {shown(path)}")
+        written = write_files(folder, files)
     except (OSError, PartlyWrittenError) as error:
         words = getattr(error, "strerror", None) or error
         print(f"cannot write to {shown(folder)}: {words}", file=sys.stderr)
         return FINDINGS
+    for path in written if not arguments.quiet else ():
+        print(f"created {shown(path)}")
     return OK
 
 
@@ -151,7 +153,7 @@ def _state(name: str, arguments: Namespace) -> int:
     package = code_file(name, language).rpartition("/")[0] + "/__init__.py"
     if language == "python" and not present_files(folder, {package: ""}):
         files[package] = ""
-    code = _put(folder, files)
+    code = _put(folder, files, arguments)
     if code == OK and there is not None and language not in (*type_.code, *type_.classes):
         print(f"add to the `code` of {there.name}: {code_line(name, language)}")
     return code

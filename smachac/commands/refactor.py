@@ -10,7 +10,7 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import SCRIPT, as_path, colour, dry_run, search_folders
+from smachac.commands.arguments import SCRIPT, as_path, colour, dry_run, quiet, search_folders
 from smachac.commands.output import FINDINGS, print_report, usage
 from smachac.commands.swapped import swapped_arguments
 
@@ -137,6 +137,7 @@ def edit_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _common_arguments(parser: argparse.ArgumentParser) -> None:
     dry_run(parser)
+    quiet(parser)
     search_folders(parser)
     colour(parser)
 

@@ -60,7 +60,7 @@ def interface(wanted: NewStateType, language: str, *, with_schema: bool = False)
     name = wanted.name
     lines = [
         *([f"# yaml-language-server: $schema=../{INTERFACE_SCHEMA}"] if with_schema else []),
-        f"# The interface of {name}: its keys, outcomes and variables (docs/language.md).",
+        f"# The interface of {name}: its keys, outcomes and variables (`smachac docs language`).",
         f"name: {name}",
         "doc: Describe in one sentence what it does.",
     ]
@@ -237,9 +237,9 @@ states:
 
 SETTINGS = """\
 #:schema schemas/project.json
-# Folders with sub-scripts and state types (docs/ci.md describes all settings).
+# Folders with sub-scripts and state types (`smachac docs ci` describes all settings).
 templates = ["templates"]
-# Generated nodes are for ROS 2; 1 is for a ROS 1 distribution such as Noetic (docs/ros.md).
+# Generated nodes are for ROS 2; 1 is for a ROS 1 distribution such as Noetic (`smachac docs ros`).
 ros = 2
 """
 
@@ -278,7 +278,7 @@ The command for CI: `smachac fmt . --check && smachac check . --strict`
 
 GREET = """\
 # yaml-language-server: $schema=../schemas/interface.json
-# The interface of Greet: its keys, outcomes and variables (docs/language.md).
+# The interface of Greet: its keys, outcomes and variables (`smachac docs language`).
 name: Greet
 doc: Prints the goal.
 input_keys: {{goal: str}}

@@ -6,6 +6,7 @@ import argparse
 import sys
 from argparse import Namespace
 
+from smachac.commands.arguments import report_output
 from smachac.commands.output import OK, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
 examples:
   smachac schema                            the names of the schemas
-  smachac schema script > script.json       the schema of scripts and sub-scripts
+  smachac schema script -o script.json      the schema of scripts and sub-scripts
 
 In a script, the comment `# yaml-language-server: $schema=script.json` names the schema for editors.
 exit codes: 0 success, 2 wrong usage, 70 a bug in smachac
@@ -40,6 +41,7 @@ SCHEMAS: Mapping[str, str] = {
 def schema_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("name", nargs="?", metavar="NAME", help="the name of a schema")
+    report_output(parser)
 
 
 def schema_command(arguments: Namespace) -> int:

@@ -6,7 +6,7 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import folder
+from smachac.commands.arguments import folder, report_output
 from smachac.commands.output import OK, usage
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -30,8 +30,7 @@ exit codes: 0 success, 2 wrong usage or unknown state type, 70 a bug in smachac
 def states_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("name", nargs="?", metavar="NAME", help="the state type to describe")
-    parser.add_argument("--format", choices=("text", "json", "md"), default="text",
-                        help="format of the output")  # fmt: skip
+    report_output(parser, "text", "json", "md")
     folder(parser, "templates", "templates and interfaces")
 
 

@@ -6,7 +6,7 @@ import argparse
 import sys
 from argparse import Namespace
 
-from smachac.commands.arguments import FORMAT, SCRIPT, as_path, colour, names, search_folders
+from smachac.commands.arguments import SCRIPT, as_path, colour, names, report_output, search_folders
 from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
 from smachac.commands.swapped import swapped_arguments
 
@@ -74,7 +74,7 @@ def stats_arguments(parser: argparse.ArgumentParser) -> None:
 def _files(parser: argparse.ArgumentParser, traces: str, *formats: str) -> None:
     parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("traces", type=as_path, nargs="+", metavar="TRACE", help=traces)
-    parser.add_argument("--format", choices=formats, default="text", help=FORMAT)
+    report_output(parser, *formats)
     search_folders(parser)
     colour(parser)
 

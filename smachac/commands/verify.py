@@ -8,12 +8,12 @@ import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import (
-    FORMAT,
     SCRIPT,
     as_path,
     colour,
     count,
     names,
+    report_output,
     search_folders,
     seed,
 )
@@ -73,7 +73,7 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seed", type=seed, default=0, help="seed of the random paths (default: 0)"
     )
-    parser.add_argument("--format", choices=("text", "json"), default="text", help=FORMAT)
+    report_output(parser, "text", "json")
     search_folders(parser)
     colour(parser)
 

@@ -64,7 +64,8 @@ def scripts_of(
             for path in paths:
                 _refuse_link(path, folder, disk)
         if not paths:
-            raise NothingFoundError(f"there is no script in `{argument}`")
+            help = "; `smachac new my_robot` creates a project" if argument == Path() else ""
+            raise NothingFoundError(f"there is no script in `{argument}`{help}")
         for path in paths:
             found.setdefault(os.path.realpath(path), path)
     return list(found.values())

@@ -45,5 +45,5 @@ def test_groff_has_no_warning() -> None:
     done = subprocess.run(call, capture_output=True, text=True, check=True)
     assert done.stderr == ""
     shown = re.sub(r"\x1b\[[0-9;]*m|.\x08", "", done.stdout)
-    assert "smachac check main.yml --format sarif" in shown
+    assert "smachac check main.yml --format concise" in shown
     assert "\nNAME\n" in shown

@@ -152,7 +152,7 @@ def bad_comment(verb: Word) -> Diagnostic:
 
 def unknown_code(code: Word, known: Iterable[str]) -> Diagnostic:
     """SM022 for a code that does not exist."""
-    help = did_you_mean(code.text, known) or "use one of the codes in docs/rules.md"
+    help = did_you_mean(code.text, known) or "`smachac explain --all` lists the codes"
     message = f"the code `{code.text}` does not exist"
     return bad_allowance(code.span, message, help, ("code", code.text), VAIN)
 

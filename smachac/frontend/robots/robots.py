@@ -222,7 +222,7 @@ class _Reader:
         if tree is None:
             if len(self.report) == before:
                 message = f"the {what} file `{word.text}` has a mistake: the file is empty"
-                help = f"write the {what} in it; docs/robots.md shows the keys"
+                help = f"write the {what} in it; `smachac docs robots` shows the keys"
                 self.wrong(word, message, help, (what, word.text, ""), Span(source, 0, 0))
             return None
         try:

@@ -123,7 +123,7 @@ def lowered(expr: Expr, names: Mapping[str, Spelling]) -> Term:
     return _term(expr, _KnownNames(spellings=names))
 
 
-PORTABLE = "use an expression that docs/cpp.md lists, or write a class for the state"
+PORTABLE = "use an expression that `smachac docs cpp` lists, or write a class for the state"
 
 
 def cpp_function(code: str, keys: Mapping[str, Spelling]) -> tuple[Expr, dict[str, Spelling]]:
