@@ -180,9 +180,10 @@ async function main([file, table, option, given]) {
     process.exitCode = 2;
     return;
   }
+  const path = require("path");
   const scxml = require(require.resolve("@scion-scxml/scxml", {paths: [process.cwd(), __dirname]}));
-  const states = require(require("path").resolve(table));
-  const model = await load(scxml, file);
+  const states = require(path.resolve(table));
+  const model = await load(scxml, path.resolve(file));
   const run = start(scxml, model, states, {
     inputs: given ? JSON.parse(given) : {},
     onEvent: event => console.log(JSON.stringify(event))
@@ -202,4 +203,9 @@ async function main([file, table, option, given]) {
 }
 
 module.exports = {start, load};
-if (require.main === module) main(process.argv.slice(2));
+if (require.main === module) {
+  main(process.argv.slice(2)).catch(problem => {
+    console.error(String(problem.message || problem));
+    process.exitCode = 1;
+  });
+}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from importlib import resources
 
 from smachac.records import dataclass, field
@@ -111,16 +111,16 @@ class Identifiers:
         self._taken = set(taken)
         self._joiner = joiner
 
-    def new(self, name: str, around: str = "") -> str:
+    def new(self, name: str, around: str = "", *, avoided: Collection[str] = ()) -> str:
         """An identifier for a name: the name itself, that with its container, or one with a
-        number."""
+        number; none of `avoided`."""
         word = _ODD.sub("_", name)
         word = word.replace("-", "_") if self._joiner == "_" else word
         word = f"_{word}" if not word[:1].isalpha() else word
         number, found = 1, word
-        if found in self._taken and around:
+        if (found in self._taken or found in avoided) and around:
             word = found = f"{around}{self._joiner}{word}"
-        while found in self._taken:
+        while found in self._taken or found in avoided:
             number += 1
             found = f"{word}_{number}"
         self._taken.add(found)

@@ -73,7 +73,7 @@ class Plan:
         self.types: Types = infer(machine)
         self.around = enclosing(machine.root)
         self.secret = secret_keys(machine) if traced else {}
-        self._states = Identifiers(EVENTS)
+        self._states = Identifiers([FAULT])
         data = Identifiers(taken_data(), joiner="_")
         self.ids: dict[str, str] = {}
         self.scopes: dict[str, Scope] = {}
@@ -81,10 +81,10 @@ class Plan:
         self._extras: dict[tuple[str, Extra], str] = {}
         for path, node in walk(machine.root):
             around = path.rpartition("/")[0] if path not in self.around else self.around[path][0]
-            self.ids[path] = self._states.new(node.name, self.ids.get(around, ""))
+            outer = self.ids.get(around, "")
+            self.ids[path] = self._states.new(node.name, outer, avoided=EVENTS)
             if not isinstance(node, Leaf):
-                outer = self.scopes[around].data if around in self.scopes else ""
-                name = data.new(node.name, outer)
+                name = data.new(node.name, self.scopes[around].data if outer else "")
                 self.scopes[path] = Scope(path=path, node=node, id=self.ids[path], data=name)
 
         for outcome in outcome_names(machine.root):
