@@ -47,7 +47,7 @@ states:
     "path", sorted(ROOT.glob("tests/cases/**/expected/scxml/*.scxml")), ids=str
 )
 def test_documents_are_valid(path: Path) -> None:
-    """Every state that is named exists, once; guards of one event end with one that always holds."""
+    """Every state that is named exists, once."""
     root = ElementTree.parse(path).getroot()
     states = [
         node
@@ -146,7 +146,7 @@ states:
       transitions: {ok: Object, failed: fault}
   - Object:
       template: StateMachine
-      outcomes: [next, stop]
+      outcomes: [next, halt]
       userdata: {userdata: 1}
       states:
         - userdata:
@@ -154,9 +154,9 @@ states:
             input_keys: [userdata]
             output_keys: [userdata]
             callbacks: {userdata: 'lambda ud: ud.userdata + 1'}
-            transitions: {succeeded: stop}
-        - stop: {template: ScriptedState, outcomes: [next, stop]}
-      transitions: {next: done, stop: done}
+            transitions: {succeeded: LAST}
+        - LAST: {template: ScriptedState, outcomes: [next, halt]}
+      transitions: {next: done, halt: done}
 """
 
 

@@ -106,7 +106,7 @@ def test_a_signal_stops_the_machine(folder: Path, number: int, code: int) -> Non
         "exports.Look = ({outputs}) => { outputs.box = 1; return 'found'; };\n"
         "exports.Pick = ({signal}) => new Promise(resolve => {\n"
         "  const timer = setTimeout(() => resolve('picked'), 60000);\n"
-        "  signal.addEventListener('abort', () => { clearTimeout(timer); resolve('preempted'); });\n"
+        "  signal.onabort = () => { clearTimeout(timer); resolve('preempted'); };\n"
         "  console.log('picking');\n"
         "});\n"
     )
