@@ -12,6 +12,7 @@ import re
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Leaf, Machine, StateType
+from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outcome_names, walk
 from smachac.targets import BuildContext, Files, OptionError, Target, made_by, stem
 from smachac.targets.scxml.document import (
@@ -51,7 +52,8 @@ def document(machine: Machine, report: Report, *, traced: bool) -> str:
     _refuse_structure(plan)
     if has_errors(report):
         return ""
-    states = root(plan)
+    with deep_recursion():
+        states = root(plan)
     texts = _texts(states)
     code = functions_in(texts)
     used = frozenset(word for text in [*texts, *code] for word in re.findall(r"\w+", text))
@@ -107,6 +109,12 @@ TARGET = Target(
     name="scxml",
     description="a W3C SCXML document, whose states a host runs",
     emit=emit,
+    lacks=(
+        "Python code that is no portable expression; functions and modules as values",
+        "tuples, `dict` of pairs, `str` of numbers that may be integers, powers of floats",
+        "integers beyond 53 bits",
+        "outcomes of states that are no names of events",
+    ),
     options={"trace": "true: the document logs each event of a trace (default: false)"},
     runtime=lambda machine, context: {HOST: f"scxml/{HOST}"},
     has_code=_has_code,

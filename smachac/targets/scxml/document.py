@@ -109,6 +109,7 @@ class Identifiers:
 
     def __init__(self, taken: Iterable[str], *, joiner: str = "-") -> None:
         self._taken = set(taken)
+        self._numbers: dict[str, int] = {}
         self._joiner = joiner
 
     def new(self, name: str, around: str = "", *, avoided: Collection[str] = ()) -> str:
@@ -117,11 +118,11 @@ class Identifiers:
         word = _ODD.sub("_", name)
         word = word.replace("-", "_") if self._joiner == "_" else word
         word = f"_{word}" if not word[:1].isalpha() else word
-        number, found = 1, word
+        found = word
         if (found in self._taken or found in avoided) and around:
             word = found = f"{around}{self._joiner}{word}"
         while found in self._taken or found in avoided:
-            number += 1
+            number = self._numbers[word] = self._numbers.get(word, 1) + 1
             found = f"{word}_{number}"
         self._taken.add(found)
         return found

@@ -117,8 +117,8 @@ def _in_region(plan: Plan, path: str, inner: Element) -> Content:
     """A branch of a concurrence in a region with final states; any other state as it is."""
     if path not in plan.around or not isinstance(plan.around[path][1], Concurrence):
         return [inner]
-    node = next(child for child in plan.around[path][1].children
-                if f"{plan.around[path][0]}/{child.name}" == path)  # fmt: skip
+    where = plan.around[path][0]
+    node = plan.scopes[where].children[path[len(where) + 1 :]]
     for outcome in outcome_names(node):
         plan.final(path, outcome)
     failed = plan.failed(path)

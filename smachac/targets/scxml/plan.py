@@ -10,12 +10,11 @@ from smachac.analysis.type_inference import Types, infer
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Span, assert_never
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
+from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine, Transition
 from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import (
     enclosing,
-    leads_to_child,
     outcome_names,
     remapping,
     walk,
@@ -54,12 +53,13 @@ class Way:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scope:
-    """A container: its state, the name of its userdata, and the types of its keys."""
+    """A container: its state, the name of its userdata, and its states by name."""
 
     path: str
     node: Container
     id: str
     data: str
+    children: Mapping[str, Node]
 
 
 class Plan:
@@ -77,15 +77,20 @@ class Plan:
         data = Identifiers(taken_data(), joiner="_")
         self.ids: dict[str, str] = {}
         self.scopes: dict[str, Scope] = {}
-        self._finals: dict[tuple[str, str], str] = {}
+        self._edges: dict[str, dict[str, Transition]] = {}
+        self._finals: dict[str, dict[str, str]] = {}
         self._extras: dict[tuple[str, Extra], str] = {}
         for path, node in walk(machine.root):
             around = path.rpartition("/")[0] if path not in self.around else self.around[path][0]
+            self._edges[path] = {edge.outcome: edge for edge in node.transitions}
             outer = self.ids.get(around, "")
             self.ids[path] = self._states.new(node.name, outer, avoided=EVENTS)
             if not isinstance(node, Leaf):
                 name = data.new(node.name, self.scopes[around].data if outer else "")
-                self.scopes[path] = Scope(path=path, node=node, id=self.ids[path], data=name)
+                children = {child.name: child for child in node.children}
+                self.scopes[path] = Scope(
+                    path=path, node=node, id=self.ids[path], data=name, children=children
+                )
 
         for outcome in outcome_names(machine.root):
             self.final(machine.root.name, outcome)
@@ -93,16 +98,21 @@ class Plan:
     def refuse(self, span: Span, message: str, help: str | None = None, *names: str) -> None:
         self.report.append(unsupported_by_target(span, "SCXML", message, help, names))
 
+    def edge(self, path: str, outcome: str) -> Transition | None:
+        """The transition of a state of a state machine for an outcome."""
+        return self._edges[path].get(outcome)
+
     def final(self, path: str, outcome: str) -> str:
         """The final state of a container, or of the region of a branch, for an outcome."""
-        if (path, outcome) not in self._finals:
+        found = self._finals.setdefault(path, {})
+        if outcome not in found:
             name = outcome if path == self.machine.root.name else f"{self.ids[path]}-{outcome}"
-            self._finals[path, outcome] = self._states.new(name)
-        return self._finals[path, outcome]
+            found[outcome] = self._states.new(name)
+        return found[outcome]
 
     def finals(self, path: str) -> dict[str, str]:
         """The final states that were named so far for a container or branch, by outcome."""
-        return {outcome: id for (where, outcome), id in self._finals.items() if where == path}
+        return dict(self._finals.get(path, {}))
 
     def extra(self, path: str, what: Extra) -> str:
         """A state that the document has beside those of the machine, for one of these."""
@@ -151,7 +161,7 @@ def ways(plan: Plan, path: str, outcome: str) -> list[Way]:
     where, around = plan.around[path]
     match around:
         case StateMachine() | nodes.Sequence():
-            return _step(plan, where, around, path, outcome)
+            return _step(plan, where, path, outcome)
         case Concurrence():
             return [Way(target=plan.final(path, outcome))]
         case nodes.Iterator():
@@ -159,19 +169,14 @@ def ways(plan: Plan, path: str, outcome: str) -> list[Way]:
     return assert_never(around)
 
 
-def _step(
-    plan: Plan, where: str, around: StateMachine | nodes.Sequence, path: str, outcome: str
-) -> list[Way]:
-    names = {child.name: child for child in around.children}
-    (node,) = (child for child in around.children if f"{where}/{child.name}" == path)
-    for edge in node.transitions:
-        if edge.outcome != outcome:
-            continue
-        if leads_to_child(edge, frozenset(names)):
-            target = f"{where}/{edge.target}"
-            return [Way(target=plan.ids[target], to=target)]
-        return [Way(target=plan.final(where, edge.target), to=f"{where}:{edge.target}")]
-    return []
+def _step(plan: Plan, where: str, path: str, outcome: str) -> list[Way]:
+    edge = plan.edge(path, outcome)
+    if edge is None:
+        return []
+    if edge.origin != "implicit" and edge.target in plan.scopes[where].children:
+        target = f"{where}/{edge.target}"
+        return [Way(target=plan.ids[target], to=target)]
+    return [Way(target=plan.final(where, edge.target), to=f"{where}:{edge.target}")]
 
 
 def _iteration(
