@@ -9,7 +9,7 @@ from smachac.commands.output import OK
 
 EXAMPLES = """\
 examples:
-  smachac targets                                        the targets, each with its options and what it lacks
+  smachac targets                                        the targets, their options, what they lack
   smachac build main.yml --target dot --option depth=1   use a target and one of its options
 
 exit codes: 0 success, 2 wrong usage, 70 a bug in smachac
