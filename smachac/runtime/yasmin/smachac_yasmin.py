@@ -11,9 +11,11 @@ between two states reaches the next state. `cancel_state` of YASMIN is such a re
 
 from __future__ import annotations
 
+import inspect
 import logging
 import threading
 import traceback
+from types import MappingProxyType
 
 from yasmin import Blackboard, State, StateMachine
 
@@ -78,7 +80,7 @@ class _Node:
     catches = ""
     last = ""
     requested = False
-    remapping = {}
+    remapping = MappingProxyType({})
     running = ()
 
     def request(self):
@@ -231,16 +233,19 @@ class Machine(_Container, StateMachine):
         StateMachine.__init__(self, list(outcomes))
         self.set_up(path, inputs, outputs, userdata, catches)
         self.previous = None
+        self.by_name = {}
         self.add_start_cb(self._start)
         self.add_transition_cb(self._move)
         self.add_end_cb(self._end)
 
     def add(self, name, state, transitions, remapping=()):
-        """Add a state; `transitions` has every outcome of it."""
+        """Add a state; `transitions` has every outcome of it. YASMIN refuses the name of an outcome:
+        such a state has the name with ` (state)`, also in transitions."""
         self.take(name, state, remapping)
+        name = f"{name} (state)" if name in self.get_outcomes() else name
+        self.by_name[name] = state
         made = Caught(state) if isinstance(state, Machine) and state.catches else state
         self.add_state(name, made, transitions=transitions, remappings=self.names(state))
-        state.targets = transitions
 
     def starts(self, state):
         """A state starts: it gets the request of the machine, unless the state before it has
@@ -260,7 +265,8 @@ class Machine(_Container, StateMachine):
         self.enter(blackboard)
 
     def _move(self, blackboard, state, target, outcome):
-        self.children[state].tell("transition", outcome=outcome, to=f"{self.path}/{target}")
+        to = self.by_name[target].path
+        self.by_name[state].tell("transition", outcome=outcome, to=to)
 
     def _end(self, blackboard, outcome):
         if not outcome:
@@ -495,6 +501,7 @@ class Run:
 
 def main(program, run):
     """Run a program with the machine that `run` makes in place of its own; the exit code."""
+    run.__signature__ = inspect.signature(program.build)  # its parameters are those of a node
     program.build = run
     if hasattr(program, "run_node"):
         return program.run_node()
@@ -521,7 +528,7 @@ class Parts:
             path, state = todo.pop()
             if hasattr(state, "get_children"):
                 held = state.userdata
-                self.userdata[path] = {key: held[key] for key in held.keys()}
+                self.userdata[path] = {key: held[key] for key in sorted(held.keys())}
                 todo += [(f"{path}/{label}", one) for label, one in state.get_children().items()]
             else:
                 self.states[path] = state

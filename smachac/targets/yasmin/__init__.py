@@ -1,46 +1,64 @@
 """YASMIN: a Python module that builds the machine of YASMIN around the states of the SMACH program.
 
 The Python target prints the program with the classes of the states; `<name>_yasmin.py` builds the
-containers over `runtime/yasmin/smachac_yasmin.py`. structure.py prints them.
+containers over `runtime/yasmin/smachac_yasmin.py`. structure.py prints them, package.py the files
+of a package of ROS 2.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.ir.nodes import Checked
 from smachac.targets import BuildContext, Files, Target, made_by, stem
 from smachac.targets.python import TARGET as PYTHON
 from smachac.targets.python.formatter import WIDTH, docstring_lines, string
+from smachac.targets.python.package import package_name
+from smachac.targets.yasmin.package import package_files
 from smachac.targets.yasmin.structure import CLASSES, built, refused
 
 RUNTIME = "smachac_yasmin.py"
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
-    """The module for YASMIN, and the program with the classes of the states."""
+    """The module for YASMIN, and the program with the classes of the states.
+
+    Raises OptionError for an invalid value of an option.
+    """
+    package = _package(machine, context)
+    options = {name: value for name, value in context.options.items() if name != "package"}
     found: Report = [*refused(machine)]
-    files = PYTHON.emit(machine, context, found)
+    files = PYTHON.emit(machine, replace(context, options=options), found)
     report.extend(in_order(found))
     if has_errors(found):
         return {}
-    (program,) = files
-    module = program.removesuffix(".py")
-    return {f"{stem(machine)}_yasmin.py": module_text(machine, module), **files}
+    ((program, text),) = files.items()
+    module = module_text(machine, program.removesuffix(".py"), package)
+    modules = {f"{stem(machine)}_yasmin.py": module, **files}
+    return package_files(machine, package, modules, text) if package else modules
 
 
-def module_text(machine: Checked, program: str) -> str:
+def _package(machine: Checked, context: BuildContext) -> str:
+    value = context.options.get("package", "false")
+    return "" if value == "false" else package_name(value, machine)
+
+
+def module_text(machine: Checked, program: str, package: str = "") -> str:
     """The text of the module; `program` is the name of that with the states."""
     body = "\n".join(f"    {line}".rstrip() for line in built(machine))
     used = {name for name in CLASSES if f"{name}(" in body}
     names = ", ".join(sorted({*used, "Machine", "Parts", "Run", "Skill", "main"}))
     doc = docstring_lines(machine.root.doc or f"The state machine `{machine.root.name}`.", WIDTH)
+    imported = f"from {package} import {program}" if package else f"import {program}"
+    runtime = f"{package}.smachac_yasmin" if package else "smachac_yasmin"
     return f"""\
 #!/usr/bin/env python3
 # {made_by(machine)}
 {doc}
 
-import {program}
-from smachac_yasmin import {names}
+{imported}
+from {runtime} import {names}
 
 smach_machine = {program}.build
 
@@ -56,18 +74,31 @@ def run(*arguments, **values):
     return Run(build(parts))
 
 
+def start():
+    \"""Run the machine once and return the exit code.\"""
+    return main({program}, run)
+
+
 if __name__ == "__main__":
-    raise SystemExit(main({program}, run))
+    raise SystemExit(start())
 """
+
+
+def _runtime(machine: Checked, context: BuildContext) -> dict[str, str]:
+    package = _package(machine, context)
+    return {f"{package}/{RUNTIME}" if package else RUNTIME: f"yasmin/{RUNTIME}"}
 
 
 TARGET = Target(
     name="yasmin",
-    description="a Python module for YASMIN 6.1 on ROS 2",
+    description="a Python module for YASMIN 6.1",
     emit=emit,
-    runtime=lambda machine, context: {RUNTIME: f"yasmin/{RUNTIME}"},
+    runtime=_runtime,
     has_code=PYTHON.has_code,
     declared=PYTHON.declared,
-    options={},
-    lacks=("machines and states without outcomes",),
+    options={"package": "true, or NAME: a package for colcon (ament_python)"},
+    lacks=(
+        "states and machines without outcomes",
+        "items of an Iterator whose code uses modules or names of the program",
+    ),
 )

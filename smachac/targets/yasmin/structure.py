@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import ast
 import builtins
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import assert_never
 from smachac.ir import nodes
 from smachac.ir.concurrence_rules import by_priority
-from smachac.ir.nodes import Concurrence, Container, Expression, Leaf, Machine, Node, StateMachine
-from smachac.ir.outcome_names import PREEMPTED
+from smachac.ir.nodes import (
+    Concurrence,
+    Container,
+    Expression,
+    Leaf,
+    Machine,
+    Node,
+    StateMachine,
+    Transition,
+)
 from smachac.ir.python_code import parse_code
 from smachac.ir.recursion import deep_recursion
-from smachac.ir.traversal import containers, outcome_names, remapping, walk
+from smachac.ir.traversal import containers, leads_to_child, outcome_names, remapping, walk
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python.formatter import (
     WIDTH,
@@ -42,6 +50,9 @@ def refused(machine: Machine) -> Iterator[Diagnostic]:
         if not node.outcomes and not (isinstance(node, Leaf) and node.open):
             message = f"`{node.name}` has no outcome"
             yield unsupported_by_target(node.span, "YASMIN", message, names=(path,))
+        if not isinstance(node, Leaf) and not node.children:
+            message = f"`{node.name}` has no states"
+            yield unsupported_by_target(node.span, "YASMIN", message, names=(path,))
         if isinstance(node, nodes.Iterator) and node.items is not None:
             data = node.items.data
             if isinstance(data, Expression) and _function(data) is None:
@@ -53,6 +64,8 @@ def refused(machine: Machine) -> Iterator[Diagnostic]:
 def built(machine: Machine) -> list[str]:
     """The lines of the function `build`, without indentation."""
     fresh = variable_names()
+    for name in ("parts", "states", "userdata"):  # the names of the function
+        fresh(name, "")
     variables: dict[str, str] = {}
     lines = ["states, userdata = parts.states, parts.userdata"]
     reached = {path: _reached(node) for path, node in containers(machine.root)}
@@ -66,22 +79,29 @@ def _reached(node: Container) -> frozenset[str]:
     if not isinstance(node, StateMachine | nodes.Sequence):
         return frozenset(child.name for child in node.children)
     children = {child.name: child for child in node.children}
-    found, todo = set(), [node.initial or node.children[0].name]
+    names = frozenset(children)
+    found, todo = set(), [node.initial or next(iter(children), "")]
     while todo:
         name = todo.pop()
         if name not in found and name in children:
             found.add(name)
-            todo += [edge.target for edge in children[name].transitions]
+            edges = children[name].transitions
+            todo += [edge.target for edge in edges if leads_to_child(edge, names)]
     return frozenset(found)
 
 
 def _container(
-    node: Container, path: str, around: str, fresh, variables: dict[str, str],
+    node: Container,
+    path: str,
+    around: str,
+    fresh: Callable[[str, str], str],
+    variables: dict[str, str],
     reached: Mapping[str, frozenset[str]],
-) -> Iterator[str]:  # type: ignore[no-untyped-def]  # fmt: skip
-    """The statements that make a container and add its states. `around` is the container's class
-    in which it is."""
+) -> Iterator[str]:
+    """The statements that make a container and add its states. `around` is the path of the
+    container around it, `reached` are the states that can be entered."""
     variable = variables[path] = fresh(node.name, "sm_" if around else "")
+    states = frozenset(child.name for child in node.children)
     made = laid_out(_construct(node, path), WIDTH - 4, len(variable) + 3)
     yield from f"{variable} = {made}".split("\n")
     for child in node.children:
@@ -97,7 +117,11 @@ def _container(
         else:
             yield from _container(child, where, path, fresh, variables, reached)
             state = variables[where]
-        yield from _added(node, variable, child, state).split("\n")
+        yield from _added(node, variable, child, state, states).split("\n")
+    if isinstance(node, StateMachine | nodes.Sequence) and node.initial:
+        first = next(each.name for each in node.children if each.name in reached[path])
+        if node.initial != first:
+            yield f"{variable}.set_start_state({string(_state_name(node, node.initial))})"
 
 
 def _construct(node: Container, path: str) -> Group:
@@ -178,22 +202,30 @@ def _function(code: Expression) -> str | None:
         used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
         parameter = "userdata" if "userdata" in used else "ud"
         parameters, text = [parameter], f"lambda {parameter}: {code.text.strip()}"
-    bound = {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
-    bound |= {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
-    free = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - bound - {*parameters}
-    return text if all(hasattr(builtins, name) for name in free) else None
+    parts = [*ast.walk(tree)]
+    used = [node for node in parts if isinstance(node, ast.Name)]
+    bound = {*parameters, *(node.arg for node in parts if isinstance(node, ast.arg))}
+    bound |= {node.id for node in used if not isinstance(node.ctx, ast.Load)}
+    return text if all(n.id in bound or hasattr(builtins, n.id) for n in used) else None
 
 
-def _added(node: Container, variable: str, child: Node, state: Doc) -> str:
-    """The statement that adds a state to its container."""
+def _target(node: Container, edge: Transition, states: frozenset[str]) -> str:
+    """The target of a transition, as YASMIN names it."""
+    return _state_name(node, edge.target) if leads_to_child(edge, states) else edge.target
+
+
+def _state_name(node: Container, name: str) -> str:
+    """The name of a state in YASMIN, which refuses that of an outcome."""
+    return f"{name} (state)" if name in outcome_names(node) else name
+
+
+def _added(node: Container, variable: str, child: Node, state: Doc, states: frozenset[str]) -> str:
+    """The statement that adds a state to its container, which has these states."""
     arguments: Arguments = [("", string(child.name)), ("", state)]
     if isinstance(node, StateMachine | nodes.Sequence):
-        edges = ((edge.outcome, string(edge.target)) for edge in child.transitions)
+        edges = ((edge.outcome, string(_target(node, edge, states))) for edge in child.transitions)
         arguments.append(("", mapping(edges)))
     if child.remaps and not isinstance(node, nodes.Iterator):
         pairs = ((key, string(to)) for key, to in remapping(child).items())
         arguments.append(("remapping=", mapping(pairs)))
     return laid_out(call(f"{variable}.add", arguments), WIDTH - 4)
-
-
-__all__ = ["CLASSES", "PREEMPTED", "built", "refused"]
