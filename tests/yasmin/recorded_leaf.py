@@ -1,4 +1,4 @@
-"""The class of the leaves of recorded machines: they perform their steps, and note what they find."""
+"""The class of the leaves of recorded machines: they perform steps and note their inputs."""
 
 from __future__ import annotations
 

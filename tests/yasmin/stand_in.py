@@ -36,6 +36,9 @@ class Blackboard:
     def __setitem__(self, key: str, value: Any) -> None:
         self._values[self._name(key)] = value
 
+    def __delitem__(self, key: str) -> None:
+        self._values.pop(self._name(key), None)
+
     def __contains__(self, key: str) -> bool:
         return self._name(key) in self._values
 

@@ -239,8 +239,8 @@ class Machine(_Container, StateMachine):
         self.add_end_cb(self._end)
 
     def add(self, name, state, transitions, remapping=()):
-        """Add a state; `transitions` has every outcome of it. YASMIN refuses the name of an outcome:
-        such a state has the name with ` (state)`, also in transitions."""
+        """Add a state; `transitions` has every outcome of it. YASMIN refuses the name of an
+        outcome: such a state has the name with ` (state)`, also in transitions."""
         self.take(name, state, remapping)
         name = f"{name} (state)" if name in self.get_outcomes() else name
         self.by_name[name] = state
@@ -499,22 +499,35 @@ class Run:
         self.machine.request()
 
 
-def main(program, run):
-    """Run a program with the machine that `run` makes in place of its own; the exit code."""
-    run.__signature__ = inspect.signature(program.build)  # its parameters are those of a node
-    program.build = run
-    if hasattr(program, "run_node"):
-        return program.run_node()
+class Program:
+    """The module of a SMACH program. Its machine is replaced by that of YASMIN, which `build` makes
+    of its parts."""
 
-    def watched(*arguments, **values):
-        machine = run(*arguments, **values)
-        program.stop_at_signals(machine.request_preempt)
-        return machine
+    def __init__(self, module, name, build):
+        self.module, self.name, self.build = module, name, build
+        self.smach_machine = module.build
 
-    program.build = watched
-    outcome = program.main()
-    print(f"outcome: {outcome}")
-    return 128 + program.stop_signals[0] if program.stop_signals else outcome is None
+    def run(self, *arguments, **values):
+        """The machine with its blackboard; the arguments are those of `build` of the module."""
+        return Run(self.build(Parts(self.smach_machine(*arguments, **values), self.name)))
+
+    def start(self):
+        """Run the program once; the exit code. A stop signal is a request to the machine."""
+
+        def made(*arguments, **values):
+            machine = self.run(*arguments, **values)
+            if hasattr(self.module, "stop_at_signals"):
+                self.module.stop_at_signals(machine.request_preempt)
+            return machine
+
+        made.__signature__ = inspect.signature(self.smach_machine)  # the parameters of a node
+        self.module.build = made
+        if hasattr(self.module, "run_node"):
+            return self.module.run_node()
+        outcome = self.module.main()
+        print(f"outcome: {outcome}")
+        signals = getattr(self.module, "stop_signals", ())
+        return 128 + signals[0] if signals else int(outcome is None)
 
 
 class Parts:

@@ -48,7 +48,7 @@ def module_text(machine: Checked, program: str, package: str = "") -> str:
     """The text of the module; `program` is the name of that with the states."""
     body = "\n".join(f"    {line}".rstrip() for line in built(machine))
     used = {name for name in CLASSES if f"{name}(" in body}
-    names = ", ".join(sorted({*used, "Machine", "Parts", "Run", "Skill", "main"}))
+    names = ", ".join(sorted({*used, "Machine", "Program", "Skill"}))
     doc = docstring_lines(machine.root.doc or f"The state machine `{machine.root.name}`.", WIDTH)
     imported = f"from {package} import {program}" if package else f"import {program}"
     runtime = f"{package}.smachac_yasmin" if package else "smachac_yasmin"
@@ -60,24 +60,14 @@ def module_text(machine: Checked, program: str, package: str = "") -> str:
 {imported}
 from {runtime} import {names}
 
-smach_machine = {program}.build
-
 
 def build(parts):
     \"""Build the machine of YASMIN around the states of the SMACH program.\"""
 {body}
 
 
-def run(*arguments, **values):
-    \"""The machine with its blackboard; the arguments are those of `{program}.build`.\"""
-    parts = Parts(smach_machine(*arguments, **values), {string(machine.root.name)})
-    return Run(build(parts))
-
-
-def start():
-    \"""Run the machine once and return the exit code.\"""
-    return main({program}, run)
-
+program = Program({program}, {string(machine.root.name)}, build)
+run, start = program.run, program.start
 
 if __name__ == "__main__":
     raise SystemExit(start())
