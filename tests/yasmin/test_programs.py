@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -217,6 +218,35 @@ def test_a_package() -> None:
     assert "from fetching import wait\n" in files["fetching/wait_yasmin.py"]
     assert "<exec_depend>yasmin</exec_depend>" in files["package.xml"]
     assert '"wait = fetching.wait_yasmin:start"' in files["setup.py"]
+
+
+PAGE = (ROOT / "docs" / "frameworks.md").read_text("utf-8")
+BLOCK = re.compile(r"^```(?:yaml|python)\n# (\S+\.\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def test_the_example_of_the_page(tmp_path: Path) -> None:
+    """The files of the page, and what the page shows of the module and of its start."""
+    (tmp_path / "templates").mkdir()
+    for name, text in BLOCK.findall(PAGE):
+        (tmp_path / name).write_text(f"# {name}\n{text}", "utf-8")
+    files = smachac.compile(tmp_path / "deliver.yml", "yasmin")
+    shown = re.search(r"^```python\n(    # deliver.yml.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    assert shown is not None
+    assert shown[1] in files["deliver_yasmin.py"]
+    files["smachac_yasmin.py"] = RUNTIME.read_text("utf-8")
+    files["yasmin.py"] = Path(stand_in.__file__).read_text("utf-8")
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, "utf-8")
+    found = subprocess.run(
+        [sys.executable, "deliver_yasmin.py"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        encoding="utf-8",
+    )
+    assert (found.returncode, found.stderr) == (0, "")
+    printed = re.sub(r"^\[ DEBUG \].*\n", "", found.stdout, flags=re.MULTILINE)  # SMACH's own log
+    assert f"deliver_yasmin.py\n{printed}```" in PAGE
 
 
 HAND_WRITTEN = 51
