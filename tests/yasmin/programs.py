@@ -44,11 +44,11 @@ def loaded(files: dict[str, str]) -> Iterator[Any]:
             exec(compile(text, f"{name}.py", "exec"), vars(module))
         yield sys.modules[names[0].removesuffix(".py")]
     finally:
-        for name, module in before.items():
-            if module is None:
+        for name, earlier in before.items():
+            if earlier is None:
                 sys.modules.pop(name, None)
             else:
-                sys.modules[name] = module
+                sys.modules[name] = earlier
 
 
 def trace(files: dict[str, str], asked: tuple[str, int] = ("", 0)) -> list[dict[str, Any]]:
@@ -65,7 +65,7 @@ def trace(files: dict[str, str], asked: tuple[str, int] = ("", 0)) -> list[dict[
                 if (event["path"], entered.count(event["path"])) == asked:
                     run.request_preempt()
 
-        run.machine.observer = observe
+        run.observe(observe)
         with contextlib.suppress(Exception):
             run.execute()
     return events

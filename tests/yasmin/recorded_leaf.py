@@ -50,7 +50,7 @@ class Steps(Replay):
         PERFORMED["request"]()
 
 
-class Vector(smach.State):  # type: ignore[misc]
+class Vector(smach.State):
     """A leaf of a recorded machine."""
 
     def __init__(self, outcomes: Any, node: Any, input_keys: Any = (), output_keys: Any = ()):
@@ -59,7 +59,7 @@ class Vector(smach.State):  # type: ignore[misc]
 
     def execute(self, userdata: Any) -> Any:
         node, self.visit = self.node, self.visit + 1
-        found = _Userdata(self, userdata)
+        found: Any = _Userdata(self, userdata)
         for key in [*node.get("in", []), *node.get("io", [])]:
             if key in found and found[key] is not None:
                 value = copy.deepcopy(found[key])

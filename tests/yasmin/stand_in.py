@@ -13,11 +13,9 @@ from typing import Any
 class Blackboard:
     """Values by name. A copy has the same values and remappings of its own."""
 
-    _own = ("_values", "_remappings")
-
     def __init__(self, other: Blackboard | None = None) -> None:
-        vars(self)["_values"] = {} if other is None else other._values
-        vars(self)["_remappings"] = {} if other is None else dict(other._remappings)
+        self._values: dict[str, Any] = {} if other is None else other._values
+        self._remappings: dict[str, str] = {} if other is None else dict(other._remappings)
 
     def copy(self) -> Blackboard:
         return Blackboard(self)
@@ -25,8 +23,7 @@ class Blackboard:
     def _name(self, key: str) -> str:
         if not isinstance(key, str):
             raise TypeError("incompatible function arguments")
-        found: str = self._remappings.get(key, key)
-        return found
+        return self._remappings.get(key, key)
 
     def __getitem__(self, key: str) -> Any:
         if self._name(key) not in self._values:
@@ -50,7 +47,7 @@ class Blackboard:
         return dict(self._remappings)
 
     def set_remappings(self, remappings: Mapping[str, str]) -> None:
-        vars(self)["_remappings"] = dict(remappings)
+        self._remappings = dict(remappings)
 
 
 class State:

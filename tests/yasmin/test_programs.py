@@ -93,7 +93,7 @@ def test_states_that_a_stop_request_reaches_through_yasmin() -> None:
             if event["event"] == "enter" and event["path"].endswith("OTHER"):
                 run.machine.cancel_state()
 
-        run.machine.observer = observe
+        run.observe(observe)
         assert run.execute() == "preempted"
         assert run.blackboard["n"] == 1
     assert {"preempt wait/BOTH", "preempt wait/BOTH/SLEEP"} <= set(events)
@@ -109,7 +109,7 @@ def test_a_cancelled_machine_ends_as_preempted() -> None:
             if event["event"] == "enter" and event["path"].endswith("OTHER"):
                 run.machine.cancel_state_machine()
 
-        run.machine.observer = observe
+        run.observe(observe)
         assert run.execute() == "preempted"
 
 
@@ -179,12 +179,12 @@ def test_a_program_is_started_and_stopped(tmp_path: Path, number: int, code: int
         (tmp_path / name).write_text(text, "utf-8")
     code_of_start = (
         "import os, wait_yasmin as module\n"
-        "build = module.program.build\n"
-        "def watched(parts):\n"
-        "    machine = build(parts)\n"
-        "    machine.observer = lambda event: os.write(1, (event['path'] + chr(10)).encode())\n"
-        "    return machine\n"
-        "module.program.build = watched\n"
+        "made = module.program.run\n"
+        "def watched():\n"
+        "    run = made()\n"
+        "    run.observe(lambda event: os.write(1, (event['path'] + chr(10)).encode()))\n"
+        "    return run\n"
+        "module.program.run = watched\n"
         "raise SystemExit(module.start())\n"
     )
     process = subprocess.Popen(

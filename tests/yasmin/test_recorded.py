@@ -66,7 +66,7 @@ def events_of_yasmin(case: Json) -> list[Json] | None:
         for key, value in case.get("userdata", {}).items():
             run.blackboard[key] = copy.deepcopy(value)
         PERFORMED.update(events=events, request=run.request_preempt)
-        run.machine.observer = events.append
+        run.observe(events.append)
         if case.get("preempt_before"):
             run.request_preempt()
         with contextlib.suppress(Exception):

@@ -82,6 +82,7 @@ class _Node:
     requested = False
     remapping = MappingProxyType({})
     running = ()
+    observer = None
 
     def request(self):
         """Send a request to stop to this state and to all that run in it."""
@@ -104,11 +105,8 @@ class _Node:
 
     def tell(self, event, **fields):
         """Pass an event of the trace to the observer of the run."""
-        root = self
-        while root.parent is not None:
-            root = root.parent
-        if root.observer is not None:
-            root.observer({"event": event, "path": self.path, **fields})
+        if self.observer is not None:
+            self.observer({"event": event, "path": self.path, **fields})
 
     def ended(self, outcome):
         """Note the outcome of this visit."""
@@ -170,7 +168,6 @@ class _Container(_Node):
         self.userdata = dict(userdata)
         self.catches = catches
         self.children = {}
-        self.observer = None
 
     def take(self, name, state, remapping):
         """Take a state into the container."""
@@ -483,6 +480,14 @@ class Run:
             containers += [state for state in children if isinstance(state, _Container)]
         for key, value in dict(userdata).items():
             self.blackboard[key] = value
+
+    def observe(self, observer):
+        """Call a function with each event of the trace of later runs."""
+        todo = [self.machine]
+        while todo:
+            state = todo.pop()
+            state.observer = observer
+            todo += getattr(state, "children", {}).values()
 
     def execute(self):
         """Run the machine; its outcome. After `cancel_state_machine`, which YASMIN ends with an

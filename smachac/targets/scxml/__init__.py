@@ -10,8 +10,7 @@ from __future__ import annotations
 import re
 
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
-from smachac.frontend.loader import Library
-from smachac.ir.nodes import Checked, Leaf, Machine, StateType
+from smachac.ir.nodes import Checked, Leaf, Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import outcome_names, walk
 from smachac.targets import BuildContext, Files, OptionError, Target, made_by, stem
@@ -100,11 +99,6 @@ def _refuse_structure(plan: Plan) -> None:
                 plan.refuse(node.span, message, help_, node.name, outcome)
 
 
-def _has_code(type_: StateType, _: Library) -> bool:
-    """A host runs the states of any type."""
-    return type_.kind != "base"
-
-
 TARGET = Target(
     name="scxml",
     description="a W3C SCXML document, whose states a host runs",
@@ -117,5 +111,4 @@ TARGET = Target(
     ),
     options={"trace": "true: the document logs each event of a trace (default: false)"},
     runtime=lambda machine, context: {HOST: f"scxml/{HOST}"},
-    has_code=_has_code,
 )

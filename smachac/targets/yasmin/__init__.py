@@ -84,8 +84,6 @@ TARGET = Target(
     description="a Python module for YASMIN 6.1",
     emit=emit,
     runtime=_runtime,
-    has_code=PYTHON.has_code,
-    declared=PYTHON.declared,
     options={"package": "true, or NAME: a package for colcon (ament_python)"},
     lacks=(
         "states and machines without outcomes",

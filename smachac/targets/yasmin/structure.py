@@ -195,18 +195,18 @@ def _function(code: Expression) -> str | None:
         tree = parse_code(code.text.strip())
     except SyntaxError:
         return None
-    if isinstance(tree, ast.Lambda):
-        parameters = [each.arg for each in tree.args.args]
-        text = code.text.strip() if parameters else f"lambda ud: ({code.text.strip()})()"
-    else:
-        used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-        parameter = "userdata" if "userdata" in used else "ud"
-        parameters, text = [parameter], f"lambda {parameter}: {code.text.strip()}"
     parts = [*ast.walk(tree)]
     used = [node for node in parts if isinstance(node, ast.Name)]
-    bound = {*parameters, *(node.arg for node in parts if isinstance(node, ast.arg))}
+    bound = {node.arg for node in parts if isinstance(node, ast.arg)}
     bound |= {node.id for node in used if not isinstance(node.ctx, ast.Load)}
-    return text if all(n.id in bound or hasattr(builtins, n.id) for n in used) else None
+    text = code.text.strip()
+    if not isinstance(tree, ast.Lambda):
+        parameter = "userdata" if any(name.id == "userdata" for name in used) else "ud"
+        bound.add(parameter)
+        text = f"lambda {parameter}: {text}"
+    elif not tree.args.args:
+        text = f"lambda ud: ({text})()"
+    return text if all(name.id in bound or hasattr(builtins, name.id) for name in used) else None
 
 
 def _target(node: Container, edge: Transition, states: frozenset[str]) -> str:
