@@ -3,6 +3,8 @@
     python bench/cpp.py                              # g++ and clang++, those that are installed
     python bench/cpp.py --scale 1000 10000           # compile a ring of so many states
     python bench/cpp.py --scale 10000 --containers 20    # the same in containers of 20 states
+    python bench/cpp.py --step                       # stepped machines: instructions a step
+    python bench/cpp.py --flash                      # stepped machines on a Cortex-M4: bytes
 
 The machines and the loops (bench/cpp_machines) run the same bodies of states, which the optimiser
 does not see. CPU time, minimum of interleaved rounds; instructions are those of callgrind, where
@@ -21,7 +23,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import cpp_machines as machines
@@ -55,21 +57,40 @@ WORKLOADS = {
 }
 
 
-def library() -> Library:
-    files = {f"templates/{name}.yml": machines.interface(name) for name in machines.HITS}
+STEPPED = {
+    "ping-pong": (machines.ring(2), machines.stepped_ring_by_hand(2)),
+    "ring of 10": (machines.ring(10), machines.stepped_ring_by_hand(10)),
+    "ring of 100": (machines.ring(100), machines.stepped_ring_by_hand(100)),
+    "3 levels, a number": (machines.levels("Hit"), machines.stepped_levels_by_hand("Hit")),
+    "3 levels, a PoseStamped": (
+        machines.levels("HitPose"),
+        machines.stepped_levels_by_hand("HitPose"),
+    ),
+    "3 levels, a list of strings": (
+        machines.levels("HitNames"),
+        machines.stepped_levels_by_hand("HitNames"),
+    ),
+}
+OPTIONS = {"mode": "step", "text": "32", "list": "4"}
+
+
+def library(header: str = "bodies.hpp") -> Library:
+    files = {f"templates/{name}.yml": machines.interface(name, header) for name in machines.HITS}
     return memory_library(files, disk_library(Path("main.yml"), []))
 
 
-def header(script: str) -> tuple[str, float]:
+def header(script: str, options: Mapping[str, str] = {}) -> tuple[str, float]:
     """The header of a script, and the seconds that printing it took."""
-    types = library()
+    types = library("step_bodies.hpp" if options else "bodies.hpp")
     report: Report = []
     machine = read_machine(Source("main.yml", script), types, report)
     assert machine is not None, report
     checked = check(machine, report)
     assert checked is not None, report
     start = time.process_time()
-    (text,) = build(checked, TARGET, types, report).values()
+    files = build(checked, TARGET, types, report, options)
+    assert files, report
+    (text,) = files.values()
     return text.replace("#pragma once\n", ""), time.process_time() - start
 
 
@@ -95,16 +116,16 @@ def compiled(folder: Path, script: str, by_hand: str, compiler: str) -> Path:
     return program
 
 
-def instructions(program: Path, way: str) -> float:
-    """Instructions a transition."""
+def instructions(program: Path, count: int, way: str) -> float:
+    """Instructions of one of `count` transitions or, if it is negative, of one step that waits."""
     call = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", str(program)]
     counts = []
-    for steps in (COUNTED, 2 * COUNTED):
-        ended = subprocess.run([*call, str(steps), way], capture_output=True, text=True)
+    for steps in (count, 2 * count):
+        ended = subprocess.run([*call, way, str(steps)], capture_output=True, text=True)
         found = re.search(r"Collected : (\d+)", ended.stderr)
         assert found is not None, ended.stderr
         counts.append(int(found.group(1)))
-    return (counts[1] - counts[0]) / COUNTED
+    return (counts[1] - counts[0]) / abs(count)
 
 
 def speed(compiler: str, steps: int) -> Iterator[str]:
@@ -114,10 +135,12 @@ def speed(compiler: str, steps: int) -> Iterator[str]:
     for name, (script, by_hand) in WORKLOADS.items():
         with tempfile.TemporaryDirectory() as folder:
             program = compiled(Path(folder), script, by_hand, compiler)
-            ran = subprocess.run([program, str(steps)], capture_output=True, text=True, check=True)
+            ran = subprocess.run(
+                [program, "all", str(steps)], capture_output=True, text=True, check=True
+            )
             rows = {"ns": [float(each) for each in ran.stdout.split()]}
             if shutil.which("valgrind"):
-                rows["instructions"] = [instructions(program, way) for way in WAYS]
+                rows["instructions"] = [instructions(program, COUNTED, way) for way in WAYS]
             for unit, (hand, alone, watched, writes) in rows.items():
                 cells = [f"{hand:.1f}", f"{alone:.1f}", f"{alone / hand:.2f}"]
                 cells += [f"{watched:.0f}", f"{writes:.0f}"]
@@ -130,6 +153,77 @@ sm::Outcome used(sm::States &states, sm::Userdata &ud, smachac::Stop &stop) {
 }
 """
 """Without it there is nothing to compile: all of a header is inline."""
+
+
+def stepped(compiler: str) -> Iterator[str]:
+    """Lines of a table: instructions of a step with a transition, and of one that waits."""
+    yield f"| {compiler}, stepped | by hand | smachac | ratio | counted | waits, by hand | waits |"
+    yield "| --- | --- | --- | --- | --- | --- | --- |"
+    for name, (script, by_hand) in STEPPED.items():
+        with tempfile.TemporaryDirectory() as folder:
+            text, _ = header(script, OPTIONS)
+            main = Path(folder) / "main.cpp"
+            main.write_text(f'{text}{by_hand}#include "step_main.hpp"\n')
+            program = Path(folder) / "program"
+            call = command(compiler, "-O2", "-fno-exceptions", "-fno-rtti")
+            files = [main, BODIES / "step_bodies.cpp", "-o", program]
+            subprocess.run([*call, *files], check=True)
+            hand, own, counted = (
+                instructions(program, COUNTED, way) for way in ("by_hand", "stepped", "counted")
+            )
+            waits = [instructions(program, -COUNTED, way) for way in ("by_hand", "stepped")]
+            cells = [f"{hand:.1f}", f"{own:.1f}", f"{own / hand:.2f}", f"{counted:.1f}"]
+            yield f"| {name} | {' | '.join([*cells, *(f'{each:.1f}' for each in waits)])} |"
+
+
+FLASH_ENTRY = """
+static {machine} machine;
+extern "C" bool entry(std::int64_t now) {{ return machine.step(now){running}; }}
+"""
+HAND = """
+#include <cstdint>
+namespace bench::by_hand {
+struct Data { std::int64_t now = 0, count = 0; };
+enum class Outcome : std::uint8_t { running, again, done };
+struct Hit { Outcome step(Data &data); };
+}
+"""
+"""The state and the data of a ring by hand, without those of other machines."""
+
+CORTEX = ("-mcpu=cortex-m4", "-mthumb", "-Os", "-ffreestanding", "-fno-exceptions", "-fno-rtti")
+SECTIONS = ("-fno-threadsafe-statics", "-ffunction-sections", "-fdata-sections")
+
+
+def flash() -> Iterator[str]:
+    """Lines of a table: flash and RAM of machines on a Cortex-M4, with the bodies of the states."""
+    yield "| Cortex-M4, -Os | flash by hand, bytes | smachac | ratio | RAM by hand | smachac |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    for count in (5, 20, 100):
+        text, _ = header(machines.ring(count), OPTIONS)
+        by_hand = machines.stepped_ring_by_hand(count)
+        hand = HAND + by_hand + FLASH_ENTRY.format(machine="hand::Machine", running="")
+        own = text + FLASH_ENTRY.format(machine="sm::Machine<>", running=".is_running()")
+        sizes = [_sizes(each) for each in (hand, own)]
+        ratio = sizes[1][0] / sizes[0][0]
+        cells = [sizes[0][0], sizes[1][0], f"{ratio:.2f}", sizes[0][1], sizes[1][1]]
+        yield f"| ring of {count} | {' | '.join(map(str, cells))} |"
+
+
+def _sizes(text: str) -> tuple[int, int]:
+    """The bytes of flash and RAM that a machine adds."""
+    with tempfile.TemporaryDirectory() as folder:
+        unit = Path(folder) / "unit.cpp"
+        unit.write_text(text)
+        call = command("arm-none-eabi-g++", *CORTEX, *SECTIONS)
+        subprocess.run([*call, "-c", str(unit), "-o", f"{folder}/unit.o"], check=True)
+        link = ["arm-none-eabi-g++", *CORTEX, "-nostdlib", "-Wl,--gc-sections,-eentry,-uentry"]
+        link += ["-Wl,--unresolved-symbols=ignore-all", f"{folder}/unit.o"]
+        subprocess.run([*link, "-lgcc", "-o", f"{folder}/unit.elf"], check=True)
+        listed = subprocess.run(
+            ["arm-none-eabi-size", f"{folder}/unit.elf"], capture_output=True, text=True, check=True
+        )
+        code, data, zero = map(int, listed.stdout.splitlines()[1].split()[:3])
+        return code + data, data + zero
 
 
 def scale(counts: list[int], size: int, compiler: str, flags: list[str]) -> Iterator[str]:
@@ -156,11 +250,18 @@ def main() -> int:
     parser.add_argument("--containers", type=int, default=0, help="states a container, for --scale")
     parser.add_argument("--compiler", nargs="*", default=["g++", "clang++"])
     parser.add_argument("--flags", default="-O1", help="of the compiler, for --scale")
+    parser.add_argument("--flash", action="store_true", help="flash and RAM on a Cortex-M4")
+    parser.add_argument("--step", action="store_true", help="stepped machines")
     parser.add_argument("--steps", type=int, default=STEPS)
     given = parser.parse_args()
     gc.disable()  # as `smachac` does
+    if given.flash:
+        print("\n".join(flash()))
+        return 0
     for compiler in filter(shutil.which, given.compiler):
-        if given.scale:
+        if given.step:
+            lines = stepped(compiler)
+        elif given.scale:
             lines = scale(given.scale, given.containers, compiler, given.flags.split())
         else:
             lines = speed(compiler, given.steps)

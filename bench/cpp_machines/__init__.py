@@ -19,15 +19,15 @@ PRESETS = {
 }
 
 
-def interface(name: str) -> str:
-    """The interface of a state type."""
+def interface(name: str, header: str = "bodies.hpp") -> str:
+    """The interface of a state type, whose class is in a header."""
     keys = ", ".join(f"{key}: '{type_}'" for key, type_ in HITS[name].items())
     return f"""
 name: {name}
 input_keys: {{{keys}}}
 output_keys: {{{keys}}}
 outcomes: {{again: {{}}, done: {{}}}}
-code: {{cpp: {{header: bodies.hpp, class: bench::{name}}}}}
+code: {{cpp: {{header: {header}, class: bench::{name}}}}}
 """
 
 
@@ -150,3 +150,86 @@ def containers(count: int, size: int) -> str:
                 f"transitions: {{again: {following}, done: done}}}}\n"
             )
     return "".join(text)
+
+
+def stepped_ring_by_hand(count: int) -> str:
+    """The ring as a switch that is called at each step."""
+    names = [f"S{at}" for at in range(count)]
+    cases = "\n".join(
+        f"    case State::{name}: switch (states.{name}.step(data)) {{\n"
+        f"      case Outcome::running: return true;\n"
+        f"      case Outcome::again: state = State::S{(at + 1) % count}; return true;\n"
+        f"      case Outcome::done: state = State::S0; return false; }} return false;"
+        for at, name in enumerate(names)
+    )
+    return f"""
+namespace hand {{
+using bench::by_hand::Data, bench::by_hand::Outcome;
+struct States {{ bench::by_hand::Hit {", ".join(names)}; }};
+enum class State : std::uint8_t {{ {", ".join(names)} }};
+struct Machine {{
+  Data data;
+  States states;
+  State state = State::S0;
+  bool step(std::int64_t now) {{
+    data.now = now;
+    switch (state) {{
+{cases}
+    }}
+    return false;
+  }}
+}};
+}}
+"""
+
+
+def stepped_levels_by_hand(hit: str) -> str:
+    """The three levels as switches that are called at each step; they use one object."""
+    return f"""
+namespace hand {{
+using bench::by_hand::Data, bench::by_hand::Outcome;
+struct Inner {{
+  enum class State : std::uint8_t {{ A, B }} state = State::A;
+  bench::by_hand::{hit} A, B;
+  Outcome step(Data &data) {{
+    switch (state) {{
+      case State::A: switch (A.step(data)) {{
+        case Outcome::running: return Outcome::running;
+        case Outcome::again: state = State::B; return Outcome::running;
+        case Outcome::done: state = State::A; return Outcome::done; }} break;
+      case State::B: switch (B.step(data)) {{
+        case Outcome::running: return Outcome::running;
+        case Outcome::again: state = State::A; return Outcome::again;
+        case Outcome::done: state = State::A; return Outcome::done; }} break;
+    }}
+    return Outcome::done;
+  }}
+}};
+struct Outer {{
+  enum class State : std::uint8_t {{ INNER, LAST }} state = State::INNER;
+  Inner INNER;
+  bench::by_hand::{hit} LAST;
+  Outcome step(Data &data) {{
+    switch (state) {{
+      case State::INNER: switch (INNER.step(data)) {{
+        case Outcome::running: return Outcome::running;
+        case Outcome::again: state = State::LAST; return Outcome::running;
+        case Outcome::done: state = State::INNER; return Outcome::done; }} break;
+      case State::LAST: switch (LAST.step(data)) {{
+        case Outcome::running: return Outcome::running;
+        case Outcome::again: state = State::INNER; return Outcome::again;
+        case Outcome::done: state = State::INNER; return Outcome::done; }} break;
+    }}
+    return Outcome::done;
+  }}
+}};
+struct Machine {{
+  Data data;
+  Outer outer;
+  bool step(std::int64_t now) {{
+    data.now = now;
+    return outer.step(data) != Outcome::done;
+  }}
+}};
+}}
+"""

@@ -56,18 +56,20 @@ constexpr Way ways[] = {{"by_hand", run_by_hand},
 
 } // namespace
 
-/// `program STEPS WAY` runs once; `program STEPS` prints the least nanoseconds a step of each way.
-int main(int argc, char **argv) {
-  const std::int64_t steps = std::atoll(argv[1]);
+/// `program WAY STEPS` runs once; `program all STEPS` prints the least nanoseconds a step of each
+/// way.
+int main(int, char **argv) {
+  const std::int64_t steps = std::atoll(argv[2]);
+  const bool all = std::strcmp(argv[1], "all") == 0;
   most = steps;
   double best[4] = {1e9, 1e9, 1e9, 1e9};
-  for (int round = 0; round < (argc > 2 ? 1 : rounds); ++round) {
+  for (int round = 0; round < (all ? rounds : 1); ++round) {
     for (std::size_t way = 0; way < 4; ++way) {
-      if (argc > 2 && std::strcmp(argv[2], ways[way].name) != 0) {
+      if (!all && std::strcmp(argv[1], ways[way].name) != 0) {
         continue;
       }
       // A watched step takes much longer.
-      most = argc > 2 || way < 2 ? steps : steps / 20;
+      most = !all || way < 2 ? steps : steps / 20;
       const double start = now();
       ways[way].run();
       best[way] = std::min(best[way], (now() - start) / static_cast<double>(most));

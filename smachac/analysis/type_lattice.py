@@ -1,8 +1,8 @@
 """The lattice of types: subtyping, join and meet, and the types of literals.
 
 An int fits a float, a `T` a `T?`, an enumeration a larger one or a `str`; a list of unknown length
-fits an array, a number without a unit every unit, a record one with fewer fields; `any` fits
-everything and everything fits `any`.
+fits an array, a number without a unit every unit, a text or list without a bound every bound, a
+record one with fewer fields; `any` fits everything and everything fits `any`.
 Nothing else converts. Three forms that no script can write stand for what is known of a literal:
 `Type("literal", (1, "a"))` is one of these constants, `Type("tuple", (T, U))` a list of two items,
 `Type("mapping", ("x", T))` a mapping with these names. They fit every type they can be written for.
@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from functools import lru_cache, reduce
 from typing import Literal, NamedTuple, TypeAlias
 
-from smachac.ir.types import ANY, STRUCTS, WORDS, Type, optional
+from smachac.ir.types import ANY, STRUCTS, WORDS, Type, bound_of, optional
 
 MisfitKind: TypeAlias = Literal["type", "length", "unit"]
 
@@ -96,6 +96,8 @@ def misfit(given: Type, wanted: Type) -> Misfit | None:
             return _first(_misfit_choice(choice, wanted) for choice in given.args)
         case "int" | "float", "int" | "float":
             return _misfit_numbers(given, wanted)
+        case "str", "str":
+            return None
         case "tuple" | "list" | "array", "list" | "array":
             return _misfit_lists(given, wanted)
         case "mapping" | "record", "dict":
@@ -131,7 +133,7 @@ def _first(found: Iterable[Misfit | None]) -> Misfit | None:
 
 
 def _misfit_choice(choice: Type | int | str, wanted: Type) -> Misfit | None:
-    if isinstance(choice, Type) or isinstance(choice, str) == (wanted == STR):
+    if isinstance(choice, Type) or isinstance(choice, str) == (wanted.name == "str"):
         return None
     return Misfit("type", Type("literal", (choice,)), wanted)
 
@@ -238,6 +240,8 @@ def join(one: Type, other: Type) -> Type:
             return _join_choices(one, other)
         case [Type("int" | "float"), Type("int" | "float")]:
             return _join_numbers(one, other)
+        case [Type("str"), Type("str")]:
+            return _bounded(STR, one, other)
         case [Type("tuple"), Type("tuple")] if len(one.args) == len(other.args):
             return Type("tuple", tuple(map(join, items(one), items(other))))
         case [Type("mapping"), Type("mapping")] if one.args[::2] == other.args[::2]:
@@ -288,7 +292,15 @@ def _join_lists(one: Type, other: Type) -> Type:
     size = length_of(one)
     if size is not None and size == length_of(other):
         return Type("array", (item, size))
-    return Type("list", (item,))
+    return _bounded(Type("list", (item,)), one, other)
+
+
+def _bounded(type_: Type, one: Type, other: Type) -> Type:
+    """A text or list with the larger bound of two: like a unit, a bound holds where the other type
+    has none."""
+    bounds = [bound_of(one), bound_of(other)]
+    most = max((bound for bound in bounds if bound is not None), default=None)
+    return type_ if most is None else Type(type_.name, (*type_.args, most))
 
 
 def joined(types: Iterable[Type]) -> Type:
@@ -367,7 +379,9 @@ def meet(one: Type, other: Type) -> Type:
             item = meet(inside(one), inside(other))
             if size is not None:
                 return Type("array", (item, size))
-            return LIST if item == ANY else Type("list", (item,))
+            return LIST if item == ANY else _bounded(Type("list", (item,)), one, other)
+        case "str", "str":
+            return _bounded(STR, one, other)
         case "dict", "dict":
             item = meet(inside(one), inside(other))
             return DICT if item == ANY else Type("dict", (item,))

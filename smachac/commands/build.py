@@ -17,7 +17,15 @@ from smachac.commands.arguments import (
     search_folders,
     time_limit,
 )
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
+from smachac.commands.output import (
+    FINDINGS,
+    OK,
+    print_report,
+    shown,
+    target_options,
+    usage,
+    without_notes,
+)
 from smachac.commands.python_files import MachineError, is_python, named_analyses
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
@@ -79,15 +87,9 @@ def build_command(arguments: Namespace) -> int:
                      )  # fmt: skip
     if arguments.machine is not None and not is_python(arguments.script):
         return usage("--machine is for Python files")
-    options: dict[str, str] = {}
-    for text in arguments.option:
-        name, equals, value = text.partition("=")
-        if not equals:
-            return usage(f"--option needs NAME=VALUE, not `{text}`")
-        if name not in target.options:
-            message = f"target `{target.name}` has no option `{name}`"
-            return usage(message, name, list(target.options))
-        options[name] = value
+    options = target_options(arguments.option, target)
+    if isinstance(options, int):
+        return options
     for name in target.file_options & options.keys():
         text = _text_of(options[name])
         if text is None:

@@ -1,14 +1,15 @@
-"""The command `new`: create a project or a state type; no file is overwritten."""
+"""The command `new`: create a project, a state type or scenarios; no file is overwritten."""
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from argparse import Namespace
 
 from smachac.commands.arguments import colour, quiet
-from smachac.commands.output import FINDINGS, OK, print_report, shown, usage
+from smachac.commands.output import FINDINGS, OK, print_report, shown, usage, without_notes
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ examples:
   smachac new state Grasp            templates/Grasp.yml and robot_states/grasp.py
   smachac new state Grasp --input target=Pose --output "width=float<m>" --outcome held
   smachac new state Grasp --target cpp     include/robot_states/grasp.hpp
+  smachac new scenario main.yml      scenarios/OUTCOME.yml for each outcome, for `run --mock`
 
 Existing files are never overwritten.
 exit codes: 0 success, 1 a file exists, has errors or cannot be written, 2 wrong usage,
@@ -34,16 +36,17 @@ exit codes: 0 success, 1 a file exists, has errors or cannot be written, 2 wrong
 
 def new_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
-    parser.add_argument("words", nargs="+", metavar="FOLDER | state NAME",
-                        help="the folder of a new project, or `state` and the name of a new state"
-                        " type")  # fmt: skip
+    parser.add_argument("words", nargs="+", metavar="FOLDER | state NAME | scenario SCRIPT",
+                        help="the folder of a new project; `state` and the name of a new state"
+                        " type; or `scenario` and a script")  # fmt: skip
     parser.add_argument("--target", choices=("python", "cpp"), default="python",
                         help="language of the generated code (default: python)")  # fmt: skip
     for name in ("input", "output"):
         parser.add_argument(f"--{name}", action="append", default=[], metavar="KEY[=TYPE]",
                             help=f"an {name} key of the state type (repeatable)")  # fmt: skip
     parser.add_argument("--outcome", action="append", default=[], metavar="NAME",
-                        help="an outcome of the state type (repeatable)")  # fmt: skip
+                        help="an outcome of the state type, or one that a scenario ends with"
+                        " (repeatable)")  # fmt: skip
     quiet(parser)
     colour(parser)
 
@@ -58,10 +61,11 @@ def new_command(arguments: Namespace) -> int:
     words: list[str] = arguments.words
     if words[:1] == ["state"] and len(words) == 2:
         return _state(words[1], arguments)
-    if len(words) != 1 or words == ["state"]:
-        return usage(
-            "name a folder, as in `new my_robot`, or a state type, as in `new state Grasp`"
-        )
+    if words[:1] == ["scenario"] and len(words) == 2:
+        return _scenarios(Path(words[1]), arguments)
+    if len(words) != 1 or words[0] in ("state", "scenario"):
+        return usage("name a folder, as in `new my_robot`, a state type, as in `new state Grasp`,"
+                     " or a script, as in `new scenario main.yml`")  # fmt: skip
     folder = Path(words[0])
     if not words[0].strip() or not words[0].isprintable():
         return usage(f"`{words[0]}` is not a name for a folder")
@@ -92,6 +96,37 @@ def _put(folder: Path, files: Files, arguments: Namespace) -> int:
     for path in written if not arguments.quiet else ():
         print(f"created {shown(path)}")
     return OK
+
+
+def _scenarios(script: Path, arguments: Namespace) -> int:
+    """Create a scenario for each outcome of a script, or each that `--outcome` names, beside the
+    script; the exit code."""
+    from smachac.commands.files import present_files
+    from smachac.driver import analyse_script
+    from smachac.ir.traversal import outcome_names
+    from smachac.verify.scenarios import outcome_scenarios
+
+    analysis = analyse_script(script, [], [])
+    machine = analysis.checked
+    print_report(without_notes(analysis.report), arguments, sys.stderr)
+    if machine is None:
+        return FINDINGS
+    known = outcome_names(machine.root)
+    for name in arguments.outcome:
+        if name not in known:
+            return usage(f"the script has no outcome `{name}`", name, known)
+    wanted = tuple(arguments.outcome) or known
+    names = {name: "scenarios/" + re.sub(r"[^\w-]", "_", name) + ".yml" for name in wanted}
+    there = present_files(script.parent, names.values()) if not arguments.outcome else []
+    wanted = tuple(name for name in wanted if script.parent / names[name] not in there)
+    found = outcome_scenarios(machine, str(script), wanted)
+    for path in there:
+        print(f"{shown(path)} exists already: it was not changed", file=sys.stderr)
+    for name in wanted:
+        if name not in found:
+            print(f"no path was found that ends with `{name}`", file=sys.stderr)
+    files = {names[name]: text for name, text in found.items()}
+    return _put(script.parent, files, arguments) if files else FINDINGS
 
 
 def _state(name: str, arguments: Namespace) -> int:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from smachac.diagnostics.clusters import Cluster
     from smachac.diagnostics.diagnostic import Report
+    from smachac.targets import Target
 
 OK, FINDINGS, USAGE = 0, 1, 2
 """Exit codes: success; findings or failure; wrong usage."""
@@ -58,3 +59,18 @@ def usage(message: str, word: str = "", known: Sequence[str] = ()) -> int:
     if known:
         print(did_you_mean(word, known) or f"known: {', '.join(known)}", file=sys.stderr)
     return USAGE
+
+
+def target_options(texts: Sequence[str], target: Target) -> dict[str, str] | int:
+    """The options of a target, from the texts `NAME=VALUE` of the command line; the exit code after
+    an error of usage."""
+    options: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals:
+            return usage(f"--option needs NAME=VALUE, not `{text}`")
+        if name not in target.options:
+            message = f"target `{target.name}` has no option `{name}`"
+            return usage(message, name, list(target.options))
+        options[name] = value
+    return options

@@ -18,18 +18,26 @@ from smachac.commands.arguments import (
     seed,
 )
 from smachac.commands.interrupts import interrupts_raise
-from smachac.commands.output import FINDINGS, OK, print_report, usage, without_notes
+from smachac.commands.output import (
+    FINDINGS,
+    OK,
+    print_report,
+    target_options,
+    usage,
+    without_notes,
+)
 from smachac.commands.terminal import ProgressLine
 
 TYPE_CHECKING = False  # annotations only: `--help` imports none of this
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from smachac.diagnostics.diagnostic import Report
     from smachac.diagnostics.source import Source
     from smachac.frontend.loader import Library
     from smachac.ir.nodes import Checked
+    from smachac.ir.types import Bounds
     from smachac.verify.test_case import Player
 
 EXAMPLES = """\
@@ -39,6 +47,7 @@ examples:
   smachac verify main.yml --targets scxml        compare the SCXML document, on SCION (needs Node)
   smachac verify main.yml --program pick.py      compare this file, edited by hand or built before
   smachac verify main.yml --header pick.hpp      compare this C++ header (needs a compiler)
+  smachac verify main.yml --targets cpp --option mode=step   compare the stepped C++
   smachac verify main.yml --paths 2000           try more paths
   smachac verify main.yml --seed 7               try other random paths
   smachac verify main.yml --format json          for programs, with every transition not taken
@@ -70,6 +79,8 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--paths", type=count, metavar="N",
                         help="try at most N paths (default: 200, or more if needed to take every"
                         " transition)")  # fmt: skip
+    parser.add_argument("--option", action="append", default=[], metavar="NAME=VALUE",
+                        help="an option of the target cpp, as for `build`")  # fmt: skip
     parser.add_argument(
         "--seed", type=seed, default=0, help="seed of the random paths (default: 0)"
     )
@@ -81,12 +92,16 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
 def verify_command(arguments: Namespace) -> int:
     """Compare each target with the interpreter; the exit code."""
     from smachac.driver import analyse_script
+    from smachac.targets.cpp.project import project
     from smachac.verify import verify
     from smachac.verify.result import render_json, render_text
     from smachac.verify.test_case import UnplayableError
 
     if (wrong := _wrong_usage(arguments)) is not None:
         return wrong
+    options = _options(arguments.option)
+    if isinstance(options, int):
+        return options
     paths = {"python": arguments.program, "cpp": arguments.header}
     files = {target: path for target, path in paths.items() if path is not None}
     targets = list(dict.fromkeys([*(arguments.targets or ()), *files])) or ["python"]
@@ -95,7 +110,8 @@ def verify_command(arguments: Namespace) -> int:
     sources = _read(files, report)
     players: dict[str, Player] = {}
     if machine is not None and library is not None and len(sources) == len(files):
-        players = _players(arguments.script, targets, sources, machine, library, report)
+        bounds = project(options, library.bounds).bounds
+        players = _players(arguments.script, targets, sources, machine, library, report, bounds)
     print_report(without_notes(report), arguments, sys.stderr)
     if machine is None or len(players) < len(targets):
         return FINDINGS
@@ -134,6 +150,22 @@ def _wrong_usage(arguments: Namespace) -> int | None:
     return None
 
 
+def _options(texts: Sequence[str]) -> dict[str, str] | int:
+    """The options of the target cpp; the exit code after an error of usage."""
+    from smachac.targets import OptionError
+    from smachac.targets.cpp import TARGET
+    from smachac.targets.cpp.project import project
+
+    options = target_options(texts, TARGET)
+    if isinstance(options, int):
+        return options
+    try:
+        project(options)
+    except OptionError as error:
+        return usage(f"--option {error}")
+    return options
+
+
 def _read(files: Mapping[str, Path], report: Report) -> dict[str, Source]:
     """The files on disk, by target; those that cannot be read are reported."""
     from smachac.frontend.files import read_source
@@ -149,6 +181,7 @@ def _players(
     machine: Checked,
     library: Library,
     report: Report,
+    bounds: Bounds | None,
 ) -> dict[str, Player]:
     """The requested targets that can express the whole machine; the others are reported."""
     from smachac.diagnostics.diagnostic import has_errors
@@ -160,7 +193,7 @@ def _players(
         if name in sources:
             player = _file_player(name, script, sources[name], machine, found)
         else:
-            player = _generated_player(name, script, machine, library, found)
+            player = _generated_player(name, script, machine, library, found, bounds)
         report[:] = merged(report, found)
         if not has_errors(found):
             players[name] = player
@@ -168,16 +201,22 @@ def _players(
 
 
 def _generated_player(
-    target: str, script: Path, machine: Checked, library: Library, report: Report
+    target: str,
+    script: Path,
+    machine: Checked,
+    library: Library,
+    report: Report,
+    bounds: Bounds | None,
 ) -> Player:
-    """A player of the program that smachac generates now."""
+    """A player of the program that smachac generates now. `bounds` are those of a stepped machine
+    in C++."""
     from smachac.driver import build
     from smachac.frontend.files import module_folders
     from smachac.targets.python import TARGET
     from smachac.verify.players import cpp, python, scxml
 
     if target == "cpp":
-        return cpp.player(machine, report)
+        return cpp.player(machine, report, bounds)
     if target == "scxml":
         return scxml.player(machine, report, folders=[script.resolve().parent])
     files = build(machine, TARGET, library, report)

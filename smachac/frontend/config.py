@@ -13,6 +13,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.frontend.errors.script import too_big, unreadable_file
+from smachac.ir.types import MOST_BOUND, Bounds
 from smachac.pysource.ros_names import DEFAULT_ROS, ROS_VERSIONS, Ros
 from smachac.records import dataclass, field
 
@@ -22,6 +23,8 @@ SETTINGS: Mapping[str, str] = {
     "code": "Folders with the Python modules and C++ headers of state types.",
     "exclude": "Patterns of files to exclude when a folder is checked or formatted.",
     "ros": "The version of ROS of generated programs: 1 or 2.",
+    "bounds": "In stepped C++, the bounds of texts (bytes) and lists (items) that have none:"
+    " {text = 32, list = 8}.",
     "severity": 'Severities by code, or by the beginning of codes: SM204 = "error".',
 }
 """The settings of a project file, with their descriptions."""
@@ -59,7 +62,8 @@ LONGEST_KEY = 200
 class Project:
     """The settings of a project file: search folders, absolute or relative to the working folder;
     patterns of files to exclude when a folder is checked, relative to `folder`; the version of ROS
-    of generated programs; severities. `readable`: no setting with search folders was left out."""
+    of generated programs; the bounds of texts and lists that have none; severities. `readable`: no
+    setting with search folders was left out."""
 
     folder: Path = Path()
     scripts: tuple[Path, ...] = ()
@@ -67,6 +71,7 @@ class Project:
     code: tuple[Path, ...] = ()
     exclude: tuple[str, ...] = ()
     ros: Ros = DEFAULT_ROS
+    bounds: Bounds = Bounds()
     policy: Policy = field(default_factory=Policy)
     readable: bool = True
 
@@ -114,7 +119,7 @@ def read_project(
         return None
     folders: dict[str, tuple[Path, ...]] = {}
     texts: dict[str, tuple[str, ...]] = {}
-    policy, ros = Policy(), DEFAULT_ROS
+    policy, ros, bounds = Policy(), DEFAULT_ROS, Bounds()
     given = settings
     settings = _with_meant_settings(settings)
     for key in given:
@@ -132,6 +137,8 @@ def read_project(
             policy = Policy(severities=_severities(source, value, report, codes))
         elif key == "ros":
             ros = _ros(source, value, report)
+        elif key == "bounds":
+            bounds = _bounds(source, value, report)
         elif not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             kind = "patterns" if key == "exclude" else "folders"
             message = f"`{key}` must be a list of {kind}"
@@ -148,6 +155,7 @@ def read_project(
         code=folders.get("code", ()),
         exclude=texts.get("exclude", ()),
         ros=ros,
+        bounds=bounds,
         policy=policy,
         readable=all(isinstance(settings.get(key, []), list) for key in FOLDERS)
         and not any(isinstance(settings[key], list) for key in settings.keys() - SETTINGS.keys()),
@@ -173,6 +181,18 @@ def _ros(source: Source, value: object, report: Report) -> Ros:
         message, help = f"{message}, a number without quotes", f"write `ros = {value}`"
     _wrong(source, "ros", message, help, report, ("ros",), at_value=True)
     return DEFAULT_ROS
+
+
+def _bounds(source: Source, value: object, report: Report) -> Bounds:
+    """The bounds of texts and lists; none in place of a wrong one."""
+    if isinstance(value, dict) and value.keys() <= {*Bounds._fields}:
+        sizes = value.values()
+        if all(type(size) is int and 0 < size <= MOST_BOUND for size in sizes):
+            return Bounds(**value)
+    message = f"`bounds` must have `text` and `list`, numbers from 1 to {MOST_BOUND}"
+    help = "write `bounds = {text = 32, list = 8}`"
+    _wrong(source, "bounds", message, help, report, ("bounds",))
+    return Bounds()
 
 
 def _looks_like_settings(table: object) -> bool:

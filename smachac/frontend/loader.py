@@ -11,6 +11,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.severities import Policy
 from smachac.diagnostics.source import Source
 from smachac.frontend.text.yaml_tree import Tree, parse
+from smachac.ir.types import Bounds
 from smachac.pysource.user_code import UserCode
 from smachac.records import dataclass, field
 from smachac.robots.files import Packages
@@ -39,11 +40,13 @@ class Library(UserCode):
     `std_srvs/srv/Trigger.srv`, in the order of the searched folders; `definition_names(folder)` the
     names of the files in all folders with a path, such as `std_srvs/srv`; `folders_with(files)` the
     folders below that of the main script that have one of these files. The lists of folders and
-    names are for messages. `policy` are the severities of the project. `parse` may return one tree
-    for all scripts that share a text. `robot(file)` returns a description or URDF file of a
-    built-in robot, or a file of PyBullet's data. `mesh(name, urdf, packages)` returns the path of a
-    mesh that a URDF file names (`find_mesh`); no mesh is opened. `expand(file, arguments,
-    packages)` returns the URDF text of a xacro file; it raises XacroError. `settings_read` is False
+    names are for messages. `policy` are the severities of the project, `bounds` the bounds of texts
+    and lists. `parse` may return one tree for all scripts that share a text; `release(source)` is
+    called where that of a script is not needed again, and may forget it. `robot(file)` returns a
+    description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
+    packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
+    `expand(file, arguments, packages)` returns the URDF text of a xacro file; it raises XacroError.
+    `settings_read` is False
     if the project file or its search folders could not be read.
     """
 
@@ -56,7 +59,9 @@ class Library(UserCode):
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
     robot_names: Callable[[str], Sequence[str]] = lambda caller: ()
     parse: Callable[[Source, Report], Tree | None] = parse
+    release: Callable[[Source], None] = lambda source: None
     policy: Policy = field(default_factory=Policy)
+    bounds: Bounds = Bounds()
     robot: Callable[[str], Source | None] = lambda file: None
     mesh: Callable[[str, str, Packages], Path | None] = lambda name, urdf, packages: Path(name)
     expand: Callable[[str, Mapping[str, str], Packages], str] = no_xacro
@@ -118,6 +123,7 @@ def memory_library(files: Mapping[str, str], built_in: Library) -> Library:
         ],
         robot=built_in.robot,
         ros=built_in.ros,
+        bounds=built_in.bounds,
     )
 
 

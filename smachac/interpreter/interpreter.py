@@ -291,7 +291,7 @@ class Interpreter:
             self.fail("behaviour", path, str(error), leaf.span)
         except Exception as error:
             self.fail("behaviour", path, f"{type(error).__name__}: {error}", leaf.span)
-        if view.slept and (yield from self._sleep(leaf, path, view.slept)):
+        if view.slept and (yield from self._sleep(leaf, path, view.slept, waits=view.waits)):
             requested.discard(path)
             return PREEMPTED
         return outcome
@@ -299,13 +299,16 @@ class Interpreter:
     def _stop_machine(self) -> None:
         self.preemption.request(self._root.name)
 
-    def _sleep(self, leaf: Leaf, path: str, seconds: float) -> Generator[float, None, bool]:
-        """Wait. True if a request to stop, which the leaf can serve, ended the wait early."""
+    def _sleep(
+        self, leaf: Leaf, path: str, seconds: float, *, waits: bool
+    ) -> Generator[float, None, bool]:
+        """Wait. True if a request to stop, which the leaf can serve, ended the wait early. If the
+        leaf `waits` for a request, one that it cannot serve ends the wait as well."""
         until = self.clock + seconds
         answers = PREEMPTED in outcome_names(leaf)
         while self.clock < until:
-            if answers and path in self.preemption.requested:
-                return True
+            if (answers or waits) and path in self.preemption.requested:
+                return answers
             yield until
         return False
 

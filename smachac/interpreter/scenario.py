@@ -43,10 +43,6 @@ class ScenarioStep:
     stop: bool = False
 
 
-LONGEST_WAIT = 1e9
-"""Seconds of virtual time, longer than everything else in a run."""
-
-
 STEP_FIELDS: Mapping[str, str] = {
     "outcome": "The outcome it ends with, or the probability of each of several outcomes; without"
     " one, its default outcome.",
@@ -105,7 +101,7 @@ def perform_step(step: ScenarioStep, leaf: Leaf, userdata: Userdata) -> str:
         userdata.service_preempt()
         return PREEMPTED
     if step.wait and not userdata.preempted:
-        userdata.sleep(LONGEST_WAIT)
+        userdata.wait_for_stop()
         if able:
             return PREEMPTED
     if step.error:
@@ -147,26 +143,35 @@ def scenario_text(rows: Mapping[str, Sequence[PlainStep]]) -> str:
     """A scenario as a file for `smachac run --mock`."""
     lines = ["states:"]
     for path, row in rows.items():
-        lines.append(f"  {quoted(path)}:")
-        lines += [f"    - {quoted(step)}" for step in map(_step, row)]
+        steps = [_short(_step(step)) for step in row]
+        if len(steps) == 1:
+            lines.append(f"  {_flow(path)}: {steps[0]}")
+        else:
+            lines += [f"  {_flow(path)}:", *(f"    - {step}" for step in steps)]
     return "\n".join(lines) + "\n"
 
 
 def scenario_line(rows: Mapping[str, Sequence[PlainStep]]) -> str:
     """A scenario on one line, with steps that are only an outcome as short as possible."""
     states = {path: [_short(_step(step)) for step in row] for path, row in rows.items()}
-    parts = (f"{_plain(path)}: [{', '.join(steps)}]" for path, steps in states.items())
+    parts = (f"{_flow(path)}: [{', '.join(steps)}]" for path, steps in states.items())
     return f"{{states: {{{', '.join(parts)}}}}}"
 
 
-def _plain(text: str) -> str:
-    return text if is_plain(text) else quoted(text)
+def _flow(value: object) -> str:
+    """A value as YAML on one line, with quotes only where they are needed."""
+    match value:
+        case dict():
+            return f"{{{', '.join(f'{_flow(key)}: {_flow(value[key])}' for key in value)}}}"
+        case list() | tuple():
+            return f"[{', '.join(map(_flow, value))}]"
+        case str() if is_plain(value):
+            return value
+    return quoted(value)
 
 
 def _short(step: dict[str, object]) -> str:
-    if [*step] == ["outcome"]:
-        return _plain(str(step["outcome"]))
-    return quoted(step)
+    return _flow(step["outcome"] if [*step] == ["outcome"] else step)
 
 
 def _step(row: PlainStep) -> dict[str, object]:

@@ -28,6 +28,10 @@ class UserdataError(BehaviourError):
         self.kind: UserdataErrorKind = kind
 
 
+LONGEST_WAIT = 1e9
+"""Seconds of virtual time, longer than everything else in a run."""
+
+
 class Readable(Protocol):
     """Readable userdata: the view of a leaf, or the userdata of a container."""
 
@@ -130,7 +134,7 @@ class Userdata:
 
     __slots__ = (
         *("_around", "_requested", "_names", "_path", "_reads", "_writes", "_on_write"),
-        *("slept", "stop_machine"),
+        *("slept", "stop_machine", "waits"),
     )
 
     def __init__(
@@ -153,6 +157,7 @@ class Userdata:
         self._on_write = on_write
         self.stop_machine = stop_machine
         self.slept = 0.0
+        self.waits = False
 
     def __getitem__(self, key: str) -> object:
         if self._reads is not None and key not in self._reads:
@@ -192,6 +197,11 @@ class Userdata:
     def sleep(self, seconds: float) -> None:
         """Let virtual time pass between the behaviour of the leaf and its exit."""
         self.slept += max(0.0, seconds)
+
+    def wait_for_stop(self) -> None:
+        """Let virtual time pass until a request to stop arrives, at most LONGEST_WAIT."""
+        self.waits = True
+        self.slept += LONGEST_WAIT
 
 
 class KeyAttributes:

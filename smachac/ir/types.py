@@ -28,6 +28,7 @@ WORDS = (*SCALARS, *STRUCTS, "list", "dict")
 name is known."""
 
 _WORD = re.compile(r"[^\W\d]\w*(?:[./-]\w+)*")
+_QUANTITY = re.compile(r'(float|int)<([^<>\[\]",?\s]+)>')
 
 
 class Type(NamedTuple):
@@ -37,7 +38,8 @@ class Type(NamedTuple):
     `Type("array", (T, 7))`, `dict[str, T]` is `Type("dict", (T,))`, `T?` is `Type("optional",
     (T,))`, `one_of[a, b]` is `Type("one_of", ("a", "b"))`, the record `{x: T, y: U}` is
     `Type("record", ("x", T, "y", U))`; any other type is a name alone (`bool`, `Pose`,
-    `geometry_msgs/Pose`).
+    `geometry_msgs/Pose`). The bound of a text or list is its last argument: `str<=32` is
+    `Type("str", (32,))`, `list[T]<=8` is `Type("list", (T, 8))`.
     """
 
     name: str
@@ -45,8 +47,10 @@ class Type(NamedTuple):
 
     def __str__(self) -> str:
         match self.name, self.args:
-            case "list", (item,):
-                return f"list[{item}]"
+            case "list", (item, *bound):
+                return f"list[{item}]{f'<={bound[0]}' if bound else ''}"
+            case "str", (bound,):
+                return f"str<={bound}"
             case "array", (item, size):
                 return f"{item}[{size}]"
             case "dict", (item,):
@@ -83,6 +87,9 @@ def parse_type(text: str) -> Type | None:
     text = text.strip()
     if _WORD.fullmatch(text):
         return Type(text) if text != "one_of" else None
+    number = _QUANTITY.fullmatch(text)
+    if number is not None:  # a check of a short script often needs no parser beside these
+        return Type(number[1], (number[2],))
     depth = text.count("[") + text.count("?") + text.count(" of ") + text.count("{")
     if len(text) > LONGEST or depth > DEEPEST:
         return None
@@ -100,6 +107,24 @@ def _complete(type_: Type) -> Type:
     if type_ == Type("one_of"):
         raise ValueError("one of what?")
     return type_
+
+
+class Bounds(NamedTuple):
+    """The bounds of texts (bytes of UTF-8) and lists (items) that have none of their own; 0: none.
+    Only stepped machines in C++ need them."""
+
+    text: int = 0
+    list: int = 0
+
+
+MOST_BOUND = 65535
+"""The largest bound: sizes have 16 bits."""
+
+
+def bound_of(type_: Type) -> int | None:
+    """The bound of a text (bytes of UTF-8) or a list (items), if its type has one."""
+    last = type_.args[-1] if type_.args and type_.name in ("str", "list") else None
+    return last if isinstance(last, int) else None
 
 
 def optional(type_: Type) -> Type:
@@ -157,6 +182,12 @@ class _TypeBuilder:
         if found.args:
             raise ValueError("a choice is a word or a whole number")
         return found.name
+
+    def bounded(self, found: list[Any]) -> Type:
+        type_, bound = found[0], self.integer(found[1:])
+        if bound > 0 and (type_ == Type("str") or (type_.name == "list" and len(type_.args) == 1)):
+            return Type(type_.name, (*type_.args, bound))
+        raise ValueError("only texts and lists have a bound")
 
     def optional(self, found: list[Any]) -> Type:
         return Type("optional", (_complete(found[0]),))

@@ -18,11 +18,11 @@ from smachac.records import dataclass
 ASSIGNED = "Maybe you meant '==' instead of '='?"
 """The end of the message of Python for `=` in a comparison."""
 
-LONGEST = 200_000
+LONGEST = 1_000_000
 """The longest text that is read, in characters."""
 
 _RAW = re.compile(r"\{%[-+]?\s*raw\b")
-_NOT_PORTABLE_LINES = re.compile(r"\r(?!\n)|[\f\v]")
+_NOT_PORTABLE_LINES = re.compile(r"\r(?!\n)")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

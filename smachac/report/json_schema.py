@@ -19,7 +19,8 @@ from smachac.frontend.types.interface_code import CLASS_FIELDS
 from smachac.frontend.types.value_facts import NAMES
 from smachac.interpreter.scenario import STEP_FIELDS
 from smachac.ir.nodes import FunctionResult, KeyRole, StateKind, VariableRole
-from smachac.ir.types import WORDS
+from smachac.ir.types import MOST_BOUND, WORDS
+from smachac.pysource.ros_names import ROS_VERSIONS
 from smachac.robots import description, faults, scene
 
 Schema: TypeAlias = dict[str, Any]
@@ -317,14 +318,20 @@ def project_schema(codes: Mapping[str, Code]) -> Schema:
         },
     }
     texts: Schema = {"type": "array", "items": {"type": "string"}, "default": []}
+    bound: Schema = {"type": "integer", "minimum": 1, "maximum": MOST_BOUND}
+    bounds: Schema = {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {"text": bound, "list": bound},
+    }
+    shapes = {"severity": severity, "ros": {"enum": list(ROS_VERSIONS)}, "bounds": bounds}
     return {
         "$schema": DRAFT,
         "title": "The project file of smachac",
         "type": "object",
         "additionalProperties": False,
         "properties": {
-            name: {"description": doc, **(severity if name == "severity" else texts)}
-            for name, doc in SETTINGS.items()
+            name: {"description": doc, **shapes.get(name, texts)} for name, doc in SETTINGS.items()
         },
     }
 

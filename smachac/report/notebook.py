@@ -62,12 +62,14 @@ def _svg(machine: Machine) -> str:
     import shutil
     import subprocess
 
+    from smachac.ir.written import written
     from smachac.targets.dot.graph import picture
 
     program = shutil.which("dot")
     if program is None:
         return ""
-    text = "\n".join(picture(machine, depth=None, rankdir="TB"))
+    view = written(machine)
+    text = "\n".join(picture(machine, view, depth=view.fitting_depth()))
     try:
         done = subprocess.run(
             [program, "-Tsvg"],

@@ -324,3 +324,62 @@ def test_files_name_their_schemas(project: Path, capsys: pytest.CaptureFixture[s
         schema.unlink()
     assert main(["new", "state", "Drop"]) == 0
     assert (project / "templates/Drop.yml").read_text("utf-8").startswith("# The interface")
+
+
+SCRIPT = """\
+name: errand
+outcomes: [succeeded, aborted, never]
+states:
+  - ASK: {template: Asks, transitions: {"yes": CARRY, "no": aborted, failed: ASK}}
+  - CARRY: {template: Asks, transitions: {"yes": succeeded, "no": aborted, failed: ASK}}
+"""
+
+
+@pytest.fixture
+def errand(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "ä folder"
+    (folder / "templates").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+    (folder / "main.yml").write_text(SCRIPT)
+    (folder / "templates" / "Asks.yml").write_text(
+        'outcomes: ["yes", "no", failed]\noutput_keys: [answer]\n'
+    )
+    return folder
+
+
+def test_scenarios_end_with_the_outcomes_of_the_script(
+    errand: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = str(errand / "main.yml")
+    assert main(["new", "scenario", script]) == 0
+    captured = capsys.readouterr()
+    assert "no path was found that ends with `never`" in captured.err
+    files = sorted((errand / "scenarios").iterdir())
+    assert [path.stem for path in files] == ["aborted", "succeeded"]
+    for path in files:
+        assert main(["run", script, "--mock", str(path), "--expect", path.stem, "-q"]) == 0
+    assert "errand/ASK" in files[1].read_text()
+    assert "errand/CARRY" in files[1].read_text()
+
+
+def test_scenarios_that_exist_are_kept(errand: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = str(errand / "main.yml")
+    mine = errand / "scenarios" / "aborted.yml"
+    mine.parent.mkdir()
+    mine.write_text("mine")
+    assert main(["new", "scenario", script]) == 0
+    assert "exists already" in capsys.readouterr().err
+    assert mine.read_text() == "mine"
+    assert main(["new", "scenario", script, "--outcome", "aborted"]) == 1
+    assert mine.read_text() == "mine"
+
+
+def test_scenarios_are_of_outcomes_of_the_script(
+    errand: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = str(errand / "main.yml")
+    assert main(["new", "scenario", script, "--outcome", "abortd"]) == 2
+    assert "did you mean `aborted`" in capsys.readouterr().err
+    (errand / "main.yml").write_text("states: [")
+    assert main(["new", "scenario", script]) == 1
+    assert not (errand / "scenarios").exists()

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 import subprocess
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,13 +24,14 @@ from smachac.interpreter.userdata import UserdataError
 from smachac.ir import nodes
 from smachac.ir.nodes import Checked, Key, Leaf, Machine, Node, Outcome, Preset, StateMachine
 from smachac.ir.traversal import outcome_names, remapping
-from smachac.ir.types import ANY, Type
+from smachac.ir.types import ANY, Bounds, Type
 from smachac.targets.cpp import TARGET
+from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.containers import results
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import member, plan
 from smachac.targets.cpp.types import cpp_literal, cpp_type
-from smachac.targets.cpp.user_classes import interface_hash
+from smachac.targets.cpp.user_classes import interface_hash, step_field_type
 from tests.conformance_ir.ir_vectors import Replay, data_of, leaves_of, machine_of
 from tests.cpp.compilers import Compiler
 from tests.support.typed_machines import with_state_types
@@ -38,6 +39,7 @@ from tests.support.typed_machines import with_state_types
 Json = Any
 
 HOST = Path(__file__).with_name("vector_host.hpp")
+STEP_HOST = Path(__file__).with_name("step_host.hpp")
 TYPES = {"i": Type("int"), "l": Type("list", (Type("int"),)), "s": Type("str")}
 BUILT_IN = disk_library(Path("main.yml"), [])
 
@@ -55,19 +57,23 @@ class Part:
     call: str
 
 
-def part(case: Json, name: str) -> Part | list[str]:
+BOUNDS = Bounds(text=64, list=32)
+"""The bounds of the values in stepped machines."""
+
+
+def part(case: Json, name: str, *, stepped: bool = False) -> Part | list[str]:
     """A case as C++, or why C++ cannot say it. The keys of random machines are typed by their
     names, where that holds; others as their container has them."""
-    typed = case["id"].startswith("A")
-    found = _part(case, name, typed)
-    return found if isinstance(found, Part) or not typed else _part(case, name, False)
+    typed = not case["id"].startswith("h")
+    found = _part(case, name, typed, BOUNDS if stepped else None)
+    again = isinstance(found, list) and typed
+    return _part(case, name, False, BOUNDS if stepped else None) if again else found
 
 
-def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
+def _part(case: Json, name: str, typed: bool, bounds: Bounds | None) -> Part | list[str]:
     leaves: dict[str, Leaf] = {}
-    inner = _renamed(declared(case), "", name, typed, leaves)
-    machine = Machine(root=_around(case, name, inner), source="vectors")
-    scopes = plan(machine).scopes
+    machine = _machine(case, name, typed, leaves)
+    scopes = plan(machine, bounds).scopes
     if not typed:
         leaves = {
             path: _inferred(leaf, scopes[f"{name}/root{path}".rpartition("/")[0]])
@@ -76,25 +82,29 @@ def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
     files: dict[str, str] = {}
     for path, leaf in leaves.items():
         within = scopes[f"{name}/root{path}".rpartition("/")[0]]
-        loose = isinstance(within.node, nodes.Iterator)
-        files[f"templates/{leaf.type}.yml"] = _interface(
-            case, path, leaf, within.keys if loose else {}
-        )
+        open_ = isinstance(within.node, nodes.Iterator)
+        keys = {key: loose(type_) for key, type_ in within.keys.items()} if open_ else {}
+        files[f"templates/{leaf.type}.yml"] = _interface(case, path, leaf, keys, bounds)
     library = memory_library(files, BUILT_IN)
     typed_machine = with_state_types(machine, library)
     report: Report = []
-    texts = build(Checked(typed_machine), TARGET, library, report)
+    options = {"mode": "step", "text": str(BOUNDS.text), "list": str(BOUNDS.list)}
+    texts = build(Checked(typed_machine), TARGET, library, report, options if bounds else None)
     if report:
         return [item.finding.message for item in report]
     classes = []
     for path, leaf in leaves.items():
         type_ = typed_machine.state_types[leaf.type]
-        classes.append(_class(type_, f"{name}/root{path}"))
+        make = _class if bounds is None else _step_class
+        classes.append(make(type_, f"{name}/root{path}"))
     asked = str(bool(case.get("preempt_before"))).lower()
-    planned = plan(typed_machine).scopes
+    planned = plan(typed_machine, bounds).scopes
     told = "\n".join(_told(machine, planned))
     call = (
-        f'  vectors::play<{name}::States, {name}::Userdata>("{name}", {case.get("runs", 1)}, '
+        f'  vectors::play<{name}::Machine<vectors::Host>>("{name}", {case.get("runs", 1)}, '
+        f"{asked}, [](auto &host, const auto &ud) {{\n{told}\n  }});"
+        if bounds
+        else f'  vectors::play<{name}::States, {name}::Userdata>("{name}", {case.get("runs", 1)}, '
         f"{asked}, {name}::run, [](auto &host, const auto &ud) {{\n{told}\n  }});"
     )
     (text,) = texts.values()
@@ -114,6 +124,16 @@ def _part(case: Json, name: str, typed: bool) -> Part | list[str]:
         header=header,
         call=call,
     )
+
+
+def _machine(case: Json, name: str, typed: bool, leaves: dict[str, Leaf]) -> Machine:
+    inner = _renamed(declared(case), "", name, typed, leaves)
+    return Machine(root=_around(case, name, inner), source="vectors")
+
+
+def typed_machine(case: Json, name: str) -> Machine:
+    """The machine of a case whose keys have the types of their names."""
+    return _machine(case, name, True, {})
 
 
 def declared(case: Json) -> Any:
@@ -221,7 +241,9 @@ def _inferred(leaf: Leaf, scope: Any) -> Leaf:
     )
 
 
-def _interface(case: Json, path: str, leaf: Leaf, loose: Mapping[str, Type]) -> str:
+def _interface(
+    case: Json, path: str, leaf: Leaf, loose: Mapping[str, Type], bounds: Bounds | None
+) -> str:
     outputs = {key.name: str(key.type) for key in leaf.outputs}
     inputs = {key.name: key.type for key in leaf.inputs if key.name not in outputs}
     # A class that looks for a key has to see it hold nothing: as a T?, or as what it may write.
@@ -238,7 +260,7 @@ def _interface(case: Json, path: str, leaf: Leaf, loose: Mapping[str, Type]) -> 
             "outcomes": {name: {} for name in outcome_names(leaf)},
             "code": {
                 "cpp": {
-                    "header": "vector_host.hpp",
+                    "header": "step_host.hpp" if bounds else "vector_host.hpp",
                     "class": f"vectors::{leaf.type}",
                     "with": "vectors::Host& host",
                 }
@@ -282,6 +304,48 @@ def _class(type_: Any, path: str) -> str:
     )
 
 
+def _step_class(type_: Any, path: str) -> str:
+    """The class of a leaf of a stepped machine."""
+    ends = [identifier(each.name) for each in type_.outcomes]
+
+    def fields(part: str, keys: Iterable[Key]) -> list[str]:
+        stored = {key.name: bounded(key.type, BOUNDS) for key in keys}
+        return [
+            f"    {step_field_type(part, stored_)} {identifier(name)};"
+            for name, stored_ in stored.items()
+        ]
+
+    ins, outs = fields("In", type_.input_keys), fields("Out", type_.output_keys)
+    views = [
+        *(f"view({cpp_literal(k.name)}, in.{identifier(k.name)})" for k in type_.input_keys),
+        *(f"view({cpp_literal(k.name)}, out.{identifier(k.name)})" for k in type_.output_keys),
+    ]
+    parameters = [
+        "smachac::step::Context &context",
+        *(["In in"] if ins else []),
+        *(["Out out"] if outs else []),
+    ]
+    call = f"host.act({cpp_literal(path)}, context, {{{', '.join(views)}}})"
+    return "\n".join(
+        [
+            f"class {type_.name} {{",
+            "public:",
+            f"  enum class Outcome : std::uint8_t {{ {', '.join(ends)} }};",
+            *(["  struct In {", *ins, "  };"] if ins else []),
+            *(["  struct Out {", *outs, "  };"] if outs else []),
+            f"  static constexpr std::uint32_t smachac_interface = {interface_hash(type_)};",
+            f"  explicit {type_.name}(Host &given) : host(given) {{}}",
+            f"  smachac::step::Result<Outcome> step({', '.join(parameters)}) {{",
+            f"    const int ended = {call};",
+            "    if (ended < 0) { return smachac::step::failed; }",
+            "    return static_cast<Outcome>(ended);",
+            "  }",
+            "  Host &host;",
+            "};",
+        ]
+    )
+
+
 def _told(machine: Machine, scopes: Mapping[str, Any]) -> Iterator[str]:
     """Statements that print the keys of every container that it does not share with the one around
     it."""
@@ -298,8 +362,8 @@ def _told(machine: Machine, scopes: Mapping[str, Any]) -> Iterator[str]:
         yield '      host.say(line + "}"); static_cast<void>(ud); }'
 
 
-def program(parts: Sequence[Part]) -> str:
-    host = HOST.read_text("utf-8")
+def program(parts: Sequence[Part], *, stepped: bool = False) -> str:
+    host = (STEP_HOST if stepped else HOST).read_text("utf-8")
     head, names, tail = host.partition("/// Run a machine so often")
     return "\n".join(
         [
@@ -447,11 +511,16 @@ class Ran:
 
 
 def replay(
-    parts: Sequence[Part], compiler: Compiler, folder: Path, *flags: str, standard: str = "c++17"
+    parts: Sequence[Part],
+    compiler: Compiler,
+    folder: Path,
+    *flags: str,
+    standard: str = "c++17",
+    stepped: bool = False,
 ) -> dict[str, list[Ran]]:
     """What the compiled machines do, by the names of the cases."""
     flags = (*flags, "-pthread", f"-I{HOST.parent}")
-    made = compiler.compile(program(parts), folder, *flags, standard=standard)
+    made = compiler.compile(program(parts, stepped=stepped), folder, *flags, standard=standard)
     found: dict[str, list[Ran]] = {}
     by_name = {each.name: each for each in parts}
     with subprocess.Popen(

@@ -1,4 +1,4 @@
-"""docs/tutorial.md, robots.md and sweep.md: every command, in order, in an empty folder."""
+"""Every command of four pages, such as docs/tutorial.md, in order, in an empty folder."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from bench import tutorial
 from smachac.commands.cli import main
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGES = ("tutorial", "robots", "sweep")
+PAGES = ("tutorial", "robots", "scenarios", "sweep")
 REWRITE = os.environ.get("SMACHAC_GOLDEN") == "rewrite"
 NEEDS = {"g++": "g++", "build/fetch": "g++"}
 """Programs that a command needs, by its first word."""

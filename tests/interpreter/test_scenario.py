@@ -325,3 +325,13 @@ def test_an_outcome_is_drawn_from_its_probabilities() -> None:
 def test_wrong_probabilities(chances: Any, problem: str) -> None:
     (found,) = read({"PICK/GRASP": {"outcome": chances}})[1]
     assert problem in found
+
+
+def test_a_wait_ends_with_the_request_also_without_the_outcome_preempted() -> None:
+    """`FAST` has no `preempted`: it ends with the outcome of its step when `SLOW` ends."""
+    given = stoppable()
+    scenario, problems = read_scenario({"states": {"SLOW": "done", "FAST": {"wait": True}}}, given)
+    assert problems == []
+    result, events = ran(given.root, scenario_behaviour(scenario, given, builtin_behaviour()))
+    assert "exit sm/RACE/FAST done" in short(events)
+    assert result.time == 0

@@ -2,7 +2,8 @@
 
 plan.py resolves the types of all keys and refuses what C++ cannot express, at its place in the
 script. header.py makes the header: each container is a namespace with its outcomes, its userdata,
-its states and the function that runs it (containers.py). Leaves are structs made from the script
+its states and the function that runs it (containers.py), or makes one step of it
+(step_containers.py). Leaves are structs made from the script
 (builtin_states.py) or classes of the user (user_classes.py). robot_header.py makes the header of
 the robot. project.py makes the files of the options.
 """
@@ -19,14 +20,16 @@ from smachac.targets.cpp.header import header_of
 from smachac.targets.cpp.plan import Plan, plan
 from smachac.targets.cpp.project import OPTIONS, Project, project, project_files, runtime
 from smachac.targets.cpp.robot_header import robot_file, robot_header
+from smachac.targets.cpp.step_classes import refuse_other_methods
 from smachac.targets.cpp.types import UnportableError
 from smachac.targets.cpp.user_classes import class_code, left_to_scripts
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     """The header of a machine, `<name>.hpp`, that of its robot, and the files of the options."""
-    wanted = project(context.options)
-    planned = plan(machine)
+    wanted = project(context.options, context.library.bounds)
+    planned = plan(machine, wanted.bounds)
+    refuse_other_methods(planned, context.library)
     header = header_of(planned)
     robot = _robot_files(planned, wanted)
     report.extend(in_order(planned.report))

@@ -18,6 +18,7 @@ from smachac.targets.cpp.terms import (
     cpp,
     fixed,
     has,
+    hosted_call,
     inside,
     joined,
     literal,
@@ -121,7 +122,7 @@ def _float(given: list[Term], named: Named) -> Term:
         return literal(0.0)
     only = _only(given, named)
     if present(only.type) == STR:
-        return fixed(FLOAT, call("real", only.present()))
+        return fixed(FLOAT, hosted_call("real", only.present()))
     if number(only.type) is None:
         raise UnportableError(f"`{shown(only.type)}` is not a number")
     return fixed(FLOAT, real(only))
@@ -132,7 +133,9 @@ def _int(given: list[Term], named: Named) -> Term:
         return literal(0)
     only = _only(given, named)
     kind = number(only.type)
-    if present(only.type) == STR or kind in (FLOAT, NUMBER):
+    if present(only.type) == STR:
+        return fixed(INT, hosted_call("whole", only.present()))
+    if kind in (FLOAT, NUMBER):
         return fixed(INT, call("whole", only.present()))
     if kind is None:
         raise UnportableError(f"`{shown(only.type)}` is not a number")
@@ -209,7 +212,7 @@ def _round(given: list[Term], named: Named) -> Term:
         raise UnportableError("the number of digits must be a constant from 0 to 1000")
     if kind == INT:
         return _int(given[:1], {})
-    return fixed(kind, call("round", real(number_).text, str(digits)))
+    return fixed(kind, hosted_call("round", real(number_).text, str(digits)))
 
 
 def _sorted(given: list[Term], named: Named) -> Term:

@@ -13,9 +13,12 @@ from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.traversal import own_outcomes
 from smachac.ir.types import Type
 from smachac.records import dataclass
+from smachac.targets.cpp.bounded import is_loose, loose
+from smachac.targets.cpp.dialect import Dialect
 from smachac.targets.cpp.expressions import (
     Printed,
     Spelling,
+    cpp_bounded,
     cpp_condition,
     cpp_expression,
     cpp_function,
@@ -46,7 +49,9 @@ class LeafCode:
 
     `made_with` are the arguments of its constructor; `parameters` are those that the `States` of
     its container need for them. `uses_userdata`: the call uses the userdata of the container.
-    `uses_stop`: the state receives requests to stop.
+    `uses_stop`: the state receives requests to stop. In a stepped machine the call returns the code
+    of the result of a step; `bounded_outputs` are the names and objects of outputs with a bound,
+    `written` the arguments for the events of writes.
     """
 
     type: str
@@ -56,6 +61,9 @@ class LeafCode:
     parameters: tuple[str, ...] = ()
     uses_userdata: bool
     uses_stop: bool
+
+    bounded_outputs: tuple[tuple[str, str], ...] = ()
+    written: tuple[str, ...] = ()
 
     @property
     def outcome_type(self) -> str:
@@ -85,7 +93,11 @@ class _Statements:
         return replace(self, lines=(head, *inner, *((end,) if end else ())))
 
     def parameters(self, scope: ContainerScope) -> Mapping[str, str]:
-        """The parameters of `execute`, with the argument for each."""
+        """The parameters of `execute` or `step`, with the argument for each."""
+        if scope.dialect.stepped:
+            run = "run" if self.uses_run or self.uses_stop else ""
+            userdata = {f"{scope.userdata_type}ud": "ud"} if self.uses_userdata else {}
+            return {f"Run &{run}": "run", **userdata}
         return {
             **({f"{scope.userdata_type}ud": "ud"} if self.uses_userdata else {}),
             **({"Run &run": "run"} if self.uses_run else {}),
@@ -98,8 +110,9 @@ def is_built_in(type_: StateType) -> bool:
     return type_.built_in in _STATEMENTS
 
 
-def built_in(leaf: Leaf, scope: ContainerScope, refuse: Refuse) -> LeafCode | None:
-    """The struct of a leaf of a built-in type; None for other types.
+def built_in(leaf: Leaf, scope: ContainerScope, refuse: Refuse, number: int = 0) -> LeafCode | None:
+    """The struct of a leaf of a built-in type; None for other types. `number` is that of the leaf
+    in a stepped machine.
 
     An expression that C++ cannot express is refused at its place, and the struct lacks it. Raises
     UnportableError for other faults.
@@ -107,28 +120,36 @@ def built_in(leaf: Leaf, scope: ContainerScope, refuse: Refuse) -> LeafCode | No
     make = _STATEMENTS.get(leaf.built_in)
     if make is None:
         return None
-    statements, member = make(_BuiltInLeaf(leaf=leaf, scope=scope, refuse=refuse))
+    given = _BuiltInLeaf(leaf=leaf, scope=scope, refuse=refuse, number=number)
+    statements, member = make(given)
     parameters = statements.parameters(scope)
-    arguments = ", ".join(parameters.values())
+    call = f"states.{identifier(leaf.name)}.execute({', '.join(parameters.values())})"
+    if scope.dialect.stepped:
+        _, *others = parameters.values()
+        call = (
+            f"run.built_in({', '.join([str(number), f'states.{identifier(leaf.name)}', *others])})"
+        )
     return LeafCode(
         type=f"types::{identifier(leaf.name)}",
-        call=f"states.{identifier(leaf.name)}.execute({arguments})",
-        definition=_definition(leaf, statements, parameters, member),
+        call=call,
+        definition=_definition(given, statements, parameters, member),
         uses_userdata=statements.uses_userdata,
         uses_stop=statements.uses_stop,
     )
 
 
 def _definition(
-    leaf: Leaf, statements: _Statements, parameters: Iterable[str], member: str
+    given: _BuiltInLeaf, statements: _Statements, parameters: Iterable[str], member: str
 ) -> tuple[str, ...]:
+    leaf, stepped = given.leaf, given.scope.dialect.stepped
+    head = "smachac::step::Result<Outcome> step" if stepped else "Outcome execute"
     return (
         *((f"/// {place(leaf)}",) if place(leaf) else ()),
         f"struct {identifier(leaf.name)} {{",
         *(f"  {line}" for line in enumeration(own_outcomes(leaf))),
         "",
-        *(("  template <class Run>",) if statements.uses_run else ()),
-        f"  Outcome execute({', '.join(parameters)}) {{",
+        *(("  template <class Run>",) if statements.uses_run or stepped else ()),
+        f"  {head}({', '.join(parameters)}) {{",
         *(f"    {line}" for line in statements.lines),
         "  }",
         *(("", f"  {member}") if member else ()),
@@ -145,11 +166,16 @@ def enumeration(names: tuple[str, ...]) -> list[str]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _BuiltInLeaf:
-    """A leaf of a built-in type and the container around it."""
+    """A leaf of a built-in type, the container around it, and its number in a stepped machine."""
 
     leaf: Leaf
     scope: ContainerScope
     refuse: Refuse
+    number: int
+
+    @property
+    def dialect(self) -> Dialect:
+        return self.scope.dialect
 
     @property
     def in_iterator(self) -> bool:
@@ -171,13 +197,24 @@ class _BuiltInLeaf:
     def writes(self, key: str) -> bool:
         return self.in_iterator or any(each.name == key for each in self.leaf.outputs)
 
-    def write(self, key: str, make: Callable[[Type], str]) -> _Statements:
-        """The statement that writes a key; `make` gives the value for the type of the key."""
+    def write(self, key: str, make: Callable[[Type], Printed]) -> _Statements:
+        """The statements that write a key; `make` gives the value for the type of the key."""
         outer = self.bound(key)
-        value = make(self.scope.key(outer))
+        type_ = self.scope.key(outer)
+        value = make(type_)
         hidden = ", true" if outer in self.scope.secret else ""
-        line = f"run.write({cpp_literal(key)}, {self.scope.object(outer)}, {value}{hidden});"
-        return _Statements(lines=(line,), uses_userdata=True, uses_run=True)
+        first = f"{self.number}, " if self.dialect.stepped else ""
+        given = f"{cpp_literal(key)}, {self.scope.object(outer)}, {value.text}{hidden}"
+        line = f"run.write({first}{given});"
+        written = _Statements(lines=(line,), uses_userdata=True, uses_run=True)
+        return written + self.checked(value.may_fail or is_loose(type_))
+
+    def checked(self, may_fail: bool) -> _Statements:
+        """The statements that end a step after a fault; none where the code before cannot fail."""
+        if not may_fail:
+            return _Statements()
+        lines = ("if (run.context.has_failed()) {", "  return smachac::step::failed;", "}")
+        return _Statements(lines=lines, uses_run=True)
 
     def function(self, code: Expression, wanted: Type | None = None) -> Printed:
         """The result of a function of the script, as a value of the wanted type or else as a truth
@@ -185,8 +222,10 @@ class _BuiltInLeaf:
         try:
             body, names = cpp_function(code.text, self.reads())
             if wanted is None:
-                return cpp_condition(body, names)
-            return cpp_expression(body, names, wanted)
+                return cpp_condition(body, names, self.dialect)
+            if is_loose(wanted):
+                return cpp_bounded(body, names, loose(wanted))
+            return cpp_expression(body, names, wanted, self.dialect)
         except UnportableError as error:
             self.refuse(code.span, error, self.leaf.name)
             return Printed(text="", type=BOOL, uses_names=False)
@@ -202,11 +241,11 @@ class _BuiltInLeaf:
         """The statements that answer a request to stop; none for a leaf without that outcome."""
         if PREEMPTED not in own_outcomes(self.leaf):
             return _Statements()
-        return self.preempted("stop.requested()")
+        return self.preempted(self.dialect.stop_requested)
 
     def preempted(self, test: str) -> _Statements:
         """The statements that end the leaf as preempted where a test of `stop` holds."""
-        service = _Statements(lines=("stop.service();",), uses_stop=True)
+        service = _Statements(lines=(self.dialect.service,), uses_stop=True)
         return (service + self.end(PREEMPTED)).within(f"if ({test}) {{", "}")
 
     def functions(self, role: VariableRole) -> Mapping[str, Expression]:
@@ -231,7 +270,7 @@ class _BuiltInLeaf:
                     help=f"add `{key}` to its `output_keys`",
                 )
             code = callbacks[key]
-            found += self.write(key, lambda type_, code=code: self.function(code, type_).text)  # type: ignore[misc]
+            found += self.write(key, lambda type_, code=code: self.function(code, type_))  # type: ignore[misc]
         return found
 
 
@@ -251,7 +290,14 @@ def _conditional(leaf: _BuiltInLeaf) -> Code:
     for outcome in own_outcomes(leaf.leaf):
         if outcome in conditions:
             holds = leaf.function(conditions[outcome])
-            test = leaf.end(outcome).within(f"if ({holds.text}) {{", "}")
+            end = leaf.end(outcome)
+            if holds.may_fail:
+                name = f"is_{identifier(outcome)}"
+                found += _Statements(lines=(f"const bool {name} = {holds.text};",), uses_run=True)
+                found += leaf.checked(True)
+                test = end.within(f"if ({name}) {{", "}")
+            else:
+                test = end.within(f"if ({holds.text}) {{", "}")
             found += replace(test, uses_userdata=holds.uses_names)
     otherwise = variable(leaf.leaf, "default_outcome")
     if not isinstance(otherwise, str):
@@ -281,16 +327,20 @@ def _step(leaf: _BuiltInLeaf, step: Data) -> _Statements:
     found = _Statements()
     for key, value in sets.entries if isinstance(sets, Struct) else ():
         if leaf.writes(key):
-            found += leaf.write(key, lambda type_, value=value: cpp_value(value, type_))  # type: ignore[misc]
+            found += leaf.write(key, lambda type_, value=value: _constant(value, type_))  # type: ignore[misc]
     return found + leaf.end(str(given.get("outcome") or default_outcome(leaf.leaf)))
+
+
+def _constant(value: Data, type_: Type) -> Printed:
+    """A constant as a value of a type."""
+    return Printed(text=cpp_value(value, type_), type=type_, uses_names=False)
 
 
 def _sleep(leaf: _BuiltInLeaf) -> Code:
     time = variable(leaf.leaf, "time")
-    if isinstance(time, Expression):
-        seconds = leaf.function(time, FLOAT)
-    else:
-        seconds = Printed(text=cpp_value(time, FLOAT), type=FLOAT, uses_names=False)
+    seconds = leaf.function(time, FLOAT) if isinstance(time, Expression) else _constant(time, FLOAT)
+    if leaf.dialect.stepped:
+        return _wait(leaf, seconds), "smachac::step::Nanoseconds until_ = 0;"
     if PREEMPTED in own_outcomes(leaf.leaf):
         sleep = leaf.preempted(f"stop.wait({seconds.text})")
     else:
@@ -299,7 +349,23 @@ def _sleep(leaf: _BuiltInLeaf) -> Code:
     return sleep + leaf.end(default_outcome(leaf.leaf)), ""
 
 
+def _wait(leaf: _BuiltInLeaf, seconds: Printed) -> _Statements:
+    """The statements of a step of a state that waits."""
+    until = f"until_ = run.context.now + smachac::step::nanoseconds({seconds.text});"
+    start = _Statements(lines=(until,), uses_run=True, uses_userdata=seconds.uses_names)
+    start += leaf.checked(seconds.may_fail)
+    running = ("if (run.context.now < until_) {", "  return smachac::step::running;", "}")
+    return (
+        leaf.stopping()
+        + start.within("if (run.context.first) {", "}")
+        + _Statements(lines=running, uses_run=True)
+        + leaf.end(default_outcome(leaf.leaf))
+    )
+
+
 def _random(leaf: _BuiltInLeaf) -> Code:
+    if leaf.dialect.stepped:
+        raise UnportableError("the random numbers of Python need 2.5 kB of memory in each state")
     if {key.name for key in leaf.leaf.outputs} - {*leaf.functions("callbacks")}:
         raise UnportableError("the state writes its outcome to a key")
     seed = variable(leaf.leaf, "seed")
@@ -315,6 +381,8 @@ def _random(leaf: _BuiltInLeaf) -> Code:
 
 
 def _print(leaf: _BuiltInLeaf) -> Code:
+    if leaf.dialect.stepped:
+        raise UnportableError("a stepped machine has no output to print to")
     keys = sorted(key.name for key in leaf.leaf.inputs)
     lines = [f"smachac::print({cpp_literal(key)}, {leaf.read(key).text});" for key in keys]
     prints = _Statements(lines=tuple(lines), uses_userdata=bool(lines))

@@ -7,7 +7,7 @@ rules. An iterator is a loop over its items.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import islice
@@ -174,7 +174,7 @@ def execute(plan: ContainerPlan) -> Lines:
             assert_never(node)
     # A container has one call only. It is inlined there unless that function becomes too large.
     caller = plan.scopes.get(plan.scope.path.rpartition("/")[0], plan.scope)
-    inline = "[[gnu::always_inline]] inline" if _is_small(caller.node) else "inline"
+    inline = "[[gnu::always_inline]] inline" if is_small(caller.node) else "inline"
     return [
         "template <class Run>",
         f"{inline} Outcome execute(States &{body.states},"
@@ -184,7 +184,7 @@ def execute(plan: ContainerPlan) -> Lines:
     ]
 
 
-def _is_small(node: Node) -> bool:
+def is_small(node: Node) -> bool:
     """Whether one function can contain all states in a container."""
     return len(list(islice(walk(node), MOST_STATES + 1))) <= MOST_STATES
 
@@ -447,7 +447,7 @@ def _concurrence(plan: ContainerPlan, node: Concurrence) -> FunctionBody:
         *indented(_guarded(_switch(cases), _caught_switch(caught))),
         "});",
         *_stopped(plan, node),
-        *_rules(plan, node),
+        *concurrence_rules(plan, node, lambda child, name: _ended(plan, child, name)),
     ]
     userdata = "ud" if any(call.uses_userdata for call in calls) else ""
     return FunctionBody(statements=lines, states="states", userdata=userdata, run="around")
@@ -460,9 +460,19 @@ def _stopped(plan: ContainerPlan, node: Concurrence) -> Lines:
     return ["if (branches.stopped()) {", f"  return {plan.own_outcome(PREEMPTED)};", "}"]
 
 
-def _rules(plan: ContainerPlan, node: Concurrence) -> Lines:
+def _ended(plan: ContainerPlan, child: Node, outcome: str) -> str:
+    """The test whether a branch ended with an outcome."""
+    value = plan.child_outcome(child, outcome)
+    value = "std::nullopt" if outcome == child.catches else value
+    return f"ended.{identifier(child.name)} == {value}"
+
+
+def concurrence_rules(
+    plan: ContainerPlan, node: Concurrence, ended: Callable[[Node, str], str]
+) -> Lines:
     """The statements that return the outcome: of the rules that hold the one with the most
-    conditions, among equals the last one listed."""
+    conditions, among equals the last one listed. `ended` is the test whether a child ended with an
+    outcome."""
     children = {child.name: child for child in node.children}
 
     def order(item: tuple[int, OutcomeRule]) -> tuple[int, int]:
@@ -475,9 +485,7 @@ def _rules(plan: ContainerPlan, node: Concurrence) -> Lines:
             child = children.get(one.child)
             if child is None or one.outcome not in all_results(child):
                 break
-            value = plan.child_outcome(child, one.outcome)
-            value = "std::nullopt" if one.outcome == child.catches else value
-            tests.append(f"ended.{identifier(one.child)} == {value}")
+            tests.append(ended(child, one.outcome))
         else:
             end = f"return {plan.own_outcome(rule.outcome)};"
             if not tests:

@@ -135,6 +135,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
     unsure = _has_unknown_type(type_)
     stale = _stale(body, interface_hash(type_)) if not unsure else None
     judged = not derived and not unsure
+    stepped = method_of(body) == "step"
+    judged = judged and not stepped  # the types of a stepped class are left to the compiler
     others = member_faults(code, whole, body, outcomes, library) if judged and not stale else ()
     return Declared(
         name=code.name.removeprefix("::"),
@@ -143,8 +145,8 @@ def declared(type_: StateType, library: Library) -> Declared | None:
         inputs=_names(inputs, type_.input_keys),
         outputs=_names(outputs, type_.output_keys),
         others=(
-            *_other_fields(type_.name, "In", inputs, type_.input_keys),
-            *_other_fields(type_.name, "Out", outputs, type_.output_keys),
+            *(_other_fields(type_.name, "In", inputs, type_.input_keys) if not stepped else ()),
+            *(_other_fields(type_.name, "Out", outputs, type_.output_keys) if not stepped else ()),
             *(_outdated(code, body) if judged and stale else ()),
         ),
         stale=stale,
@@ -159,6 +161,26 @@ def declared(type_: StateType, library: Library) -> Declared | None:
             **_new_fields("Out", outputs, type_.output_keys),
         },
     )
+
+
+def method_of(body: Part) -> str:
+    """The function of a class that machines call: `execute`, else `step` for stepped machines;
+    empty without either."""
+    return next((name for name in ("execute", "step") if re.search(rf"\b{name}\b", body.text)), "")
+
+
+def class_method(code: ClassCode, library: Library) -> str | None:
+    """The function of a class that machines call; None where its header is not found or cannot be
+    read, and where a base class can have it."""
+    source = library.code(code.header)
+    if source is None or len(source.text) > LONGEST:
+        return None
+    whole = Part(source=source, text=without_literals(source.text))
+    head = whole.only(class_head(code.name.rpartition("::")[2]))
+    body = whole.inside(head)
+    if head is None or body is None or ":" in head["base"] or "#" in body.text:
+        return None
+    return method_of(body)
 
 
 def _new_fields(
@@ -245,7 +267,7 @@ def _faults(
     body: Part, name: Word, outcomes: Words | None, *, derived: bool
 ) -> Iterator[ClassFault]:
     """A missing `execute`, and uses of enumerators that `Outcome` does not have."""
-    if not derived and not re.search(r"\bexecute\b", body.text):
+    if not derived and not method_of(body):
         yield ClassFault(kind=NO_CPP_EXECUTE, name=name)
     if outcomes is None:
         return

@@ -37,6 +37,7 @@ from smachac.ir.python_code import parse_code
 from smachac.ir.types import Type
 from smachac.records import dataclass, field
 from smachac.targets.cpp import builtin_functions, literals, operators
+from smachac.targets.cpp.dialect import BLOCKING, STEPPED, Dialect
 from smachac.targets.cpp.terms import (
     AND,
     BOOL,
@@ -49,6 +50,7 @@ from smachac.targets.cpp.terms import (
     Term,
     call,
     converted,
+    convertible,
     fixed,
     ground,
     has,
@@ -81,16 +83,21 @@ class Spelling:
 class Printed:
     """An expression in C++: a full expression that fits an initializer, and its type.
 
-    `uses_names`: it reads one of the names that it was given.
+    `uses_names`: it reads one of the names that it was given. `may_fail`: it can leave a fault in
+    the context of a stepped machine.
     """
 
     text: str
     type: Type
     uses_names: bool
+    may_fail: bool = False
 
 
 def cpp_expression(
-    expr: Expr, names: Mapping[str, Spelling], wanted: Type | None = None
+    expr: Expr,
+    names: Mapping[str, Spelling],
+    wanted: Type | None = None,
+    dialect: Dialect = BLOCKING,
 ) -> Printed:
     """An expression over names, as a value of the wanted type or else of its own.
 
@@ -102,20 +109,50 @@ def cpp_expression(
     try:
         type_ = ground(term.type) if wanted is None else plain(wanted)
         text = term.spell(type_).text
+        return _printed(text, type_, inner, dialect)
     except UnportableError as error:
         raise _located(expr, error) from error
-    return Printed(text=text, type=type_, uses_names=inner.reads_any())
 
 
-def cpp_condition(expr: Expr, names: Mapping[str, Spelling]) -> Printed:
+def cpp_bounded(expr: Expr, names: Mapping[str, Spelling], wanted: Type) -> Printed:
+    """An expression in a stepped machine, as a value that `put` stores in a key; `wanted` is the
+    type of the key without bounds. Raises UnportableError."""
+    inner = _KnownNames(spellings=names)
+    term = _term(expr, inner)
+    try:
+        if not convertible(term.type, wanted):
+            converted(CppText(""), term.type, wanted)  # raises the reason
+        if term.type.name in ("list", "tuple") and has(term.type, "never"):
+            return Printed(text=EMPTY, type=wanted, uses_names=False)
+        return _printed(term.spell(term.type).text, wanted, inner, STEPPED)
+    except UnportableError as error:
+        raise _located(expr, error) from error
+
+
+EMPTY = "std::array<std::int64_t, 0>{}"
+"""An empty list, for a list of any items."""
+
+
+def cpp_condition(
+    expr: Expr, names: Mapping[str, Spelling], dialect: Dialect = BLOCKING
+) -> Printed:
     """The truth of an expression over names. Raises UnportableError."""
     inner = _KnownNames(spellings=names)
     term = _term(expr, inner)
     try:
-        text = condition(term).text
+        return _printed(condition(term).text, BOOL, inner, dialect)
     except UnportableError as error:
         raise _located(expr, error) from error
-    return Printed(text=text, type=BOOL, uses_names=inner.reads_any())
+
+
+def _printed(text: str, type_: Type, names: _KnownNames, dialect: Dialect) -> Printed:
+    """The text of an expression without marks. Raises UnportableError."""
+    return Printed(
+        text=dialect.resolved(text),
+        type=type_,
+        uses_names=names.reads_any(),
+        may_fail=dialect.may_fail(text),
+    )
 
 
 def lowered(expr: Expr, names: Mapping[str, Spelling]) -> Term:

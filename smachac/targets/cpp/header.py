@@ -15,10 +15,13 @@ from smachac.ir.nodes import Iterator, Leaf, Machine, Node
 from smachac.ir.traversal import walk
 from smachac.records import dataclass, field
 from smachac.targets import COMMENT_WIDTH, comment_lines, made_by, stem
+from smachac.targets.cpp.bounded import most_bytes
 from smachac.targets.cpp.builtin_states import LeafCode, built_in, enumeration
 from smachac.targets.cpp.containers import ContainerPlan, Lines, execute, parts, results
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import OWN, ContainerScope, Plan, member, place, scope_name
+from smachac.targets.cpp.step_containers import RESERVED, StepPlan, requests, states_members, step
+from smachac.targets.cpp.step_machine import machine_class, node_table
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, cpp_value
 from smachac.targets.cpp.user_classes import (
     ClassCode,
@@ -54,7 +57,10 @@ class Header(NamedTuple):
 def header_of(plan: Plan) -> Header:
     """The header of a machine. Everything that C++ cannot express is added to the plan's report;
     the header is empty then."""
-    printing = _Printing(plan=plan, classes=_classes(plan.machine))
+    numbers = {path: number for number, (path, _) in enumerate(walk(plan.machine.root))}
+    printing = _Printing(plan=plan, classes=_classes(plan.machine), numbers=numbers)
+    if plan.report and plan.bounds is not None:
+        return Header("", (), ())  # without storage for all keys, nothing else can be judged
     blocks = [
         "\n".join(_container(printing, scope)) for scope in reversed(list(plan.scopes.values()))
     ]
@@ -64,13 +70,14 @@ def header_of(plan: Plan) -> Header:
         # A class whose types are refused has no assertions.
         return Header("", (), ())
     codes = list(printing.classes.values())
-    headers = sorted({"smachac/smachac.hpp", *(code.header for code in codes)})
+    runtime = "smachac/step.hpp" if plan.dialect.stepped else "smachac/smachac.hpp"
+    headers = sorted({runtime, *(code.header for code in codes)})
     classes = tuple(header for header in headers if not header.startswith("smachac/"))
     made = f"// {made_by(plan.machine)}\n#pragma once"
     includes = "\n".join(f'#include "{header}"' for header in headers)
-    checks = ["\n".join(assertions(code)) for code in codes]
+    checks = ["\n".join(assertions(code, plan.bounds)) for code in codes]
     catching = next((node for _, node in walk(plan.machine.root) if node.catches), None)
-    if catching is not None:
+    if catching is not None and not plan.dialect.stepped:
         includes += f"\n\n{_needs_exceptions(catching)}"
     if codes:
         blocks = [STRICT, *checks, *blocks, LENIENT]
@@ -92,21 +99,25 @@ class _Printing:
 
     `classes` are the classes of state types by name. `parameters` are those of the constructor of
     `States`, by path of each container printed so far. `stopping` are the containers in which a
-    state receives requests to stop. `missing` are the state types without code.
+    state receives requests to stop. `missing` are the state types without code. `numbers` are those
+    of the nodes of a stepped machine, by path; `sizes` the upper limits on the sizes of its
+    containers in bytes, without the objects of the user.
     """
 
     plan: Plan
     classes: Mapping[str, ClassCode]
+    numbers: Mapping[str, int]
+    sizes: dict[str, int] = field(default_factory=dict)
     parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
     stopping: set[str] = field(default_factory=set)
     missing: set[str] = field(default_factory=set)
 
     def code_of(self, leaf: Leaf, scope: ContainerScope) -> LeafCode | None:
         """The code of a leaf; None if its type has no code for C++. Raises UnportableError."""
-        code = self.classes.get(leaf.type)
+        code, number = self.classes.get(leaf.type), self.numbers[f"{scope.path}/{leaf.name}"]
         if code is not None:
-            return class_leaf(code, leaf, scope)
-        return built_in(leaf, scope, self.plan.refuse)
+            return class_leaf(code, leaf, scope, number)
+        return built_in(leaf, scope, self.plan.refuse, number)
 
 
 def _classes(machine: Machine) -> Mapping[str, ClassCode]:
@@ -163,15 +174,6 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
     leaves = _leaves(printing, scope)
     if leaves is None:
         return []
-    blocks = [
-        enumeration(results(node)),
-        _names(results(node)),
-        _userdata(plan, scope),
-        _view(scope),
-        _types(leaves),
-        _states(printing, scope, leaves),
-        _places(plan, scope),
-    ]
     names = frozenset(child.name for child in node.children)
     container = ContainerPlan(
         scope=scope,
@@ -182,15 +184,71 @@ def _container(printing: _Printing, scope: ContainerScope) -> Lines:
     )
     if isinstance(node, Iterator) or any(map(container.receives_stop, node.children)):
         printing.stopping.add(scope.path)
+    blocks = [
+        enumeration(results(node)),
+        _names(results(node)),
+        _userdata(plan, scope),
+        _view(scope),
+        _types(leaves),
+    ]
     try:
-        blocks += [parts(container), execute(container)]
+        blocks += _stepped(printing, container) if plan.bounds else _blocking(printing, container)
     except UnportableError as error:
         plan.refuse(node.span, error, node.name)
-    if node is plan.machine.root:
-        blocks.append(_root(plan.machine))
     inner = "\n\n".join("\n".join(block) for block in blocks if block)
     where = f" // {place(node)}" if place(node) else ""
     return [*_doc(node), f"namespace {name} {{{where}", "", inner, "", f"}} // namespace {name}"]
+
+
+def _blocking(printing: _Printing, container: ContainerPlan) -> list[Lines]:
+    """The blocks of a container that runs from its entry to its outcome."""
+    plan, scope = printing.plan, container.scope
+    blocks = [
+        _states(printing, scope, container.leaves),
+        _places(plan, scope),
+        parts(container),
+        execute(container),
+    ]
+    return [*blocks, _root(plan.machine)] if scope.node is plan.machine.root else blocks
+
+
+def _stepped(printing: _Printing, container: ContainerPlan) -> list[Lines]:
+    """The blocks of a container that is stepped."""
+    plan, scope = printing.plan, container.scope
+    assert plan.bounds is not None
+    step_plan = StepPlan(container=container, numbers=printing.numbers, bounds=plan.bounds)
+    members = states_members(step_plan)
+    taken = [member(child) for child in scope.node.children]
+    for name in RESERVED:
+        if name in taken:
+            raise UnportableError(f"`{name}` is a name of the generated code: rename the state")
+    types = [type_ for key, type_ in scope.keys.items() if key not in scope.shared]
+    printing.sizes[scope.path] = sum(8 + most_bytes(type_) for type_ in types) + sum(
+        size for _, size in members
+    )
+    size = 8 if len(taken) < 2**8 else 16
+    names = [f"enum class State : std::uint{size}_t {{", "  none_,"]
+    names += [f"  {identifier(child.name)}," for child in scope.node.children]
+    blocks = [
+        [*names, "};"],
+        _states(printing, scope, container.leaves, tuple(text for text, _ in members)),
+        requests(step_plan),
+        step(step_plan),
+    ]
+    if scope.node is not plan.machine.root:
+        return blocks
+    machine = plan.machine
+    return [
+        *blocks,
+        node_table(machine, plan.paths),
+        machine_class(
+            machine,
+            printing.classes,
+            printing.parameters[scope.path],
+            sum(printing.sizes.values()),
+            asks=scope.path in printing.stopping,
+        ),
+    ]
 
 
 def _doc(node: Node, indent: str = "") -> Lines:
@@ -244,7 +302,8 @@ def _userdata(plan: Plan, scope: ContainerScope) -> Lines:
             except UnportableError as error:
                 plan.refuse(presets[key].value.span, error, key)
         try:
-            lines.append(f"  smachac::Key<{cpp_type(type_)}> {identifier(key)}{value};")
+            key_type = f"{plan.dialect.namespace}Key<{cpp_type(type_)}>"
+            lines.append(f"  {key_type} {identifier(key)}{value};")
         except UnportableError:
             continue  # reported by plan
     for child in scope.node.children:
@@ -265,7 +324,7 @@ def _view(scope: ContainerScope) -> Lines:
             type_ = cpp_type(scope.keys[key])
         except UnportableError:
             continue  # reported by plan
-        fields.append(f"  {access}smachac::Key<{type_}> &{identifier(key)};")
+        fields.append(f"  {access}{scope.dialect.namespace}Key<{type_}> &{identifier(key)};")
     return ["struct UserdataView {", f"  Userdata &{OWN};", *fields, "};"]
 
 
@@ -276,8 +335,14 @@ def _types(leaves: Mapping[str, LeafCode]) -> Lines:
     return ["namespace types {", "", "\n\n".join(found), "", "} // namespace types"]
 
 
-def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, LeafCode]) -> Lines:
-    """The struct of the states, with a constructor if the classes of some states need arguments."""
+def _states(
+    printing: _Printing,
+    scope: ContainerScope,
+    leaves: Mapping[str, LeafCode],
+    own: tuple[str, ...] = (),
+) -> Lines:
+    """The struct of the states, with a constructor if the classes of some states need arguments.
+    `own` are members that are no states."""
     members: list[tuple[Lines, str, bool]] = []
     made: Lines = []
     parameters: dict[str, None] = {}
@@ -299,6 +364,7 @@ def _states(printing: _Printing, scope: ContainerScope, leaves: Mapping[str, Lea
     lines: Lines = []
     for doc, text, listed in members:
         lines += [*doc, f"{text}{{}};" if made and not listed else f"{text};"]
+    lines += [f"  {text}" for text in own]
     if not made:
         return ["struct States {", *lines, "};"]
     explicit = "explicit " if len(parameters) == 1 else ""

@@ -6,6 +6,7 @@ Integer arithmetic is checked for overflow; arithmetic of floats uses the operat
 from __future__ import annotations
 
 from smachac.ir.types import Type
+from smachac.targets.cpp.dialect import UNBOUNDED
 from smachac.targets.cpp.terms import (
     BOOL,
     EQUALITY,
@@ -141,7 +142,7 @@ def _joined_texts(left: Term, right: Term) -> Term:
         second = cpp_literal(right.constant)
     elif isinstance(left.constant, str) and "\0" not in left.constant:
         first = cpp_literal(left.constant)
-    return fixed(STR, CppText(f"{first} + {second}", SUM))
+    return fixed(STR, CppText(f"{UNBOUNDED}{first} + {second}", SUM))
 
 
 def _joined_lists(kind: str, left: Term, right: Term) -> Term:

@@ -15,9 +15,11 @@ from smachac.ir.nodes import Concurrence, Container, Iterator, Leaf, Machine, No
 from smachac.ir.script_paths import script_paths
 from smachac.ir.secret_keys import secret_keys
 from smachac.ir.traversal import OuterNames, containers, outcome_names, remapping
-from smachac.ir.types import ANY, Type
+from smachac.ir.types import ANY, Bounds, Type
 from smachac.records import dataclass, field
 from smachac.targets import comment
+from smachac.targets.cpp.bounded import bounded, loose
+from smachac.targets.cpp.dialect import BLOCKING, STEPPED, Dialect
 from smachac.targets.cpp.expressions import Spelling
 from smachac.targets.cpp.identifiers import clashes, identifier, outermost
 from smachac.targets.cpp.types import UnportableError, cpp_literal, cpp_type, plain
@@ -36,7 +38,8 @@ class ContainerScope:
 
     `keys` are the types of its keys by name. `sure` are the keys that hold a value whenever one of
     its states starts. `shared` are the keys that have no object of their own: they are those of the
-    container around. `secret` are the keys whose values traces hide.
+    container around. `secret` are the keys whose values traces hide. `bounds` are those of a
+    stepped machine, in which the types of keys are those of their storage (bounded.py).
     """
 
     path: str
@@ -45,6 +48,11 @@ class ContainerScope:
     sure: frozenset[str]
     shared: frozenset[str] = frozenset()
     secret: AbstractSet[str] = frozenset()
+    bounds: Bounds | None = None
+
+    @property
+    def dialect(self) -> Dialect:
+        return BLOCKING if self.bounds is None else STEPPED
 
     def key(self, name: str) -> Type:
         """The type of a key. Raises UnportableError where the container cannot have it."""
@@ -54,10 +62,14 @@ class ContainerScope:
 
     def read(self, name: str, called: str) -> Spelling:
         """How C++ reads a key that an expression calls `called`."""
-        spelt = self.object(name)
+        spelt, type_ = self.object(name), self.key(name)
+        view = ".view()" if type_.name == "text" else ""
         if name in self.sure:
-            return Spelling(text=f"{spelt}.unchecked()", type=self.key(name))
-        return Spelling(text=f"smachac::need({spelt}, {cpp_literal(called)})", type=self.key(name))
+            return Spelling(text=f"{spelt}.unchecked(){view}", type=loose(type_))
+        if self.dialect.stepped:
+            need = f"smachac::step::need(run.context, {spelt}, {cpp_literal(called)})"
+            return Spelling(text=f"{need}{view}", type=loose(type_))
+        return Spelling(text=f"smachac::need({spelt}, {cpp_literal(called)})", type=type_)
 
     def object(self, name: str) -> str:
         """The object of a key, in the functions of the container and of its states."""
@@ -90,12 +102,18 @@ class ContainerScope:
 @dataclass(slots=True, kw_only=True)
 class Plan:
     """A machine with its scopes by path, parents before children; `report` holds the refusals.
-    `paths` are the paths of the script by full path, where they differ: events have them."""
+    `paths` are the paths of the script by full path, where they differ: events have them. `bounds`
+    are those of a stepped machine; a blocking one has none."""
 
     machine: Machine
     scopes: Mapping[str, ContainerScope]
     paths: Mapping[str, str]
     report: Report = field(default_factory=list)
+    bounds: Bounds | None = None
+
+    @property
+    def dialect(self) -> Dialect:
+        return BLOCKING if self.bounds is None else STEPPED
 
     def refuse(self, span: Span, error: UnportableError, *names: str) -> None:
         """Add a refusal to the report; `names` are the state or the keys that it is about."""
@@ -104,14 +122,13 @@ class Plan:
         self.report.append(unsupported_by_target(span, "C++", str(error), help, names))
 
 
-def plan(machine: Machine) -> Plan:
-    """The plan of a machine; names and types that C++ cannot express are refused."""
-    types = infer(machine).keys
-    keys: dict[str, dict[str, Type]] = {}
-    for (path, key), type_ in sorted(types.items(), key=lambda item: item[0]):
-        keys.setdefault(path, {})[key] = plain(type_)
+def plan(machine: Machine, bounds: Bounds | None = None) -> Plan:
+    """The plan of a machine; names and types that C++ cannot express are refused. `bounds` make it
+    a stepped one."""
     scopes: dict[str, ContainerScope] = {}
-    found = Plan(machine=machine, scopes=scopes, paths=script_paths(machine.root))
+    paths = script_paths(machine.root)
+    found = Plan(machine=machine, scopes=scopes, paths=paths, bounds=bounds)
+    keys = _types(found)
     secret = secret_keys(machine)
     catching: set[str] = set()
     for path, node in containers(machine.root):
@@ -124,12 +141,30 @@ def plan(machine: Machine) -> Plan:
             keys=keys.get(path, {}),
             sure=_sure(node, around),
             secret=secret.get(path, frozenset()),
+            bounds=bounds,
         )
         written = _written(node, machine.state_types)
         scope = replace(scope, shared=_shared(scope, around, written, path in catching))
         scopes[path] = scope
         _check(found, scope, around)
     return found
+
+
+def _types(found: Plan) -> Mapping[str, Mapping[str, Type]]:
+    """The types of all keys by container and key. A type that a stepped machine cannot store is
+    refused."""
+    nodes = dict(containers(found.machine.root))
+    keys: dict[str, dict[str, Type]] = {}
+    for (path, key), type_ in sorted(infer(found.machine).keys.items(), key=lambda item: item[0]):
+        stored = plain(type_)
+        if found.bounds is not None:
+            try:
+                stored = bounded(type_, found.bounds)
+            except UnportableError as error:
+                refused = UnportableError(f"the key `{key}`: {error}", help=error.help)
+                found.refuse(_place_of(nodes[path], key), refused, key)
+        keys.setdefault(path, {})[key] = stored
+    return keys
 
 
 def _sure(node: Container, around: ContainerScope | None) -> frozenset[str]:
@@ -249,7 +284,7 @@ def _check_borders(plan: Plan, scope: ContainerScope, around: ContainerScope) ->
         ends = {id(around): outer, id(scope): key.name}
         try:
             given, wanted = source.key(ends[id(source)]), target.key(ends[id(target)])
-            if not converts(given, wanted):
+            if not converts(loose(given), loose(wanted)):
                 text = f"the key `{key.name}` is `{given}`, which does not convert to `{wanted}`"
                 raise UnportableError(text)
         except UnportableError as error:
@@ -287,6 +322,10 @@ def _inside(type_: Type) -> Type:
 
 
 def _place_of(node: Node, name: str) -> Span:
+    presets = node.userdata if not isinstance(node, Leaf) else ()
+    for preset in presets:
+        if preset.key == name and preset.span.source is node.span.source is not NOWHERE.source:
+            return preset.span
     for key in (*node.inputs, *node.outputs):
         if key.name == name and key.span.source is node.span.source is not NOWHERE.source:
             return key.span

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import walk
+from smachac.ir.types import MOST_BOUND, Bounds
 from smachac.records import dataclass
 from smachac.targets import BuildContext, Files, OptionError, made_by, stem
 from smachac.targets.cpp.header import Header
@@ -18,13 +19,30 @@ OPTIONS = {
     "main": "true: also main.cpp, a program that runs the machine once",
     "cmake": "true: also CMakeLists.txt, a library that find_package finds",
     "package": "NAME: a package for colcon (ament_cmake), the header in include/NAME",
+    "mode": "step: a machine that is stepped, without heap, threads and exceptions",
+    "text": "BYTES: the bound of texts without one, with mode=step",
+    "list": "ITEMS: the bound of lists without one, with mode=step",
 }
 
 PROGRAM = "smachac/program.hpp"
 ARM = "smachac/arm.hpp"
 
-HEADERS = ("smachac/values.hpp", "smachac/smachac.hpp")
+HEADERS = (
+    "smachac/operations.hpp",
+    "smachac/values.hpp",
+    "smachac/class_checks.hpp",
+    "smachac/smachac.hpp",
+)
 """The headers of smachac that every machine includes."""
+
+STEP_HEADERS = (
+    "smachac/operations.hpp",
+    "smachac/step_values.hpp",
+    "smachac/class_checks.hpp",
+    "smachac/step.hpp",
+    "smachac/step_trace.hpp",
+)
+"""The headers of smachac that every stepped machine includes."""
 
 OTHER_HEADERS = (ARM, PROGRAM)
 """The headers of smachac that some machines include; each includes only HEADERS."""
@@ -32,23 +50,51 @@ OTHER_HEADERS = (ARM, PROGRAM)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Project:
-    """The files to make beside a header; `package` is the name of an ament package, or empty."""
+    """The files to make beside a header; `package` is the name of an ament package, or empty.
+    `bounds` are those of a stepped machine; None for a blocking one."""
 
     main: bool = False
     cmake: bool = False
     package: str = ""
+    bounds: Bounds | None = None
 
     def path(self, file: str) -> str:
         """The path of the header."""
         return f"include/{self.package}/{file}" if self.package else file
 
 
-def project(options: Mapping[str, str]) -> Project:
-    """The project of the options. Raises OptionError."""
+NO_BOUNDS = Bounds()
+
+
+def project(options: Mapping[str, str], defaults: Bounds = NO_BOUNDS) -> Project:
+    """The project of the options; `defaults` are the bounds of the project file. Raises
+    OptionError."""
     package = options.get("package", "")
     if package and not re.fullmatch(r"[a-z][a-z0-9_]*", package):
         raise OptionError(f"`package` must match `[a-z][a-z0-9_]*`, not `{package}`")
-    return Project(main=_truth(options, "main"), cmake=_truth(options, "cmake"), package=package)
+    mode = options.get("mode", "blocking")
+    if mode not in ("blocking", "step"):
+        raise OptionError(f"`mode` must be `blocking` or `step`, not `{mode}`")
+    main = _truth(options, "main")
+    if main and mode == "step":
+        raise OptionError("`main` is not possible with `mode=step`: the caller has the loop")
+    bounds = Bounds(
+        text=_bound(options, "text") or defaults.text, list=_bound(options, "list") or defaults.list
+    )
+    return Project(
+        main=main,
+        cmake=_truth(options, "cmake"),
+        package=package,
+        bounds=bounds if mode == "step" else None,
+    )
+
+
+def _bound(options: Mapping[str, str], name: str) -> int:
+    """The bound of texts or lists without one; 0 without the option."""
+    value = options.get(name, "0")
+    if not (value.isascii() and value.isdecimal() and len(value) < 6 and int(value) <= MOST_BOUND):
+        raise OptionError(f"`{name}` must be a number from 1 to {MOST_BOUND}, not `{value}`")
+    return int(value)
 
 
 def _truth(options: Mapping[str, str], name: str) -> bool:
@@ -72,6 +118,8 @@ def runtime(machine: Machine, context: BuildContext) -> dict[str, str]:
         if code is not None:
             included.add(code.header)
     root = "include/" if wanted.package else ""
+    if wanted.bounds is not None:
+        return {f"{root}{header}": f"cpp/{header}" for header in STEP_HEADERS}
     headers = [*HEADERS, *(header for header in OTHER_HEADERS if header in included)]
     return {f"{root}{header}": f"cpp/{header}" for header in headers}
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from smachac.ir.types import Type
 from smachac.records import dataclass
+from smachac.targets.cpp.dialect import CONVERT, FAULT, OPERATIONS, TEXT, UNBOUNDED
 from smachac.targets.cpp.types import (
     FLOAT,
     INT,
@@ -30,7 +31,14 @@ from smachac.targets.cpp.types import (
 BOOL, NUMBER, NEVER, RANGE = map(Type, ("bool", "number", "never", "range"))
 NUMBERS = ("int", "float", "number")
 SEQUENCES = ("list", "array", "tuple", "range")
-PY = "smachac::py::"
+STRING = "std::string"
+"""The type of a text in blocking machines."""
+
+SURE = frozenset(["contains", "equal", "length", "real", "truth", "with"])
+"""The operations that cannot fail in a stepped machine."""
+
+UNBOUNDED_CALLS = frozenset(["characters", "keys", "range", "repeat", "sorted", "text"])
+"""The operations that need the heap."""
 
 TERNARY, OR, AND, EQUALITY, RELATION, SUM, PRODUCT, SIGNED, POSTFIX = range(9)
 """The precedences of the operators of C++, lowest first."""
@@ -74,8 +82,17 @@ class Term:
 
 
 def call(name: str, *arguments: str) -> CppText:
-    """A call of a function in the namespace for operations of Python."""
-    return CppText(f"{PY}{name}({', '.join(arguments)})")
+    """A call of a function in the namespace for operations of Python, with marks."""
+    if name in UNBOUNDED_CALLS:
+        return hosted_call(name, *arguments)
+    fault = "" if name in SURE else FAULT
+    return CppText(f"{OPERATIONS}{name}({fault}{', '.join(arguments)})")
+
+
+def hosted_call(name: str, *arguments: str) -> CppText:
+    """A call of a function that needs the heap, or parts of the C library that read and write
+    numbers: a stepped machine has neither."""
+    return CppText(f"{UNBOUNDED}{OPERATIONS}{name}({', '.join(arguments)})")
 
 
 def fixed(type_: Type, text: CppText, *, simple: bool = False) -> Term:
@@ -95,7 +112,8 @@ def literal(value: bool | int | float | str | None) -> Term:
             case bool():
                 return converted(CppText(cpp_bool(value)), BOOL, wanted)
             case str():
-                return converted(CppText(cpp_string(value)), STR, wanted)
+                text = TEXT + cpp_string(value).removeprefix(STRING)
+                return converted(CppText(text), STR, wanted)
         if isinstance(value, float) or present(wanted).name in ("float", "number"):
             return converted(CppText(cpp_float(value), SIGNED), FLOAT, wanted)
         return converted(CppText(cpp_int(value), SIGNED, digits=True), own, wanted)
@@ -153,7 +171,14 @@ def ground(type_: Type) -> Type:
 
 
 def cpp(type_: Type) -> str:
-    return cpp_type(ground(type_))
+    """The C++ type of values of a type, with a mark if they need the heap."""
+    return spelt(ground(type_))
+
+
+def spelt(type_: Type) -> str:
+    """The C++ type of a type of the script, with a mark if its values need the heap."""
+    mark = UNBOUNDED if any(has(type_, name) for name in ("str", "list", "dict")) else ""
+    return mark + cpp_type(type_)
 
 
 def shown(type_: Type) -> str:
@@ -258,4 +283,4 @@ def converted(text: CppText, own: Type, wanted: Type) -> CppText:
         return call("present", text.text)
     if own == INT and wanted.name in ("float", "number"):
         return call("widen", text.text)
-    return CppText(f"smachac::convert<{cpp(wanted)}>({text.text})")
+    return CppText(f"{CONVERT}<{cpp(wanted)}>({FAULT}{text.text})")

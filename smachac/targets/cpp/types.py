@@ -96,6 +96,12 @@ def cpp_type(type_: Type) -> str:
             return f"std::map<std::string, {cpp_type(item)}>"
         case "optional", (Type() as item,):
             return f"std::optional<{cpp_type(item)}>"
+        case "text", (int(size),):
+            return f"smachac::step::TextOf<{size}>"
+        case "bounded", (Type() as item, int(size)):
+            return f"smachac::step::ListOf<{cpp_type(item)}, {size}>"
+        case "stamped", (int(size),):
+            return f"smachac::step::PoseStampedOf<{size}>"
     if type_.name == "record":
         message = f"C++ has no type for the record `{type_}`"
         raise UnportableError(message, help="declare the key as `dict[str, T]` or `any` for C++")
@@ -104,10 +110,12 @@ def cpp_type(type_: Type) -> str:
 
 
 def plain(type_: Type) -> Type:
-    """A type without units and choices, which C++ lacks; unknown names become `any`."""
+    """A type without units, choices and bounds, which C++ lacks; unknown names become `any`."""
     match type_.name, type_.args:
-        case "int" | "float", _:
+        case "int" | "float" | "str", _:
             return Type(type_.name)
+        case "list", (Type() as item, int()):
+            return Type("list", (plain(item),))
         case "one_of" | "literal", choices:
             kinds = {STR if isinstance(choice, str) else INT for choice in choices}
             return kinds.pop() if len(kinds) == 1 else ANY
@@ -153,8 +161,15 @@ def _value(data: Data, type_: Type) -> str:
             return cpp_float(data)
         case "str", str():
             return cpp_string(data)
-        case "list" | "array" | "dict", tuple() | Struct():
+        case "list" | "array" | "dict" | "bounded", tuple() | Struct():
             return _items(data, type_)
+        case "text", str():
+            _within(len(data.encode("utf-8", "surrogatepass")), type_, "bytes")
+            return f"std::string_view{cpp_string(data).removeprefix('std::string')}"
+        case "stamped", tuple() | Struct():
+            frame = Type("text", type_.args)
+            fields = {**FIELDS["PoseStamped"], "frame_id": frame}
+            return f"{cpp_type(type_)}{{{', '.join(_members(data, 'PoseStamped', fields))}}}"
         case name, tuple() | Struct() if name in FIELDS:
             return f"{cpp_type(type_)}{{{', '.join(_members(data, name))}}}"
     if type_.name == "record":
@@ -186,6 +201,9 @@ def _any(data: Data) -> str:
 def _items(data: tuple[Data, ...] | Struct, type_: Type) -> str:
     inner = _inside(type_)
     match type_.args, data:
+        case (_, int(size)), tuple() if type_.name == "bounded":
+            _within(len(data), type_, "items")
+            return braced(cpp_type(type_), [_value(item, inner) for item in data])
         case (_, int(size)), tuple() if len(data) != size:
             raise UnportableError(f"{_shown(data)} has {len(data)} items, but `{type_}` has {size}")
         case _, tuple() if type_.name != "dict":
@@ -203,9 +221,18 @@ def braced(name: str, items: list[str], *, array: bool = False) -> str:
     return f"{name}{{{{{inner}}}}}" if array and items else f"{name}{{{inner}}}"
 
 
-def _members(data: tuple[Data, ...] | Struct, name: str) -> list[str]:
+def _within(size: int, type_: Type, unit: str) -> None:
+    """Refuses a constant that is larger than the bound of its type."""
+    bound = type_.args[-1]
+    if isinstance(bound, int) and size > bound:
+        raise UnportableError(f"the value has {size} {unit}; the bound is {bound}")
+
+
+def _members(
+    data: tuple[Data, ...] | Struct, name: str, fields: Mapping[str, Type] | None = None
+) -> list[str]:
     """The members of a struct from the list or the mapping that scripts write for it."""
-    fields = FIELDS[name]
+    fields = fields or FIELDS[name]
     if isinstance(data, tuple):
         if name not in LISTED:
             raise UnportableError(f"`{name}` must be a mapping with the fields {', '.join(fields)}")

@@ -8,8 +8,9 @@ from collections.abc import Iterable, Sequence
 from smachac.frontend.text.unquoted import parameters
 from smachac.ir.nodes import Data, Key, Leaf, StateType
 from smachac.ir.outcome_names import PREEMPTED
-from smachac.ir.types import Type
+from smachac.ir.types import Bounds, Type
 from smachac.records import dataclass
+from smachac.targets.cpp.bounded import bounded, loose
 from smachac.targets.cpp.builtin_states import STOP, LeafCode
 from smachac.targets.cpp.identifiers import identifier
 from smachac.targets.cpp.plan import ContainerScope, converts
@@ -88,8 +89,9 @@ def left_to_scripts(type_: StateType) -> list[str]:
     return sorted(type_.given - {"variables"})
 
 
-def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
-    """A leaf that is an object of a class. Raises UnportableError."""
+def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope, number: int = 0) -> LeafCode:
+    """A leaf that is an object of a class; `number` is that of the leaf in a stepped machine.
+    Raises UnportableError."""
     type_ = code.type
     left = left_to_scripts(type_)
     if left:
@@ -110,13 +112,33 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
     def hidden(key: Key) -> str:
         return ", true" if names[key.name] in scope.secret else ""
 
+    made = [*map(argument, code.parameters), *_variables(type_, leaf)]
+    if scope.bounds is not None:
+        for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
+            step_fields(part, keys, scope.bounds)  # raises the reason
+        return LeafCode(
+            type=code.name,
+            call=_step(code, leaf, scope, inputs, outs, number),
+            made_with=", ".join(made),
+            parameters=code.parameters,
+            uses_userdata=bool(inputs or outs),
+            uses_stop=stops(type_),
+            bounded_outputs=tuple(
+                (out, cpp_literal(key.name))
+                for key, out in zip(type_.output_keys, outs, strict=True)
+                if scope.key(names[key.name]).name in ("text", "bounded")
+            ),
+            written=tuple(
+                f"{cpp_literal(key.name)}, {out}{hidden(key)}"
+                for key, out in zip(type_.output_keys, outs, strict=True)
+            ),
+        )
     if outs:
         told = [
             f"smachac::Output{{{cpp_literal(key.name)}, {out}{hidden(key)}}}"
             for key, out in zip(type_.output_keys, outs, strict=True)
         ]
         call = f"run.wrote({call}, {', '.join(told)})"
-    made = [*map(argument, code.parameters), *_variables(type_, leaf)]
     return LeafCode(
         type=code.name,
         call=call,
@@ -127,6 +149,29 @@ def class_leaf(code: ClassCode, leaf: Leaf, scope: ContainerScope) -> LeafCode:
     )
 
 
+def _step(
+    code: ClassCode,
+    leaf: Leaf,
+    scope: ContainerScope,
+    inputs: Sequence[str],
+    outs: Sequence[str],
+    number: int,
+) -> str:
+    """The call of one step of a leaf."""
+    names = scope.names(leaf)
+    given = [
+        *([f"{code.name}::In{{{', '.join(inputs)}}}"] if inputs else []),
+        *([f"{code.name}::Out{{{', '.join(f'run.out({out})' for out in outs)}}}"] if outs else []),
+    ]
+    sure = all(
+        names[key.name] in scope.sure and loose(scope.key(names[key.name])) == plain(key.type)
+        for key in code.type.input_keys
+        if plain(key.type).name != "optional"
+    )
+    function = "leaf" if sure else "checked_leaf"
+    return f"run.{function}({', '.join([str(number), f'states.{identifier(leaf.name)}', *given])})"
+
+
 def stops(type_: StateType) -> bool:
     """Whether `execute` has a parameter for requests to stop."""
     return type_.blocking or any(each.name == PREEMPTED for each in type_.outcomes)
@@ -134,18 +179,36 @@ def stops(type_: StateType) -> bool:
 
 def _input(scope: ContainerScope, key: Key, outer: str) -> str:
     given, wanted = scope.key(outer), plain(key.type)
-    if not converts(given, wanted):
+    if not converts(loose(given), wanted):
         raise UnportableError(
-            f"the input `{key.name}` is `{wanted}`, but the key `{outer}` is `{given}`"
+            f"the input `{key.name}` is `{wanted}`, but the key `{outer}` is `{loose(given)}`"
         )
     spelt = scope.read(outer, key.name).text
+    if scope.dialect.stepped:
+        return _bounded_input(scope, key, outer, spelt)
     if wanted.name == "optional" and outer not in scope.sure:
         return f"smachac::maybe<{cpp_type(wanted)}>({scope.object(outer)})"
     return spelt if given == wanted else f"smachac::convert<{cpp_type(wanted)}>({spelt})"
 
 
+def _bounded_input(scope: ContainerScope, key: Key, outer: str, spelt: str) -> str:
+    """The text of an input in a stepped machine."""
+    given, wanted = scope.key(outer), plain(key.type)
+    maybe = wanted.name == "optional" and outer not in scope.sure
+    if loose(given) == wanted and not maybe:
+        return spelt
+    if wanted.name == "optional":
+        stored = given if given.name == "optional" else Type("optional", (given,))
+        if loose(stored) == wanted:
+            return f"smachac::step::maybe<{cpp_type(stored)}>(run.context, {scope.object(outer)})"
+    elif wanted.name in BY_VALUE:
+        return f"smachac::step::convert<{cpp_type(wanted)}>(run.context, {spelt})"
+    message = f"the input `{key.name}` is `{wanted}`, but the key `{outer}` is `{loose(given)}`"
+    raise UnportableError(f"{message}: a stepped machine does not convert it")
+
+
 def _output(scope: ContainerScope, key: Key, outer: str) -> str:
-    given, wanted = plain(key.type), scope.key(outer)
+    given, wanted = plain(key.type), loose(scope.key(outer))
     if given != wanted:
         raise UnportableError(
             f"the output `{key.name}` is `{given}`, but the key `{outer}` is `{wanted}`"
@@ -165,6 +228,21 @@ def _variables(type_: StateType, leaf: Leaf) -> list[str]:
         except UnportableError as error:
             raise UnportableError(f"the variable `{name}`: {error}") from error
     return found
+
+
+def step_field_type(part: str, type_: Type) -> str:
+    """The type of a field of `In` or `Out` in a stepped machine, for the storage of a type: texts
+    and lists are passed without their bound."""
+    match type_.name, type_.args:
+        case "text", _:
+            text = "std::string_view" if part == "In" else "smachac::step::Text"
+        case "bounded", (Type() as item, _):
+            text = f"smachac::step::List<{cpp_type(item)}>"
+        case _:
+            text = cpp_type(type_)
+    if part == "Out":
+        return f"smachac::step::Key<{text}> &"
+    return text if type_.name in (*BY_VALUE, "text") else f"const {text} &"
 
 
 def parameter_type(type_: Type) -> str:
@@ -191,8 +269,26 @@ def interface_hash(type_: StateType) -> str:
     return f"0x{zlib.crc32(chr(10).join(told).encode()):08x}U"
 
 
-def assertions(code: ClassCode) -> list[str]:
-    """The static assertions for a class; their messages are instructions to the user."""
+def step_fields(part: str, keys: Iterable[Key], bounds: Bounds) -> dict[str, str]:
+    """The fields of `In` or `Out` in a stepped machine and their types. Raises UnportableError for
+    a type without a bound."""
+    return {identifier(key.name): step_field_type(part, _stored(key.type, bounds)) for key in keys}
+
+
+def _stored(type_: Type, bounds: Bounds) -> Type:
+    """The storage of the type of a key in an interface. The bound of a text or list itself is that
+    of the key in the script: here it has none."""
+    match type_.name, type_.args:
+        case "str", _:
+            return Type("text", (1,))
+        case "list", (Type() as item, *_):
+            return Type("bounded", (bounded(item, bounds), 1))
+    return bounded(type_, bounds)
+
+
+def assertions(code: ClassCode, bounds: Bounds | None = None) -> list[str]:
+    """The static assertions for a class; their messages are instructions to the user. `bounds` are
+    those of a stepped machine. Raises UnportableError for a type without a bound."""
     type_, name = code.type, code.name
     short, file = name.removeprefix("::"), f"{code.type.name}.yml"
     lines = [
@@ -201,7 +297,10 @@ def assertions(code: ClassCode) -> list[str]:
         f'smachac_interface");',
     ]
     for part, keys in (("In", type_.input_keys), ("Out", type_.output_keys)):
-        wanted = {identifier(key.name): field_type(part, key.type) for key in keys}
+        if bounds is None:
+            wanted = {identifier(key.name): field_type(part, key.type) for key in keys}
+        else:
+            wanted = step_fields(part, keys, bounds)
         for field, text in wanted.items():
             lines += [
                 f"static_assert(std::is_same_v<decltype({name}::{part}::{field}), {text}>,",

@@ -18,9 +18,11 @@ from typing import IO, NamedTuple
 import smachac
 from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Machine
+from smachac.ir.types import Bounds
 from smachac.targets.cpp.plan import plan
 from smachac.targets.cpp.types import UnportableError
 from smachac.verify.players.cpp_program import Program
+from smachac.verify.players.cpp_step_program import StepProgram
 from smachac.verify.test_case import Event, Player, TestCase, UnplayableError
 
 HEADERS = Path(smachac.__file__).parent / "runtime" / "cpp"
@@ -36,18 +38,20 @@ MOST_ERRORS = 5
 """Limit on the lines of compiler output that are shown."""
 
 
-def player(machine: Machine, report: Report) -> Player:
+def player(machine: Machine, report: Report, bounds: Bounds | None = None) -> Player:
     """A player of the generated C++ code. Adds to `report` what C++ cannot express of the machine.
+    `bounds` are those of a stepped machine.
 
     The program is compiled when the player receives test cases. Raises UnplayableError if there is
     no compiler, or if the compilation fails.
     """
-    planned = plan(machine)
-    report.extend(Program(planned, ()).refused())
+    planned = plan(machine, bounds)
+    make = Program if bounds is None else StepProgram
+    report.extend(make(planned, ()).refused())
 
     def play(cases: Sequence[TestCase]) -> Iterator[list[Event]]:
         compiler = first_compiler()
-        program = Program(planned, cases)
+        program = make(planned, cases)
         try:
             text = program.text()
         except UnportableError as error:

@@ -46,11 +46,15 @@ class Program:
         for number, (path, node) in enumerate(walk(planned.machine.root)):
             if isinstance(node, Leaf):
                 scope = planned.scopes[path.rpartition("/")[0]]
-                self._leaves[path] = CppLeaf(number=number, path=path, leaf=node, scope=scope)
+                self._leaves[path] = self._leaf(number, path, node, scope)
         for case in cases:
             for path, row in case.rows.items():
                 for step in row:
                     self._leaves[path].case_of(step)
+
+    def _leaf(self, number: int, path: str, leaf: Leaf, scope: ContainerScope) -> CppLeaf:
+        """A leaf that performs test cases."""
+        return CppLeaf(number=number, path=path, leaf=leaf, scope=scope)
 
     def script(self) -> str:
         """The input of the program."""
@@ -108,7 +112,7 @@ class Program:
             path: replace(self._plan.scopes[path], node=node) for path, node in containers(root)
         }
         report = list(self._plan.report)
-        planned = Plan(machine=machine, scopes=scopes, paths={}, report=report)
+        planned = replace(self._plan, machine=machine, scopes=scopes, paths={}, report=report)
         lines = header_of(planned).text.splitlines()
         text = "\n".join(line for line in lines if not line.startswith("#"))
         return text, in_order(planned.report)

@@ -31,6 +31,7 @@
 #include <utility>
 #include <vector>
 
+#include "smachac/class_checks.hpp"
 #include "smachac/values.hpp"
 
 #if defined(__cpp_exceptions)
@@ -178,71 +179,6 @@ template <class T> [[nodiscard]] const T &need(const Key<T> &key, const char *na
 /// The value of a key as an optional; empty if the key is unset.
 template <class Optional, class T> [[nodiscard]] Optional maybe(const Key<T> &key) {
   return key.set() ? convert<Optional>(key.get()) : Optional();
-}
-
-#if defined(__clang__)
-#pragma clang diagnostic push
-#pragma clang diagnostic ignored "-Wundefined-var-template"
-#endif
-
-/// Two objects of the type T, for the check of the order of fields (`in_order`): a reference field
-/// with the mark refers to `one`, a reference field without it to `other`. Both are declared and
-/// never defined: only their addresses are compared, and only in constant expressions.
-template <class T> struct Marks {
-  static T one;
-  static T other;
-};
-
-/// The initial value of a field of the type `T` with or without the mark: 1 or 0, or for a
-/// reference `one` or `other` of Marks.
-template <class T> constexpr T with_mark(bool marked) {
-  if constexpr (std::is_reference_v<T>) {
-    using Object = std::remove_const_t<std::remove_reference_t<T>>;
-    return marked ? Marks<Object>::one : Marks<Object>::other;
-  } else {
-    return marked ? T(1) : T(0);
-  }
-}
-
-template <class T> constexpr bool is_marked(const T &field) {
-  if constexpr (std::is_arithmetic_v<T>) {
-    return field == T(1);
-  } else {
-    return &field == &Marks<T>::one;
-  }
-}
-
-#if defined(__clang__)
-#pragma clang diagnostic pop
-#endif
-
-/// The number of fields before the first field with the mark.
-template <class... Fields> constexpr std::size_t before_mark(const Fields &...fields) {
-  std::size_t count = 0;
-  static_cast<void>((... || (is_marked(fields) || (++count, false))));
-  return count;
-}
-
-template <std::size_t at, class Keys, class... Types, class Fields, std::size_t... all>
-constexpr auto has_at(Fields fields, std::index_sequence<all...>)
-    -> decltype(Keys{with_mark<Types>(all == at)...}, true) {
-  return fields(Keys{with_mark<Types>(all == at)...}) == at;
-}
-template <std::size_t at, class Keys, class... Types, class Fields>
-constexpr bool has_at(Fields, ...) {
-  return false;
-}
-template <class Keys, class... Types, class Fields, std::size_t... all>
-constexpr bool in_order(Fields fields, std::index_sequence<all...> each) {
-  return (has_at<all, Keys, Types...>(fields, each) && ...);
-}
-
-/// Whether the fields of the class `Keys` have the types `Types` in this order and the names in the
-/// expected order. `fields` takes an object of `Keys` and returns `before_mark` of its fields,
-/// listed by name in the expected order. The check initializes `Keys` once for each field, with the
-/// mark at that field.
-template <class Keys, class... Types, class Fields> constexpr bool in_order(Fields fields) {
-  return in_order<Keys, Types...>(fields, std::index_sequence_for<Types...>());
 }
 
 /// A state in the script: its path, `sm/PICK/OPEN`, and its file and line, `main.yml:12`. For a

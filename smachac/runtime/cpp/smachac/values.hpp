@@ -32,6 +32,8 @@
 #include <utility>
 #include <vector>
 
+#include "smachac/operations.hpp"
+
 namespace smachac {
 inline namespace v0_1_0 {
 
@@ -54,40 +56,6 @@ struct Error : std::exception {
 #endif
 }
 
-/// The type of None.
-struct None {
-  friend bool operator==(None, None) { return true; }
-  friend bool operator!=(None, None) { return false; }
-};
-
-/// A point; coordinates in metres.
-struct Point {
-  double x = 0.0, y = 0.0, z = 0.0;
-  friend bool operator==(const Point &a, const Point &b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-  }
-  friend bool operator!=(const Point &a, const Point &b) { return !(a == b); }
-};
-
-/// A rotation as a unit quaternion.
-struct Quaternion {
-  double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
-  friend bool operator==(const Quaternion &a, const Quaternion &b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
-  }
-  friend bool operator!=(const Quaternion &a, const Quaternion &b) { return !(a == b); }
-};
-
-/// A pose: position and orientation.
-struct Pose {
-  Point position{};
-  Quaternion orientation{};
-  friend bool operator==(const Pose &a, const Pose &b) {
-    return a.position == b.position && a.orientation == b.orientation;
-  }
-  friend bool operator!=(const Pose &a, const Pose &b) { return !(a == b); }
-};
-
 /// A pose in the frame `frame_id`. The stamp is in seconds.
 struct PoseStamped {
   std::string frame_id{};
@@ -97,16 +65,6 @@ struct PoseStamped {
     return a.frame_id == b.frame_id && a.stamp == b.stamp && a.pose == b.pose;
   }
   friend bool operator!=(const PoseStamped &a, const PoseStamped &b) { return !(a == b); }
-};
-
-/// The transform between two frames.
-struct Transform {
-  Point translation{};
-  Quaternion rotation{};
-  friend bool operator==(const Transform &a, const Transform &b) {
-    return a.translation == b.translation && a.rotation == b.rotation;
-  }
-  friend bool operator!=(const Transform &a, const Transform &b) { return !(a == b); }
 };
 
 /// The state of joints. `name` has the names of the joints; each other list is empty or has the
@@ -123,41 +81,19 @@ struct JointState {
 
 namespace detail {
 
-template <class T> struct is_list : std::false_type {};
 template <class T> struct is_list<std::vector<T>> : std::true_type {};
-template <class T, std::size_t N> struct is_list<std::array<T, N>> : std::true_type {};
-template <class T> struct is_array : std::false_type {};
-template <class T, std::size_t N> struct is_array<std::array<T, N>> : std::true_type {};
-template <class T> struct is_dict : std::false_type {};
 template <class T> struct is_dict<std::map<std::string, T>> : std::true_type {};
-template <class T> struct is_optional : std::false_type {};
-template <class T> struct is_optional<std::optional<T>> : std::true_type {};
+template <> struct is_text<std::string> : std::true_type {};
 
-/// 2**63 as a float: the least positive whole number that does not fit in 64 bits.
-constexpr double beyond_whole = 9223372036854775808.0;
+/// The fault of an operation in a blocking machine: an exception.
+struct Throwing {
+  [[noreturn]] void fail(const char *message) const { smachac::fail(message); }
+};
+inline constexpr Throwing throwing{};
 
 inline bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// Whether a byte is the first byte of a UTF-8 code point.
-inline bool is_start(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
-
-/// The code point at the byte offset `place` of a text. The call moves `place` behind it. Bytes
-/// that are not UTF-8 give U+FFFD.
-inline std::uint32_t code_point(std::string_view text, std::size_t &place) {
-  const auto first = static_cast<unsigned char>(text[place++]);
-  if (first < 0x80U) {
-    return first;
-  }
-  const int more = first >= 0xF0U ? 3 : first >= 0xE0U ? 2 : first >= 0xC0U ? 1 : 0;
-  std::uint32_t point = first & (0x3FU >> more);
-  int found = 0;
-  for (; found < more && place < text.size() && !is_start(text[place]); ++found) {
-    point = (point << 6U) | (static_cast<unsigned char>(text[place++]) & 0x3FU);
-  }
-  return more == 0 || found < more ? 0xFFFDU : point;
-}
 
 } // namespace detail
 
@@ -170,17 +106,8 @@ template <class T> const T &present(const std::optional<T> &value) {
   return *value;
 }
 
-/// A whole number as a float, rounded to the nearest one: the operand of float arithmetic.
-inline double real(std::int64_t value) { return static_cast<double>(value); }
-
-/// A whole number as a float without rounding. Throws an Error if no float is equal to it.
-inline double widen(std::int64_t value) {
-  const double result = real(value);
-  if (result >= detail::beyond_whole || static_cast<std::int64_t>(result) != value) {
-    fail("a whole number that no float holds");
-  }
-  return result;
-}
+using checked::real;
+inline double widen(std::int64_t value) { return checked::widen(detail::throwing, value); }
 
 } // namespace py
 
@@ -267,166 +194,47 @@ template <class To, class From> To convert([[maybe_unused]] const From &from) {
 
 namespace py {
 
-/// The result of `function(value)`: computes `value` once where an expression uses it several
-/// times.
-template <class T, class F> auto with(const T &value, F function) { return function(value); }
+using checked::equal;
+using checked::length;
+using checked::truth;
+using checked::with;
 
 // Arithmetic
 
 inline std::int64_t add(std::int64_t a, std::int64_t b) {
-  std::int64_t result = 0;
-  if (__builtin_add_overflow(a, b, &result)) {
-    fail("a whole number too large for 64 bits");
-  }
-  return result;
+  return checked::add(detail::throwing, a, b);
 }
-
 inline std::int64_t subtract(std::int64_t a, std::int64_t b) {
-  std::int64_t result = 0;
-  if (__builtin_sub_overflow(a, b, &result)) {
-    fail("a whole number too large for 64 bits");
-  }
-  return result;
+  return checked::subtract(detail::throwing, a, b);
 }
-
 inline std::int64_t multiply(std::int64_t a, std::int64_t b) {
-  std::int64_t result = 0;
-  if (__builtin_mul_overflow(a, b, &result)) {
-    fail("a whole number too large for 64 bits");
-  }
-  return result;
+  return checked::multiply(detail::throwing, a, b);
 }
-
-inline std::int64_t negate(std::int64_t a) { return subtract(0, a); }
-inline std::int64_t absolute(std::int64_t a) { return a < 0 ? negate(a) : a; }
-inline double absolute(double a) { return std::fabs(a); }
-
+inline std::int64_t negate(std::int64_t a) { return checked::negate(detail::throwing, a); }
+inline std::int64_t absolute(std::int64_t a) { return checked::absolute(detail::throwing, a); }
+inline double absolute(double a) { return checked::absolute(detail::throwing, a); }
 inline std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
-  if (b == 0) {
-    fail("division by zero");
-  }
-  if (b == -1) {
-    return negate(a);
-  }
-  return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0);
+  return checked::floor_divide(detail::throwing, a, b);
 }
-
-inline std::int64_t modulo(std::int64_t a, std::int64_t b) {
-  if (b == 0) {
-    fail("division by zero");
-  }
-  if (b == -1) {
-    return 0;
-  }
-  const std::int64_t rest = a % b;
-  return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
-}
-
-inline double divide(double a, double b) {
-  if (b == 0.0) {
-    fail("division by zero");
-  }
-  return a / b;
-}
-
-/// The quotient of two whole numbers as the nearest float, rounded once.
-inline double divide(std::int64_t a, std::int64_t b) {
-  constexpr std::int64_t exact = std::int64_t{1} << 53U;
-  if (b == 0) {
-    fail("division by zero");
-  }
-  if (a >= -exact && a <= exact && b >= -exact && b <= exact) {
-    return real(a) / real(b);
-  }
-  const auto size = [](std::int64_t n) {
-    return n < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(n) : static_cast<std::uint64_t>(n);
-  };
-  std::uint64_t quotient = size(a) / size(b);
-  std::uint64_t rest = size(a) % size(b);
-  int exponent = 0;
-  // The loop computes more binary digits than a float has. The last digit is then set to 1 if the
-  // rest of the quotient is not zero, so the conversion to double rounds correctly.
-  while (quotient >> 55U == 0 && exponent > -128) {
-    const bool carry = rest >= size(b) - rest;
-    rest = carry ? rest - (size(b) - rest) : rest + rest;
-    quotient = quotient * 2 + (carry ? 1 : 0);
-    --exponent;
-  }
-  const double result = std::ldexp(static_cast<double>(quotient | (rest != 0 ? 1U : 0U)), exponent);
-  return (a < 0) != (b < 0) ? -result : result;
-}
-
-inline double modulo(double a, double b) {
-  if (b == 0.0) {
-    fail("division by zero");
-  }
-  const double rest = std::fmod(a, b);
-  if (rest == 0.0) {
-    return std::copysign(0.0, b);
-  }
-  return (b < 0.0) != (rest < 0.0) ? rest + b : rest;
-}
-
 inline double floor_divide(double a, double b) {
-  if (b == 0.0) {
-    fail("division by zero");
-  }
-  const double rest = std::fmod(a, b);
-  double quotient = (a - rest) / b;
-  if (rest != 0.0 && (b < 0.0) != (rest < 0.0)) {
-    quotient -= 1.0;
-  }
-  if (quotient == 0.0) {
-    return std::copysign(0.0, a / b);
-  }
-  const double down = std::floor(quotient);
-  return quotient - down > 0.5 ? down + 1.0 : down;
+  return checked::floor_divide(detail::throwing, a, b);
 }
-
-/// A power of a whole number. Throws an Error if the exponent is negative.
+inline std::int64_t modulo(std::int64_t a, std::int64_t b) {
+  return checked::modulo(detail::throwing, a, b);
+}
+inline double modulo(double a, double b) { return checked::modulo(detail::throwing, a, b); }
+inline double divide(std::int64_t a, std::int64_t b) {
+  return checked::divide(detail::throwing, a, b);
+}
+inline double divide(double a, double b) { return checked::divide(detail::throwing, a, b); }
 inline std::int64_t power(std::int64_t base, std::int64_t exponent) {
-  if (exponent < 0) {
-    fail("a negative power of a whole number");
-  }
-  std::int64_t result = 1;
-  for (std::int64_t square = base; exponent > 0; square = multiply(square, square)) {
-    if (exponent % 2 != 0) {
-      result = multiply(result, square);
-    }
-    exponent /= 2;
-    if (exponent == 0) {
-      break;
-    }
-  }
-  return result;
+  return checked::power(detail::throwing, base, exponent);
 }
-
 inline double power(double base, double exponent) {
-  const bool finite = std::isfinite(base) && std::isfinite(exponent);
-  if (finite && base == 0.0 && exponent < 0.0) {
-    fail("a negative power of zero");
-  }
-  if (finite && base < 0.0 && exponent != std::floor(exponent)) {
-    fail("a broken power of a negative number, which is complex");
-  }
-  const double result = std::pow(base, exponent);
-  if (finite && std::isinf(result)) {
-    fail("a power too large for a float");
-  }
-  return result;
+  return checked::power(detail::throwing, base, exponent);
 }
-
-/// A float without its fraction, as a whole number. Throws an Error if it does not fit in 64 bits.
-inline std::int64_t whole(double value) {
-  if (!(value >= -detail::beyond_whole && value < detail::beyond_whole)) {
-    fail("a float that is no whole number of 64 bits");
-  }
-  return static_cast<std::int64_t>(value);
-}
-
-/// The nearest whole number; if two are equally near, the even one. Throws an Error if it does not
-/// fit in 64 bits.
-inline std::int64_t round(double value) { return whole(std::nearbyint(value)); }
+inline std::int64_t whole(double value) { return checked::whole(detail::throwing, value); }
+inline std::int64_t round(double value) { return checked::round(detail::throwing, value); }
 
 /// A float rounded to a number of decimal places. `digits` must not be negative.
 inline double round(double value, int digits) {
@@ -438,117 +246,11 @@ inline double round(double value, int digits) {
   return std::strtod(buffer, nullptr);
 }
 
-// Truth and order
-
-template <class T> bool truth(const T &value) {
-  if constexpr (std::is_arithmetic_v<T>) {
-    return value != T{};
-  } else if constexpr (detail::is_optional<T>::value) {
-    return value.has_value() && truth(*value);
-  } else if constexpr (std::is_same_v<T, None>) {
-    return false;
-  } else if constexpr (std::is_same_v<T, std::string> || detail::is_list<T>::value ||
-                       detail::is_dict<T>::value) {
-    return !value.empty();
-  } else {
-    return true;
-  }
+template <class A, class B> bool less(const A &a, const B &b) {
+  return checked::less(detail::throwing, a, b);
 }
-
-enum class Order { less, equal, greater, none };
-
-namespace inner {
-
-template <class T> Order plain_order(const T &a, const T &b) {
-  return a < b ? Order::less : b < a ? Order::greater : a == b ? Order::equal : Order::none;
-}
-
-/// The order of a whole number and a float; exact, also if no float is equal to the whole number.
-inline Order mixed_order(std::int64_t a, double b) {
-  if (std::isnan(b)) {
-    return Order::none;
-  }
-  if (b >= detail::beyond_whole) {
-    return Order::less;
-  }
-  if (b < -detail::beyond_whole) {
-    return Order::greater;
-  }
-  const auto cut = static_cast<std::int64_t>(b);
-  return a != cut ? plain_order(a, cut) : plain_order(0.0, b - real(cut));
-}
-
-} // namespace inner
-
-template <class A, class B> bool equal(const A &a, const B &b);
-
-/// The order of two values; Order::none if one of the floats that decide it is NaN.
-template <class A, class B> Order order(const A &a, const B &b) {
-  if constexpr (std::is_arithmetic_v<A> && std::is_arithmetic_v<B>) {
-    if constexpr (std::is_integral_v<A> && std::is_integral_v<B>) {
-      return inner::plain_order<std::int64_t>(a, b);
-    } else if constexpr (std::is_integral_v<A>) {
-      return inner::mixed_order(a, b);
-    } else if constexpr (std::is_integral_v<B>) {
-      const Order found = inner::mixed_order(b, a);
-      return found == Order::less ? Order::greater : found == Order::greater ? Order::less : found;
-    } else {
-      return inner::plain_order(a, b);
-    }
-  } else if constexpr (std::is_same_v<A, std::string> && std::is_same_v<B, std::string>) {
-    return inner::plain_order(a.compare(b), 0);
-  } else if constexpr (std::is_same_v<A, None> || std::is_same_v<B, None>) {
-    fail("None where a value is needed");
-  } else if constexpr (detail::is_optional<A>::value) {
-    return order(present(a), b);
-  } else if constexpr (detail::is_optional<B>::value) {
-    return order(a, present(b));
-  } else {
-    const std::size_t both = std::min(a.size(), b.size());
-    for (std::size_t i = 0; i < both; ++i) {
-      if (!equal(a[i], b[i])) {
-        return order(a[i], b[i]);
-      }
-    }
-    return inner::plain_order(a.size(), b.size());
-  }
-}
-
-/// `==` of Python. Values of types without a common value are not equal.
-template <class A, class B> bool equal(const A &a, const B &b) {
-  if constexpr (std::is_arithmetic_v<A> && std::is_arithmetic_v<B>) {
-    return order(a, b) == Order::equal;
-  } else if constexpr (detail::is_optional<A>::value && detail::is_optional<B>::value) {
-    return a.has_value() && b.has_value() ? equal(*a, *b) : a.has_value() == b.has_value();
-  } else if constexpr (detail::is_optional<A>::value) {
-    return a.has_value() ? equal(*a, b) : std::is_same_v<B, None>;
-  } else if constexpr (detail::is_optional<B>::value) {
-    return equal(b, a);
-  } else if constexpr (detail::is_list<A>::value && detail::is_list<B>::value) {
-    bool same = a.size() == b.size();
-    for (std::size_t i = 0; same && i < a.size(); ++i) {
-      same = equal(a[i], b[i]);
-    }
-    return same;
-  } else if constexpr (detail::is_dict<A>::value && detail::is_dict<B>::value) {
-    bool same = a.size() == b.size();
-    for (auto one = a.begin(), end = a.end(); same && one != end; ++one) {
-      const auto other = b.find(one->first);
-      same = other != b.end() && equal(one->second, other->second);
-    }
-    return same;
-  } else if constexpr (std::is_same_v<A, B>) {
-    return a == b;
-  } else {
-    return false;
-  }
-}
-
-template <class A, class B> bool less(const A &a, const B &b) { return order(a, b) == Order::less; }
-
 template <class A, class B> bool at_most(const A &a, const B &b) {
-  const Order found = order(a, b);
-  return found == Order::less || found == Order::equal;
+  return checked::at_most(detail::throwing, a, b);
 }
 
 // Lists, mappings, texts
@@ -556,24 +258,10 @@ template <class A, class B> bool at_most(const A &a, const B &b) {
 /// The greatest length of a list (items) or text (code points) that `range` and `*` make.
 constexpr std::int64_t largest = 100'000;
 
-inline std::int64_t length(const std::string &text) {
-  return std::count_if(text.begin(), text.end(), detail::is_start);
-}
-
-template <class T> std::int64_t length(const T &items) {
-  return static_cast<std::int64_t>(items.size());
-}
-
 namespace inner {
 
-/// The offset from the start for an index; a negative index counts from the end. Throws an Error if
-/// the index is out of range.
 inline std::size_t place(std::int64_t index, std::int64_t size) {
-  const std::int64_t found = index < 0 ? index + size : index;
-  if (found < 0 || found >= size) {
-    fail("an index out of range");
-  }
-  return static_cast<std::size_t>(found);
+  return checked::inner::place(detail::throwing, index, size);
 }
 
 } // namespace inner
@@ -607,11 +295,10 @@ inline std::string item(const std::string &text, std::int64_t index) {
 }
 
 inline double item(const Point &point, std::int64_t index) {
-  return std::array<double, 3>{point.x, point.y, point.z}[inner::place(index, 3)];
+  return checked::item(detail::throwing, point, index);
 }
-
 inline double item(const Quaternion &q, std::int64_t index) {
-  return std::array<double, 4>{q.x, q.y, q.z, q.w}[inner::place(index, 4)];
+  return checked::item(detail::throwing, q, index);
 }
 
 template <class T> const T &item(const std::map<std::string, T> &entries, const std::string &key) {
@@ -637,11 +324,7 @@ bool contains(const std::map<std::string, T> &entries, const std::optional<std::
 }
 
 template <class T, class U> bool contains(const T &items, const U &value) {
-  bool found = false;
-  for (std::size_t i = 0; !found && i < items.size(); ++i) {
-    found = equal(items[i], value);
-  }
-  return found;
+  return checked::contains(items, value);
 }
 
 /// The concatenation of two lists.
@@ -701,32 +384,14 @@ inline std::vector<std::int64_t> range(std::int64_t from, std::int64_t to, std::
 
 inline std::vector<std::int64_t> range(std::int64_t to) { return range(0, to); }
 
-/// The sum of `start` and all items: a whole number if all of them are whole numbers, otherwise a
-/// float.
 template <class T, class S> auto sum(const T &items, S start) {
-  using Item = typename T::value_type;
-  if constexpr (std::is_integral_v<Item> && std::is_integral_v<S>) {
-    std::int64_t total = start;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      total = add(total, items[i]);
-    }
-    return total;
-  } else {
-    auto total = static_cast<double>(start);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      total += static_cast<double>(items[i]);
-    }
-    return total;
-  }
+  return checked::sum(detail::throwing, items, start);
 }
-
 template <class T> auto sum(const T &items) { return sum(items, 0); }
 
 namespace inner {
 
-struct itself {
-  template <class T> const T &operator()(const T &value) const { return value; }
-};
+using checked::inner::itself;
 
 /// Throws an Error if a value contains a NaN: such values have no order.
 template <class T> void check_order(const T &value) {
@@ -746,29 +411,13 @@ template <class T> void check_order(const T &value) {
 /// The first item with the greatest key. Throws an Error if there are no items.
 template <class T, class F = inner::itself>
 typename T::value_type max_of(const T &items, F key = {}) {
-  std::size_t best = 0;
-  if (items.size() == 0) {
-    fail("the greatest of nothing");
-  }
-  static_cast<void>(key(items[0])); // the key of a single item may have an error
-  for (std::size_t i = 1; i < items.size(); ++i) {
-    best = less(key(items[best]), key(items[i])) ? i : best;
-  }
-  return items[best];
+  return items[checked::extreme(detail::throwing, items, key, false)];
 }
 
 /// The first item with the least key. Throws an Error if there are no items.
 template <class T, class F = inner::itself>
 typename T::value_type min_of(const T &items, F key = {}) {
-  std::size_t best = 0;
-  if (items.size() == 0) {
-    fail("the least of nothing");
-  }
-  static_cast<void>(key(items[0])); // the key of a single item may have an error
-  for (std::size_t i = 1; i < items.size(); ++i) {
-    best = less(key(items[i]), key(items[best])) ? i : best;
-  }
-  return items[best];
+  return items[checked::extreme(detail::throwing, items, key, true)];
 }
 
 /// The items sorted by their keys. The sort is stable: items with equal keys keep their order.

@@ -1,0 +1,56 @@
+"""Scenarios for the outcomes of a machine, made of the paths on which targets are verified."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from smachac.interpreter.behaviours import builtin_behaviour
+from smachac.interpreter.interpreter import run
+from smachac.interpreter.scenario import (
+    Scenario,
+    plain_steps_by_path,
+    scenario_behaviour,
+    scenario_text,
+)
+from smachac.ir.nodes import Machine
+from smachac.ir.script_paths import walk_script
+from smachac.verify.generate import PathGenerator
+from smachac.verify.paths import Path
+
+MOST_PATHS = 400
+"""Paths that are tried for all outcomes together."""
+
+
+def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) -> dict[str, str]:
+    """For each of `outcomes` of a machine the text of a scenario that ends with it: of the paths
+    that were tried, the one with the fewest visits. An outcome that no path reached is missing.
+    Each scenario was played once, as `smachac run SCRIPT --mock` plays it."""
+    found: dict[str, Path] = {}
+    for path in PathGenerator(machine, most=MOST_PATHS).paths():
+        if path.stopped or not path.ends:
+            continue
+        outcome = _outcome(machine, path.scenario)
+        best = found.get(outcome) if outcome is not None else None
+        if outcome in outcomes and (best is None or path.visits < best.visits):
+            found[outcome] = path
+    return {
+        name: _text(machine, found[name].scenario, script, name)
+        for name in outcomes
+        if name in found
+    }
+
+
+def _outcome(machine: Machine, scenario: Scenario) -> str | None:
+    return run(machine, scenario_behaviour(scenario, machine, builtin_behaviour())).outcome
+
+
+def _text(machine: Machine, scenario: Scenario, script: str, outcome: str) -> str:
+    """The file of a scenario: its states by their paths in the script, without the timers and
+    pauses that the script does not contain unless the outcome needs them."""
+    paths = {path.full: path for path in walk_script(machine.root)}
+    written = {full: steps for full, steps in scenario.steps.items() if not paths[full].added}
+    if _outcome(machine, Scenario(steps=written)) == outcome:
+        scenario = Scenario(steps=written)
+    rows = plain_steps_by_path(scenario, machine)
+    head = f"# smachac run {script} --mock FILE --expect {outcome}\n"
+    return head + scenario_text({paths[full].shown: row for full, row in rows.items() if row})
