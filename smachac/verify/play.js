@@ -3,9 +3,10 @@
 // The input is one JSON object: `host` and `scion`, the paths of scion_host.js and of the package;
 // `documents`, texts of SCXML; `cases`. A case has `document` (its number), `inputs`, `stopped`,
 // `most` (the limit on visits), and by the identifier of each leaf: its path in `paths`, its steps
-// in `rows` (those of verify, or `exact` ones that say whether they answer a request), and the inputs that it records in `reads`. `asked`: the path of a state and the number
-// of the visit in which the machine gets a request to stop. The trace of each case is printed as
-// lines of JSON, and then a line `--`.
+// in `rows` (those of verify, or `exact` ones that say whether they answer a request), and the
+// inputs that it records in `reads`. `asked`: the path of a state and the number of the visit in
+// which the machine gets a request to stop. `scripted`: the leaves perform their steps; otherwise
+// the host has their functions. The trace of each case is printed as lines of JSON, and then `--`.
 "use strict";
 
 const given = JSON.parse(require("fs").readFileSync(0, "utf-8"));
@@ -56,7 +57,6 @@ function player(one, events, clock) {
   const soon = () => new Promise(resolve => clock.soon(resolve));
   return ({id, visit, inputs, outputs, outcomes, signal, stop, answer}) => {
     const able = outcomes.includes("preempted"), path = one.paths[id], row = one.rows[id];
-    if (row === undefined) return undefined;
     for (const key of one.reads[id] || []) {
       if (key in inputs && inputs[key] !== null) events.push({event: "read", path, key, value: inputs[key]});
     }
@@ -92,7 +92,7 @@ async function main() {
     const clock = virtualClock(), events = [];
     const play = player(one, events, clock);
     let [path, visits] = one.asked || ["", 0];
-    const states = one.rows ? new Proxy({}, {get: (table, type) => (given.scripted ? play : undefined)}) : {};
+    const states = given.scripted ? new Proxy({}, {get: () => play}) : {};
     const run = start(scxml, models[one.document], states, {
       inputs: one.inputs, stopped: one.stopped, clock,
       onEvent: event => {

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
+import smachac
+from smachac.commands.cli import main
 from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse
@@ -177,3 +180,33 @@ def test_such_names_run() -> None:
     case = {"document": 0, "inputs": {}, "stopped": False}
     (events,) = played([text], [case], scripted=False)
     assert events[-1]["event"] == "finish"
+
+
+@pytest.mark.parametrize(
+    ("missing", "words"),
+    [
+        ("node", "Node is not here"),
+        pytest.param("scion", "SCION is not here", marks=pytest.mark.browser),
+    ],
+)
+def test_verify_names_what_is_missing(
+    missing: str,
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "main.yml").write_text(counter("ud.n + 1"), "utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("NODE_PATH", raising=False)
+    if missing == "node":
+        monkeypatch.setenv("PATH", str(tmp_path))
+    elif shutil.which("node") is None:
+        pytest.skip("node is not there: make test-browser")
+    assert main(["verify", "main.yml", "--targets", "scxml"]) == 1
+    assert words in capsys.readouterr().err
+
+
+def test_the_option_is_checked() -> None:
+    with pytest.raises(ValueError, match="`trace` must be true or false"):
+        smachac.compile(ROOT / "examples/06_callbacks/main.yml", "scxml", options={"trace": "yes"})

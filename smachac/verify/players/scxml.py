@@ -115,8 +115,8 @@ def traces(
             [node, str(program)], stdin=given, stdout=subprocess.PIPE, encoding="utf-8"
         ) as process:
             assert process.stdout is not None
+            events: list[Event] = []
             try:
-                events: list[Event] = []
                 for line in process.stdout:
                     if line.strip() == DONE:
                         yield events
@@ -124,7 +124,7 @@ def traces(
                     else:
                         events.append(json.loads(line))
             finally:
-                if process.poll() is None and events is not None:
+                if process.poll() is None:
                     process.kill()
         if events:
             yield events
