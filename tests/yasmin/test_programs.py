@@ -204,6 +204,32 @@ def test_a_program_is_started_and_stopped(tmp_path: Path, number: int, code: int
     assert (process.returncode, out.splitlines()[-1:]) == (code, ["outcome: preempted"]), err
 
 
+NAMES = """\
+name: build
+outcomes: [done]
+states:
+  - states: {template: SleepState, time: 0.0, transitions: {succeeded: class, preempted: done}}
+  - class:
+      template: StateMachine
+      outcomes: [done]
+      states:
+        - parts: {template: SleepState, time: 0.0, transitions: {succeeded: done, preempted: done}}
+"""
+
+
+def test_names_of_the_module_itself() -> None:
+    files, report = files_of(NAMES)
+    assert report == []
+    with loaded(files) as module:
+        assert module.run().execute() == "done"
+
+
+def test_a_program_that_hides_yasmin_is_refused() -> None:
+    files, report = files_of(NAMES.replace("name: build", "name: yasmin"))
+    assert files == {}
+    assert [finding.code for finding in report] == ["SM611"]
+
+
 def test_a_package() -> None:
     files, _ = files_of(WAITING, package="fetching")
     assert [*files] == [
@@ -215,7 +241,7 @@ def test_a_package() -> None:
         "setup.cfg",
         "resource/fetching",
     ]
-    assert "from fetching import wait\n" in files["fetching/wait_yasmin.py"]
+    assert "from fetching import wait as smach_program\n" in files["fetching/wait_yasmin.py"]
     assert "<exec_depend>yasmin</exec_depend>" in files["package.xml"]
     assert '"wait = fetching.wait_yasmin:start"' in files["setup.py"]
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.ir.nodes import Checked
 from smachac.targets import BuildContext, Files, Target, made_by, stem
+from smachac.targets.errors import hiding_file
 from smachac.targets.python import TARGET as PYTHON
 from smachac.targets.python.formatter import WIDTH, docstring_lines, string
 from smachac.targets.python.package import package_name
@@ -19,6 +20,9 @@ from smachac.targets.yasmin.package import package_files
 from smachac.targets.yasmin.structure import CLASSES, built, refused
 
 RUNTIME = "smachac_yasmin.py"
+
+HIDDEN = ("yasmin.py", RUNTIME)
+"""The files that the module imports by these names: no program has one of them."""
 
 
 def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
@@ -34,6 +38,10 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     if has_errors(found):
         return {}
     ((program, text),) = files.items()
+    if program in HIDDEN and not package:
+        hidden = program.removesuffix(".py")
+        report.append(hiding_file(machine.root.span, program, hidden, stem(machine)))
+        return {}
     module = module_text(machine, program.removesuffix(".py"), package)
     modules = {f"{stem(machine)}_yasmin.py": module, **files}
     return package_files(machine, package, modules, text) if package else modules
@@ -51,6 +59,7 @@ def module_text(machine: Checked, program: str, package: str = "") -> str:
     names = ", ".join(sorted({*used, "Machine", "Program", "Skill"}))
     doc = docstring_lines(machine.root.doc or f"The state machine `{machine.root.name}`.", WIDTH)
     imported = f"from {package} import {program}" if package else f"import {program}"
+    imported += " as smach_program"
     runtime = f"{package}.smachac_yasmin" if package else "smachac_yasmin"
     return f"""\
 #!/usr/bin/env python3
@@ -66,7 +75,7 @@ def build(parts):
 {body}
 
 
-program = Program({program}, {string(machine.root.name)}, build)
+program = Program(smach_program, {string(machine.root.name)}, build)
 run, start = program.run, program.start
 
 if __name__ == "__main__":
