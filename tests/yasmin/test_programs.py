@@ -303,3 +303,26 @@ def test_a_module_is_as_long_as_one_written_by_hand(tmp_path: Path) -> None:
     text = smachac.compile(script, "yasmin")["fetch_yasmin.py"]
     lines = [line for line in text.splitlines() if line.strip() and line.strip()[0] != "#"]
     assert len(lines) <= 1.3 * HAND_WRITTEN, text
+
+
+def test_a_program_without_a_function_for_its_machine_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "templates").mkdir()
+    (tmp_path / "templates" / "Own.yml").write_text("name: Own\noutcomes: {done: {}}\n", "utf-8")
+    (tmp_path / "templates" / "Own.tpl.py").write_text(
+        '{% extends "State.tpl.py" %}\n'
+        "{% block class_defs %}\n"
+        "class Own(smach.State):\n"
+        "    def __init__(self):\n"
+        "        smach.State.__init__(self, ['done'])\n"
+        "{% endblock %}\n"
+        "{% block execute %}print('before the run'){% endblock %}\n",
+        "utf-8",
+    )
+    script = tmp_path / "main.yml"
+    script.write_text(
+        "name: sm\noutcomes: [done]\nstates:\n  - A: {template: Own, transitions: {done: done}}\n",
+        "utf-8",
+    )
+    with pytest.raises(smachac.ScriptError) as raised:
+        smachac.compile(script, "yasmin")
+    assert "SM601" in {finding.code for finding in raised.value.report}

@@ -12,7 +12,7 @@ from dataclasses import replace
 from smachac.diagnostics.diagnostic import Report, has_errors, in_order
 from smachac.ir.nodes import Checked
 from smachac.targets import BuildContext, Files, Target, made_by, stem
-from smachac.targets.errors import hiding_file
+from smachac.targets.errors import hiding_file, unsupported_by_target
 from smachac.targets.python import TARGET as PYTHON
 from smachac.targets.python.formatter import WIDTH, docstring_lines, string
 from smachac.targets.python.package import package_name
@@ -38,6 +38,10 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
     if has_errors(found):
         return {}
     ((program, text),) = files.items()
+    if "\ndef build(" not in text:
+        message = "a program whose templates add code around its run has no function `build`"
+        report.append(unsupported_by_target(machine.root.span, "YASMIN", message))
+        return {}
     if program in HIDDEN and not package:
         hidden = program.removesuffix(".py")
         report.append(hiding_file(machine.root.span, program, hidden, stem(machine)))
@@ -97,5 +101,6 @@ TARGET = Target(
     lacks=(
         "states and machines without outcomes",
         "items of an Iterator whose code uses modules or names of the program",
+        "templates that add code around the run of the program, as SMACHA's do",
     ),
 )
