@@ -414,9 +414,8 @@ def disk_library(
     Scripts are searched in the folder of the calling file, then in `scripts`, then in the project's
     `scripts`; templates in `templates`, the project's `templates`, `templates/` beside the main
     script, and the built-in folders; modules and headers of the user in the project's `code`, the
-    folder of the main script and its `include/`; message definitions of ROS as `definitions`
-    describes. No file outside these folders is read. `ros` replaces the version of ROS of the
-    project. `codes`: see `read_project`.
+    folder of the main script and its `include/`; definitions of ROS as `definitions` describes. No
+    other file is read. `ros` replaces that of the project; for `codes` see `read_project`.
     """
     disk = disk or Disk()
     project = find_project(main, report, disk, codes)

@@ -397,7 +397,7 @@ def _field_that_adds(node: Node, outcome: str) -> str:
 
 
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, target: str) -> Finding:
-    """SM104 for an outcome."""
+    """SM104 for an outcome without a transition."""
     held = child.variables if isinstance(child, Leaf) else ()
     default = next((each for each in held if each.name == "default_outcome"), None)
     meant = meant_default(child) if isinstance(child, Leaf) else None
