@@ -73,13 +73,15 @@ class Target:
     the support code that the files need beside them: file name to path under smachac/runtime.
     `has_code(type, library)` is whether the target can emit states of a type.
     `declared(type, library)` is the interface that the user's class for a type declares; None if it
-    cannot be read. `is_picture`: `emit` also accepts a machine with errors, and one that was read
-    from Python.
+    cannot be read. `lacks` are the constructs, in words, that the target cannot express: `emit`
+    reports each at its place. `is_picture`: `emit` also accepts a machine with errors, and one that
+    was read from Python.
     """
 
     name: str
     description: str
     emit: Emit
+    lacks: tuple[str, ...] = ()
     is_picture: bool = False
     options: Mapping[str, str] = field(default_factory=dict)
     file_options: frozenset[str] = frozenset()
