@@ -201,15 +201,18 @@ def phases(path: str) -> dict[str, float]:
         laps("parse")
         resolved = resolve(source, tree, library, report)
         assert resolved is not None, report
+        library.release(source)
+        del tree
         laps("resolve")
-        machine = lower(resolved)
+        machine, texts = lower(resolved), resolved.sources
+        del resolved
         laps("lower")
         rules = [
             replace(rule, function=partial(timed, rule.function, laps, rule.code.code))
             for rule in RULES
         ]
         report += check_machine(machine, tuple(rules))
-        parse, texts = library.parse, resolved.sources
+        parse = library.parse
         given = [fit for text in texts for fit in suppressions_in(text, report, CODES, parse)]
         report = apply_severities(in_order(apply_suppressions(report, given)[0]), library.policy)
         laps("report")

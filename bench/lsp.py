@@ -2,6 +2,7 @@
 there, and random edits of the examples with the findings of a fresh check beside them.
 
     python bench/lsp.py             the project
+    python bench/lsp.py file        the same states in one file
     python bench/lsp.py edits 10000 random edits: faults, differences, memory
 
 Everything is CPU time of one process; the garbage collector is on, as in the server.
@@ -103,6 +104,47 @@ def time_project(rounds: int = 11) -> None:
             print(f"{kind:<20} {middle:7.1f} ms (the slowest of {rounds}: {max(taken_each):.1f})")
 
 
+def time_file(parts: int, rounds: int = 21) -> None:
+    """The time of a check after a change of one line in a file of 1,000 states."""
+    with tempfile.TemporaryDirectory() as name:
+        path = str(Path(name).resolve() / "main.yml")
+        session, text = Session([Path(name)]), one_file(parts)
+        session.change(path, text)
+        print(f"{parts:>2} containers, first check {cpu(lambda: session.check(path)):7.1f} ms")
+        taken = []
+        target = "S12" if parts else "S612"
+        at = text.index(f"{target}, aborted", len(text) // 2)
+        for number in range(rounds):
+            new = text[:at] + f"S{int(target[1:]) + 1 + number % 3}" + text[at + len(target) :]
+            session.change(path, new)
+            taken.append(cpu(lambda: session.check(path)))
+        middle = sorted(taken)[rounds // 2]
+        print(f"   after a change          {middle:7.1f} ms (the fastest: {min(taken):.1f})")
+
+
+def one_file(parts: int) -> str:
+    """A script of 1,000 states, in containers or not."""
+    text = [
+        "name: big\ntemplate: Base\noutcomes: [succeeded, aborted]\n"
+        "userdata: {goal: [[0.5, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]}\nstates:\n"
+    ]
+    size = STATES if parts else PARTS * STATES
+    rows = [
+        STATE.format(n=n, next=f"S{n + 1}" if n < size - 1 else "succeeded") for n in range(size)
+    ]
+    if not parts:
+        return "".join([*text, *(row.replace("\n    ", "\n")[4:] for row in rows)])
+    for part in range(parts):
+        after = f"PART_{part + 1}" if part < parts - 1 else "succeeded"
+        text += [
+            f"- PART_{part}:\n    template: StateMachine\n    outcomes: [succeeded, aborted]\n"
+            f"    input_keys: [goal]\n    transitions: {{succeeded: {after}, aborted: aborted}}\n"
+            "    states:\n",
+            *rows,
+        ]
+    return "".join(text)
+
+
 def ask(session: Session, path: str, text: str) -> list[tuple[str, float]]:
     """The time of each answer in a text."""
     offset = text.index("goal, joints: joints_12")
@@ -189,5 +231,8 @@ def row(item: Diagnostic) -> tuple[object, ...]:
 if __name__ == "__main__":
     if sys.argv[1:2] == ["edits"]:
         random_edits(int(sys.argv[2]) if len(sys.argv) > 2 else 10_000)
+    elif sys.argv[1:2] == ["file"]:
+        time_file(PARTS)
+        time_file(0)
     else:
         time_project()

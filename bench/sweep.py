@@ -125,7 +125,7 @@ def rates(runs: int, rounds: int, jobs: int = 2) -> None:
 
 def many(runs: int) -> None:
     machine = load(MACHINES / "slip.yml")
-    totals = Totals(successes(machine.root))
+    totals = Totals(machine, successes(machine.root))
     workers: list[LocalWorker] = []
 
     def start() -> LocalWorker:

@@ -88,7 +88,7 @@ def viewed(visits: int, turns: int, reader: str) -> tuple[float, float]:
     """With a server and, unless `reader` is empty, a process that reads, or never does."""
     feed = Feed()
     trace = LiveTrace(feed)
-    control = Control({}, trace.send)
+    control = Control(None, trace.send)
     server = ViewServer(0, str, feed)
     server.start()
     trace.start()

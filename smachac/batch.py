@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report, identity, in_order
 from smachac.diagnostics.source import Source, Word
@@ -30,18 +31,39 @@ if TYPE_CHECKING:
     from smachac.python_machines import PythonProject
 
 
+LEAST_SCRIPTS = 16
+"""With fewer scripts one process is faster: the start of others takes as long as five checks."""
+
+
+def processes_for(scripts: int) -> int:
+    """How many processes check so many scripts in the shortest time: one for each processor that
+    this process may use. It is 1 where a process cannot be copied."""
+    if scripts < LEAST_SCRIPTS or not hasattr(os, "sched_getaffinity"):
+        return 1
+    return min(len(os.sched_getaffinity(0)), scripts // (LEAST_SCRIPTS // 2))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Batch:
     """The reports of several scripts by name, in the order given.
 
     A sub-script that one of the others calls has no report of its own. `uses` holds, by the same
     names, the real paths of all files that a script was read from, and of those that were looked
-    for and not found. `analyses` has the analysis of each script.
+    for and not found. `analyses` has the analysis of each script; those of other processes have no
+    machine and no library, which `whole` makes.
     """
 
     reports: Mapping[str, Report]
     uses: Mapping[str, frozenset[str]]
     analyses: Mapping[str, Analysis] = field(default_factory=dict, compare=False, repr=False)
+    again: Callable[[str], Analysis] | None = field(default=None, compare=False, repr=False)
+
+    def whole(self, name: str) -> Analysis:
+        """The analysis of a script with its machine and its library."""
+        analysis = self.analyses[name]
+        if analysis.library is not None or analysis.source is None or self.again is None:
+            return analysis
+        return self.again(name)
 
     @cached_property
     def report(self) -> Report:
@@ -66,6 +88,81 @@ class Batch:
         )
 
 
+class _Checked(NamedTuple):
+    """The analysis of a script, and the real paths of the files that it was read from."""
+
+    analysis: Analysis
+    uses: frozenset[str]
+
+
+@dataclass(slots=True, kw_only=True)
+class _Checker:
+    """Checks scripts with the same options."""
+
+    disk: Disk
+    scripts: Sequence[Path]
+    templates: Sequence[Path]
+    extra: MachineCheck | None
+    previous: dict[str, Previous] | None
+
+    def script(self, path: Path) -> _Checked | None:
+        """A script checked by all rules; None if it is a sub-script."""
+        self.disk.searched.clear()
+        report: Report = []
+        source = self.disk.read(path, report)
+        if source is not None and isinstance(self.disk.parse(source, []), Seq):
+            return None
+        return self._checked(path, source, report, called=True)
+
+    def light(self, path: Path) -> tuple[Analysis | None, frozenset[str]]:
+        """As `script`, without what only this process can use."""
+        checked = self.script(path)
+        if checked is None:
+            return None, frozenset()
+        light = replace(checked.analysis, machine=None, checked=None, library=None)
+        return light, checked.uses
+
+    def taken(self, result: bytes | None) -> _Checked | None:
+        """The result of `light` in another process; None if there is none that holds here."""
+        if result is None:
+            return None
+        from smachac.parallel import unpacked
+
+        found = unpacked(result, self.disk)
+        return _Checked(*found) if found is not None and found[0] is not None else None
+
+    def again(self, path: str) -> Analysis:
+        """The analysis of a script that is no sub-script."""
+        checked = self.script(Path(path))
+        assert checked is not None
+        return checked.analysis
+
+    def sub_script(self, path: Path) -> _Checked:
+        """A sub-script that no script calls."""
+        self.disk.searched.clear()
+        return self._checked(path, self.disk.read(path, []), [], called=False)
+
+    def _checked(
+        self, path: Path, source: Source | None, report: Report, *, called: bool
+    ) -> _Checked:
+        if source is None:
+            return _Checked(Analysis(report=report), self.disk.searched_files())
+        library = disk_library(
+            path,
+            report,
+            scripts=self.scripts,
+            templates=self.templates,
+            disk=self.disk,
+            codes=CODES,
+        )
+        last = None if self.previous is None else self.previous.setdefault(str(path), Previous())
+        if called:
+            found = analyse(source, library, report, self.extra, render=True, previous=last)
+        else:
+            found = analyse_alone(source, library, report, last)
+        return _Checked(found, self.disk.searched_files())
+
+
 def check_scripts(
     paths: Sequence[Path],
     disk: Disk,
@@ -76,57 +173,50 @@ def check_scripts(
     *,
     everything: bool = False,
     cached: bool = False,
+    processes: int = 1,
 ) -> Batch:
     """Check scripts by all rules and by `extra`: sub-scripts through their callers, or alone; and
     the machines in Python files, with `everything` by all rules. `cached`: what is known of Python
     files from the last run is used, and kept for the next one.
 
     Templates of the user are rendered, for their findings. `previous` are the results of the last
-    analyses by path, which become those of these ones.
+    analyses by path, which become those of these ones. `processes`: how many check the scripts; the
+    results are the same.
     """
+    checker = _Checker(
+        disk=disk, scripts=scripts, templates=templates, extra=extra, previous=previous
+    )
     analyses: dict[str, Analysis] = {}
     uses: dict[str, frozenset[str]] = {}
     alone: list[Path] = []
-
-    def analyse_path(path: Path, source: Source | None, report: Report, *, called: bool) -> None:
-        if source is None:
-            analyses[str(path)] = Analysis(report=report)
-        else:
-            library = disk_library(
-                path, report, scripts=scripts, templates=templates, disk=disk, codes=CODES
-            )
-            last = None if previous is None else previous.setdefault(str(path), Previous())
-            if called:
-                analyses[str(path)] = analyse(
-                    source, library, report, extra, render=True, previous=last
-                )
-            else:
-                analyses[str(path)] = analyse_alone(source, library, report, last)
-        uses[str(path)] = disk.searched_files()
-
     python = _python_project(paths, disk, cached=cached)
+    results: Mapping[Path, bytes] = {}
     for path in paths:
-        disk.searched.clear()
-        report: Report = []
         if python is not None and path.suffix == PYTHON_SUFFIX:
+            disk.searched.clear()
             file = python.read(path, everything=everything)
             analyses[str(path)] = Analysis(
                 script=str(path), source=file.source, report=file.report, coverage=file.coverage
             )
             uses[str(path)] = disk.searched_files()
             continue
-        source = disk.read(path, report)
-        if source is not None and isinstance(disk.parse(source, []), Seq):
+        checked = checker.taken(results.get(path)) or checker.script(path)
+        if checked is None:
             alone.append(path)
-        else:
-            analyse_path(path, source, report, called=True)
+            continue
+        if processes > 1 and not analyses:  # the first script has loaded what all need
+            left = [each for each in paths if each not in (path, *alone)
+                    and (python is None or each.suffix != PYTHON_SUFFIX)]  # fmt: skip
+            from smachac.parallel import results_of
+
+            results = results_of(checker.light, left, disk, processes)
+        analyses[str(path)], uses[str(path)] = checked
     if python is not None:
         python.keep()
     called = frozenset().union(*uses.values())
     alone = [path for path in alone if os.path.realpath(path) not in called]
     for path in alone:
-        disk.searched.clear()
-        analyse_path(path, disk.read(path, []), [], called=False)
+        analyses[str(path)], uses[str(path)] = checker.sub_script(path)
     for path in alone:  # one that another sub-script calls was checked through it already
         others = (used for name, used in uses.items() if name != str(path))
         if any(os.path.realpath(path) in used for used in others):
@@ -139,6 +229,7 @@ def check_scripts(
         reports=reports,
         uses={name: uses[name] for name in names},
         analyses={name: analyses[name] for name in names},
+        again=checker.again,
     )
 
 

@@ -174,6 +174,8 @@ def _analysis(
         script = parse_and_resolve(source, library, report, kept)
         nodes = previous.nodes if previous is not None else None
         machine = lower(script, nodes) if script is not None else None
+        sources = script.sources if script is not None else (source,)
+        del script  # its states take as much memory as the rules need
         context = _context(machine, library, previous)
         if machine is not None and context is not None:
             report.extend(check_machine(machine, context=context))
@@ -181,7 +183,6 @@ def _analysis(
             report.extend(version_faults(machine, library) if render else ())
             if render and not has_errors(without_class_errors(report)):
                 report.extend(template_faults(machine, library))
-        sources = script.sources if script is not None else (source,)
         complete = machine is not None
         rest, given, unused = suppress(
             report, source, sources, CODES, library.parse, complete=complete
@@ -234,8 +235,9 @@ def parse_and_resolve(
     if source.name.endswith(PYTHON_SUFFIX):
         refuse_python(source, report)
         return None
-    tree = library.parse(source, report)
-    return resolve(source, tree, library, report, kept)
+    script = resolve(source, library.parse(source, report), library, report, kept)
+    library.release(source)
+    return script
 
 
 def read_machine(source: Source, library: Library, report: Report) -> Machine | None:

@@ -16,20 +16,22 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.driver import CODES, Analysis
 from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors import python_machines as errors
+from smachac.frontend.errors.suppressions import vain_description
 from smachac.frontend.files import Disk, disk_library, lies_inside
-from smachac.frontend.text.suppressions import suppress
+from smachac.frontend.text.suppressions import MARK, suppress
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
 from smachac.pysource.coverage import Coverage, coverage_of, unknown_states
 from smachac.pysource.machines.class_facts import ClassReader
+from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.graph import Graph, graphs
 from smachac.pysource.machines.project import Repository, module_text
 from smachac.pysource.machines.roots import Roots, machines_of, variants_of
 from smachac.pysource.machines.values import UseFault
 from smachac.pysource.python2 import INSTALL, is_installed, looks_like_python2
-from smachac.pysource.source import syntax_error
+from smachac.pysource.source import LONGEST, is_readable, syntax_error
 from smachac.python_cache import Cache, Known, digest_of
 from smachac.records import dataclass
 
@@ -42,6 +44,8 @@ Only errors of these are, because a warning can be about a path that is impossib
 branches (SM405) is none of them: both can use parts of one value, as entries of a dictionary."""
 
 _RULES = frozenset(rule.code.code for rule in RULES)
+
+_DEFAULT_RULES = tuple(rule for rule in RULES if rule.code.code in CANNOT_WORK)
 
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
@@ -74,7 +78,7 @@ class PythonProject:
         self.disk = disk
         self.cached = cached
         self.caches: dict[str, Cache] = {}
-        self.repositories: dict[str, tuple[Repository, Evaluator, ClassReader]] = {}
+        self.repositories: dict[tuple[str, bool], tuple[Repository, Evaluator, ClassReader]] = {}
 
     def read(self, path: Path, *, everything: bool = False) -> PythonFile:
         """The machines of a file with the findings about them; with `everything`, those of all
@@ -96,7 +100,9 @@ class PythonProject:
                 path=path, source=source, report=[*report, *known.report], coverage=known.coverage
             )
         read_before = [*report]
-        repository, evaluator, reader = self._repository(path)
+        whole_rules = everything or MARK in source.text  # a comment can be about any finding
+        rules = RULES if whole_rules else _DEFAULT_RULES
+        repository, evaluator, reader = self._repository(path, whole_rules)
         del evaluator.faults[:]
 
         def made(roots: Roots) -> list[Graph]:
@@ -105,22 +111,23 @@ class PythonProject:
         with deep_recursion():
             several = machines_of(repository, evaluator, str(path), made)
             whole = [graph for some in several for graph in some]
-            findings = [item for graph in whole for item in check_machine(graph.machine)]
+            findings = [item for graph in whole for item in check_machine(graph.machine, rules)]
             findings = _in_file(findings, str(path))
             variants: list[Graph] = []
             if any(item.code in IN_ALL and (everything or _cannot_work(item)) for item in findings):
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                more = (item for graph in variants for item in check_machine(graph.machine))
+                more = (item for graph in variants for item in check_machine(graph.machine, rules))
                 own = _in_file([*more], str(path))
                 findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
-        report += _of_uses(evaluator.faults, whole)
+        report += _of_uses([*evaluator.faults, *repository.faults_of(str(path))])
+        report += map(vain_description, reader.comments.unused(source))
         if evaluator.exhausted and not whole:
             report.append(_too_long(source))
         self.disk.searched.update(repository.files_of(str(path)))
         rest, _, _ = suppress([*map(_of_python, report)], source, (source,), CODES)
-        if not everything:  # afterwards, as a comment can be about any finding
+        if not everything:
             rest = [item for item in rest if _cannot_work(item)]
         found = grouped(apply_severities(in_order(rest), library.policy))
         coverage = coverage_of(whole)
@@ -144,13 +151,16 @@ class PythonProject:
             self.caches[name] = Cache(f"{name} {Path.cwd()}", digest_of(texts))
         return self.caches[name]
 
-    def _repository(self, path: Path) -> tuple[Repository, Evaluator, ClassReader]:
+    def _repository(
+        self, path: Path, everything: bool
+    ) -> tuple[Repository, Evaluator, ClassReader]:
         root = repository_of(path)
-        key = os.path.realpath(root)
+        key = os.path.realpath(root), everything
         if key not in self.repositories:
             repository = Repository(map(str, python_files(root)), self._text)
             evaluator = Evaluator(repository)
-            self.repositories[key] = repository, evaluator, ClassReader(repository)
+            reader = ClassReader(repository, whole=everything)
+            self.repositories[key] = repository, evaluator, reader
         return self.repositories[key]
 
     def _text(self, file: str) -> Source | None:
@@ -221,8 +231,13 @@ def _unreadable(source: Source) -> Diagnostic:
     word = syntax_error(source)
     if word is None:
         span = Span(source, 0, 0)
-        help = "split the file, or end its lines with a line feed"
-        return errors.unreadable_module(span, "this file is too long or too deeply nested", help)
+        message, help = "the code in this file is nested too deeply", "split the expressions"
+        if len(source.text) > LONGEST:
+            message, help = f"this file has more than {LONGEST:,} characters", "split the file"
+        elif not is_readable(source.text):
+            message = "lines of this file end with a carriage return alone"
+            help = "end its lines with a line feed"
+        return errors.unreadable_module(span, message, help)
     message = f"this is not valid Python 3: {word.text.partition('. Maybe you meant')[0]}"
     help = "correct the code at the mark"
     return errors.unreadable_module(word.span, message, help)
@@ -266,7 +281,7 @@ def _true_of_all(findings: Report, machines: Sequence[Machine]) -> Iterator[Diag
             yield item
 
 
-def _of_uses(faults: Sequence[UseFault], found: Sequence[Graph]) -> Iterator[Diagnostic]:
+def _of_uses(faults: Sequence[UseFault]) -> Iterator[Diagnostic]:
     """The findings about wrong uses of SMACH; the names that a module lacks are one for each file
     that uses them."""
     members: dict[tuple[Source, str], list[Word]] = {}
@@ -290,6 +305,7 @@ def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:
     """Each machine of a file with its findings, by the names of the machines; later ones of a name
     have a number. `checked` is empty: no program can be generated."""
     named: dict[str, Analysis] = {}
+    places = [node.span for graph in file.graphs for _, node in walk(graph.machine.root)]
     for graph in file.graphs:
         own = graph.machine.root.name
         name, number = own, 2
@@ -297,7 +313,7 @@ def analyses_by_name(file: PythonFile) -> Mapping[str, Analysis]:
             name, number = f"{own}_{number}", number + 1
         named[name] = Analysis(
             script=str(file.path), source=file.source, machine=_drawn(graph, name),
-            report=_renamed(_of_machine(file.report, graph.machine), own, name),
+            report=_renamed(_of_machine(file.report, graph.machine, places), own, name),
         )  # fmt: skip
     return named
 
@@ -315,11 +331,20 @@ def _drawn(graph: Graph, name: str) -> Machine:
     return replace(machine, base="", digest=digest.hexdigest(), unknown=unknown)
 
 
-def _of_machine(report: Report, machine: Machine) -> Report:
-    """The findings of a file that are about one of its machines, or about none."""
+def _of_machine(report: Report, machine: Machine, places: Sequence[Span]) -> Report:
+    """The findings of a file that are about one of its machines. One about no state belongs to the
+    machines with a call around it, or to all. `places` are the calls of all machines."""
     with deep_recursion():
         own = {(item.code, item.span) for item in check_machine(machine)}
-    return [item for item in report if item.finding.node is None or (item.code, item.span) in own]
+    calls = [node.span for _, node in walk(machine.root)]
+
+    def is_own(item: Diagnostic) -> bool:
+        if item.finding.node is not None:
+            return (item.code, item.span) in own
+        inside = [place for place in calls if contains(place, item.span)]
+        return bool(inside) or not any(contains(place, item.span) for place in places)
+
+    return [item for item in report if is_own(item)]
 
 
 def _renamed(report: Report, old: str, new: str) -> Report:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar, cast
 
 from smachac.analysis.accesses import Accesses, accesses
 from smachac.analysis.code_slots import CodeSlot, code_slots
-from smachac.analysis.control_flow import Linear, correction, endless_states
+from smachac.analysis.control_flow import Linear, absorbed, endless_states
 from smachac.analysis.definite_assignment import DataFlow, data_flow
-from smachac.analysis.error_recovery import corrected_machine, with_meant_keys
+from smachac.analysis.error_recovery import absorbed_keys, absorbed_machine
 from smachac.analysis.expression_errors import Fault
 from smachac.analysis.expression_sites import ExpressionSite, expression_sites
 from smachac.analysis.failure_paths import Failure, failures
@@ -29,8 +29,10 @@ from smachac.analysis.type_lattice import MisfitKind
 from smachac.analysis.unset_reads import Cause, Missing, missing_keys
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes, script_paths, traversal
+from smachac.ir import written as written_states
 from smachac.ir.class_facts import ClassFacts
 from smachac.ir.nodes import Container, Leaf, Machine, Node, StateMachine, StateType
+from smachac.ir.script_paths import PlainPaths
 from smachac.ir.secret_keys import SecretKeys, secret_keys
 from smachac.pysource.user_code import CodeFacts, ProjectCode
 
@@ -63,7 +65,7 @@ class Context:
         user around the machine; without it, the rules about that code find nothing."""
         self.machine = machine
         self.project = project
-        self._scopes = previous.corrected_flow.scopes if previous is not None else {}
+        self._scopes = previous.absorbed_flow.scopes if previous is not None else {}
         self._known = previous._facts if previous is not None else {}
         self._facts: Facts = {}
         self._found_before = previous._found if previous is not None else {}
@@ -163,18 +165,17 @@ class Context:
         )
 
     @cached_property
-    def corrected(self) -> tuple[Linear, ...]:
-        """The containers of `linear`, with misspelt names corrected."""
+    def absorbed(self) -> tuple[Linear, ...]:
+        """The containers of `linear`, with unknown names absorbed."""
         return tuple(
-            self.of_container(correction, path, container).container
-            for path, container in self.linear
+            self.of_container(absorbed, path, container) for path, container in self.linear
         )
 
     @cached_property
     def misnamed(self) -> tuple[tuple[str, Linear], ...]:
         """The containers of `linear` with a transition for an unknown outcome, or to an unknown
         target."""
-        pairs = zip(self.linear, self.corrected, strict=True)
+        pairs = zip(self.linear, self.absorbed, strict=True)
         return tuple(each for each, whole in pairs if whole is not each[1])
 
     @cached_property
@@ -188,7 +189,12 @@ class Context:
         return script_paths.script_paths(self.machine.root)
 
     @cached_property
-    def plain_paths(self) -> dict[str, str]:
+    def written(self) -> written_states.Written:
+        """The states as they were written."""
+        return written_states.written(self.machine)
+
+    @cached_property
+    def plain_paths(self) -> PlainPaths:
         """The paths of the script without roles, by full path; only those that differ."""
         return script_paths.plain_paths(self.machine.root)
 
@@ -237,24 +243,24 @@ class Context:
         return data_flow(self.machine, self._scopes, self._filled_loops)
 
     @cached_property
-    def corrected_flow(self) -> DataFlow:
-        """The data flow of the machine with misspelt names corrected."""
-        machine = corrected_machine(self.machine, self.containers, self._corrected_container)
+    def absorbed_flow(self) -> DataFlow:
+        """The data flow of the machine with unknown names absorbed."""
+        machine = absorbed_machine(self.machine, self.containers, self._absorbed_container)
         return (
             self.flow
             if machine is self.machine
             else data_flow(machine, self._scopes, self._filled_loops)
         )
 
-    def _corrected_container(self, path: str, container: Container) -> Container:
-        whole = self.of_container(with_meant_keys, path, container)
+    def _absorbed_container(self, path: str, container: Container) -> Container:
+        whole = self.of_container(absorbed_keys, path, container)
         if isinstance(whole, StateMachine | nodes.Sequence):
-            return self.of_container(correction, path, whole).container
+            return self.of_container(absorbed, path, whole)
         return whole
 
     @cached_property
     def _missing_keys(self) -> tuple[Missing, ...]:
-        return missing_keys(self.corrected_flow)
+        return missing_keys(self.absorbed_flow)
 
     def missing_keys(self, *causes: Cause) -> list[Missing]:
         """The keys that are missing for one of these causes, in the order of the script."""
@@ -263,7 +269,7 @@ class Context:
     @cached_property
     def lost_outputs(self) -> tuple[Lost, ...]:
         """The keys that are written in a container, needed outside, and not handed out."""
-        return lost_outputs(self.corrected_flow, self.missing_keys("lost"), self.of_container)
+        return lost_outputs(self.absorbed_flow, self.missing_keys("lost"), self.of_container)
 
     @cached_property
     def accesses(self) -> dict[str, Accesses]:

@@ -12,7 +12,7 @@ from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex
 from smachac.ir.nodes import Concurrence, Leaf, Node
-from smachac.ir.script_paths import steps_in_script
+from smachac.ir.script_paths import NO_SUGAR, PlainPaths, steps_in_script
 from smachac.ir.traversal import outcome_names
 
 KeyState = Literal["unset", "reported", "set"]
@@ -202,7 +202,7 @@ def _status(states: set[KeyState]) -> Status:
 
 
 def path_without(
-    flow: DataFlow, path: str, key: str, plain: Mapping[str, str] = {}
+    flow: DataFlow, path: str, key: str, plain: PlainPaths = NO_SUGAR
 ) -> tuple[str, ...]:
     """A shortest path to a state on which a key of its container is unset; empty if there is none.
 

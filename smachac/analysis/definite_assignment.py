@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, cast
 
 from smachac.analysis.accesses import (
     ANYTHING,
@@ -33,6 +33,7 @@ from smachac.analysis.fixpoint import (
     may_be_unset,
 )
 from smachac.analysis.uses import KeyUses, items_read
+from smachac.diagnostics.source import new_tuple
 from smachac.ir import nodes
 from smachac.ir.graph import START, Vertex, edges, exit_vertex, stopped_endings, transitions
 from smachac.ir.nodes import (
@@ -116,12 +117,14 @@ def data_flow(
     change: those of containers that have not changed, nor any inside, hold for this machine.
     `filled` are the paths of the iterators that surely have items (filled_lists.py)."""
     found: dict[str, UserdataScope] = {}
+    shared: dict[object, object] = {}
     every = list(containers(machine.root))
     for path, container in reversed(every):
         scope = known.get(path)
         same = scope is not None and scope.filled is (path in filled)
         if scope is None or not same or not _is_unchanged(scope, container, found, known):
-            scope = _scope(path, container, found, machine.root, filled=path in filled)
+            filled_here = path in filled
+            scope = _scope(path, container, found, machine.root, shared, filled=filled_here)
         found[path] = scope
     entered = {machine.root.name}
     repeated: set[str] = set()
@@ -158,11 +161,17 @@ def _scope(
     container: Container,
     inner: Mapping[str, UserdataScope],
     root: Container,
+    shared: dict[object, object],
     *,
     filled: bool,
 ) -> UserdataScope:
     """The scope of a container; `inner` are those of the containers inside. `filled`: it is an
-    iterator that surely has items."""
+    iterator that surely has items. `shared` are the sets of keys in other scopes: a machine has few
+    different ones."""
+
+    def share(value: T) -> T:
+        return cast(T, shared.setdefault(value, value))
+
     names = remapping(container)
     inputs = {key.name: names[key.name] for key in container.inputs}
     held = {preset.key for preset in container.userdata}
@@ -183,7 +192,7 @@ def _scope(
     for child in reversed(children.values()):
         if child.inputs or raw:
             reads[child.name] = _reads(child, scopes.get(child.name), raw)
-    steps = _steps(container, children, scopes, filled=filled)
+    steps = _steps(container, children, scopes, share, filled=filled)
     order = flow_order(steps)
     reads = {vertex: keys for vertex, keys in reads.items() if keys}
     queried: dict[Vertex, list[str]] = {
@@ -202,18 +211,18 @@ def _scope(
         path=path,
         container=container,
         children=children,
-        held=frozenset(held),
+        held=share(frozenset(held)),
         inputs=inputs,
-        optional=optional,
+        optional=share(optional),
         outputs=outputs,
         reads=reads,
         steps=steps,
         vertices=order.keys(),
         unset=unset,
-        needed=frozenset(needed),
+        needed=share(frozenset(needed)),
         endings=_with_caught(container, _endings(outputs, at_end, found, steps, order)),
-        inner=frozenset(scopes),
-        again=looping(steps, order).intersection(scopes) if scopes else frozenset(),
+        inner=share(frozenset(scopes)),
+        again=looping(steps, order).intersection(scopes) if scopes else NONE,
         uses=KeyUses(path=path, container=container),
         filled=filled,
     )
@@ -296,6 +305,7 @@ def _steps(
     container: Container,
     children: Mapping[str, Node],
     scopes: Mapping[str, UserdataScope | None],
+    share: Callable[[Writes], Writes],
     *,
     filled: bool,
 ) -> KeySteps:
@@ -305,7 +315,8 @@ def _steps(
     raw = isinstance(container, nodes.Iterator)
 
     def writes(name: str, outcome: str) -> Writes | None:
-        return child_writes(children[name], scopes.get(name), outcome, raw=raw)
+        given = child_writes(children[name], scopes.get(name), outcome, raw=raw)
+        return given if given is None or given is NOTHING else share(given)
 
     found: defaultdict[Vertex, list[KeyStep]] = defaultdict(list)
     match container:
@@ -324,10 +335,12 @@ def _steps(
             }
             if container.initial in children:
                 found[START].append(KeyStep(container.initial, "", NOTHING))
-            for source, leads, step in transitions(container):
-                given = writes(source, step.outcome) if source in writers else NOTHING
-                if given is not None:
-                    found[source].append(KeyStep(leads, step.outcome, given))
+            for child, leads in transitions(container):
+                name = child.name
+                for target, step in leads:
+                    given = writes(name, step.outcome) if name in writers else NOTHING
+                    if given is not None:
+                        found[name].append(new_tuple(KeyStep, (target, step.outcome, given)))
     return {vertex: tuple(steps) for vertex, steps in found.items()}
 
 

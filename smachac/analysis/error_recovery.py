@@ -1,56 +1,50 @@
-"""Error recovery: misspelt names are corrected, so that one fault gives one finding."""
+"""Error recovery for userdata: unknown keys are absorbed, so that one fault gives one finding."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from collections.abc import Sequence as PathSequence
+from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from operator import is_
-from typing import NamedTuple, cast
+from typing import cast
 
 from smachac.analysis.accesses import scripted_steps, userdata_fields
 from smachac.analysis.control_flow import is_open
-from smachac.diagnostics.spelling import guesser
+from smachac.diagnostics.source import NOWHERE
 from smachac.ir import nodes
-from smachac.ir.leaf import functions, variable_of
-from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, StateMachine
+from smachac.ir.leaf import functions
+from smachac.ir.nodes import (
+    Container,
+    Key,
+    Leaf,
+    Machine,
+    Node,
+    Preset,
+    Remap,
+    StateMachine,
+    Value,
+)
 from smachac.ir.traversal import outcome_names, outer_inputs, outer_outputs
 from smachac.ir.types import ANY, Type
 
 
-class UnknownRemap(NamedTuple):
-    """A remap of an unknown key, the nearest known key, and that key again if it is certain."""
-
-    remap: Remap
-    meant: str | None
-    certain: str | None
-
-
-MOST_STATES = 200
-"""In a container of more states, no key is meant because no other one is left: each search looks at
-all states."""
-
-
-def unknown_remaps(node: Node, around: Container | None = None) -> list[UnknownRemap]:
-    """The remaps of keys that a state does not have. With the container `around` it, one that is
-    like none of its keys means the only key of the state that can be meant."""
-    if is_open(node) or not node.remaps:
+def unknown_remaps(node: Node) -> list[Remap]:
+    """The remaps of keys that a state does not have. Those of keys that only code of the script
+    uses are reported as such (SM308, SM310)."""
+    if not node.remaps or is_open(node):
         return []
     own = {key.name for key in (*node.inputs, *node.outputs)}
     own.update(lacking_inputs(node))
     wrong = [remap for remap in node.remaps if remap.key not in own]
-    if wrong and isinstance(node, Leaf):  # SM308 and SM310 report keys that only the code uses
-        used = {*undeclared_writes(node), *(key for key, _ in undeclared_reads(node))}
-        wrong = [remap for remap in wrong if remap.key not in used]
-    if not wrong:
-        return []
-    taken = {remap.key for remap in node.remaps}
-    guess = guesser(sorted(own - taken))
-    found = [UnknownRemap(each, guess(each.key), guess.sure(each.key)) for each in wrong]
-    is_alone = len(found) == 1 and found[0].meant is None
-    if is_alone and around is not None and len(around.children) <= MOST_STATES:
-        return [found[0]._replace(meant=_lone_key(node, found[0].remap, around))]
-    return found
+    if wrong and isinstance(node, Leaf):
+        own |= {*undeclared_writes(node), *(key for key, _ in undeclared_reads(node))}
+    return [remap for remap in wrong if remap.key not in own]
+
+
+def is_around_open(node: Node) -> bool:
+    """Whether a container was made for the sugar of a state whose keys are not known."""
+    return not isinstance(node, Leaf) and bool(node.sugar) and any(map(is_open, node.children))
 
 
 def lacking_inputs(node: Node) -> tuple[str, ...]:
@@ -70,33 +64,6 @@ def lacking_inputs(node: Node) -> tuple[str, ...]:
         read.update(outer_inputs(child))
         set_.update(outer_outputs(child))
     return tuple(key for key in wrong if key in read - set_)
-
-
-def _lone_key(node: Node, remap: Remap, around: Container) -> str | None:
-    """The key of a state that an unknown name in a remapping is meant for: its only input that
-    nothing in the container sets, if the container has the key that it is remapped to; its only
-    output that nothing reads, if another state reads that key and nothing sets it."""
-    taken = {each.key for each in node.remaps}
-    set_ = {preset.key for preset in around.userdata} | {key.name for key in around.inputs}
-    if isinstance(around, nodes.Iterator):
-        set_.add(around.item_key)
-    read = {key.name for key in around.outputs}
-    for child in around.children:
-        if is_open(child):
-            return None
-        set_.update(outer_outputs(child))
-        if child is not node:
-            read.update(outer_inputs(child))
-    if remap.to in {key.name for key in (*node.inputs, *node.outputs)}:
-        return None  # the entry is turned round
-    if remap.to in set_:
-        keys = [key.name for key in node.inputs if key.name not in set_]
-    elif remap.to in read:
-        keys = [key.name for key in node.outputs if key.name not in read]
-    else:
-        return None
-    left = [key for key in dict.fromkeys(keys) if key not in taken]
-    return left[0] if len(left) == 1 else None
 
 
 def undeclared_writes(leaf: Leaf) -> tuple[str, ...]:
@@ -130,15 +97,18 @@ def undeclared_reads(leaf: Leaf) -> Iterator[tuple[str, nodes.Expression]]:
 
 
 PERHAPS = Type("optional", (ANY,))
-"""The type of a key that code reads without a declaration: used but not required (SM310)."""
+"""The type of a key that can be used but is not required."""
+
+UNKNOWN = Value(data=None, span=NOWHERE)
+"""A value that is not known."""
 
 
-def corrected_machine(
+def absorbed_machine(
     machine: Machine,
     containers: PathSequence[tuple[str, Container]],
-    correct: Callable[[str, Container], Container],
+    absorb: Callable[[str, Container], Container],
 ) -> Machine:
-    """The machine with each container as `correct` returns it by its path. Iterative, so that
+    """The machine with each container as `absorb` returns it by its path. Iterative, so that
     nesting can be deep."""
     # In reversed preorder the containers inside one have just been built, its first child last.
     built: list[Container] = []
@@ -149,18 +119,19 @@ def corrected_machine(
         whole = container
         if not all(map(is_, children, container.children)):
             whole = replace(container, children=children)
-        built.append(correct(path, whole))
+        built.append(absorb(path, whole))
     root = cast(StateMachine, built.pop())
     return machine if root is machine.root else replace(machine, root=root)
 
 
-def with_meant_keys(container: Container) -> Container:
-    """A container with misspelt remaps of its states corrected, and with the keys declared that
-    code of the script reads and writes in them."""
+def absorbed_keys(container: Container) -> Container:
+    """A container in which nothing follows from an unknown key: its states have the keys of their
+    remappings and of the code of the script, and need no input that such an entry can be meant
+    for."""
     raw = isinstance(container, nodes.Iterator)
     children = tuple(
         [
-            _meant(child, container, raw=raw and isinstance(child, Leaf))
+            _absorbed(child, raw=raw and isinstance(child, Leaf))
             if child.remaps or (isinstance(child, Leaf) and child.variables)
             else child
             for child in container.children
@@ -171,51 +142,33 @@ def with_meant_keys(container: Container) -> Container:
     return replace(container, children=children)
 
 
-def _with_meant_writes(leaf: Leaf, wrong: tuple[str, ...]) -> Leaf:
-    """A leaf with the misspelt keys of its callbacks corrected, where it has such an output that no
-    callback sets."""
-    held = variable_of(leaf, "callbacks")
-    if held is None or not isinstance(held.value.data, nodes.Struct):
-        return leaf
-    entries = held.value.data.entries
-    set_ = {key for key, _ in entries}
-    guess = guesser([key.name for key in leaf.outputs if key.name not in set_])
-    meant = {key: near for key in wrong if (near := guess(key)) is not None}
-    if not meant:
-        return leaf
-    data = nodes.Struct(entries=tuple((meant.get(key, key), code) for key, code in entries))
-    renamed = replace(held, value=replace(held.value, data=data))
-    variables = tuple(renamed if each is held else each for each in leaf.variables)
-    return replace(leaf, variables=variables)
-
-
-def _meant(node: Node, around: Container, *, raw: bool) -> Node:
-    """A state in a container with its remaps corrected and its keys declared. `raw`: it sees the
-    keys of its container without remapping, as the child of an iterator does."""
-    remaps = unknown_remaps(node, around) if node.remaps else []
-    lacking = lacking_inputs(node)
-    if lacking:
-        more = (Key(name=key, span=node.span) for key in lacking)
-        node = replace(node, inputs=(*node.inputs, *more))
-    if remaps:
-        own = {key.name for key in (*node.inputs, *node.outputs)}
-        wrong = {
-            each.remap: replace(each.remap, key=each.remap.to, to=each.remap.key)
-            if each.remap.to in own and each.certain is None
-            else replace(each.remap, key=each.meant or each.remap.key)
-            for each in remaps
-        }
-        kept = (wrong.get(each, each) for each in node.remaps)
-        node = replace(node, remaps=tuple(kept))
+def _absorbed(node: Node, *, raw: bool) -> Node:
+    """A state with the keys that it lacks. `raw`: it sees the keys of its container without
+    remapping, as the child of an iterator does."""
+    inputs = [Key(name=key, span=node.span) for key in lacking_inputs(node)]
+    outputs: list[Key] = []
+    unknown = unknown_remaps(node)
+    for remap in unknown:
+        inputs.append(Key(name=remap.key, span=remap.span, type=PERHAPS))
+        outputs.append(Key(name=remap.key, span=remap.span))
     if isinstance(node, Leaf) and not raw and not node.open:
-        reads = tuple(
-            Key(name=key, span=code.span, type=PERHAPS) for key, code in undeclared_reads(node)
-        )
-        dropped = undeclared_writes(node)
-        if dropped:
-            node = _with_meant_writes(node, dropped)
-            dropped = undeclared_writes(node)
-        writes = tuple(Key(name=key, span=node.span) for key in dropped)
-        if reads or writes:
-            node = replace(node, inputs=(*node.inputs, *reads), outputs=(*node.outputs, *writes))
-    return node
+        reads = undeclared_reads(node)
+        inputs += (Key(name=key, span=code.span, type=PERHAPS) for key, code in reads)
+        outputs += (Key(name=key, span=node.span) for key in undeclared_writes(node))
+    if unknown:
+        node = _without_needs(node, {remap.key for remap in node.remaps})
+    if not inputs and not outputs:
+        return node
+    return replace(node, inputs=(*node.inputs, *inputs), outputs=(*node.outputs, *outputs))
+
+
+def _without_needs(node: Node, remapped: AbstractSet[str]) -> Node:
+    """A state that needs no input but those that are remapped."""
+    inputs = tuple(
+        key if key.name in remapped else replace(key, type=PERHAPS) for key in node.inputs
+    )
+    if isinstance(node, Leaf):
+        return replace(node, inputs=inputs)
+    free = (key for key in node.inputs if key.name not in remapped)
+    presets = (Preset(key=key.name, value=UNKNOWN, span=key.span) for key in free)
+    return replace(node, inputs=inputs, userdata=(*node.userdata, *presets))

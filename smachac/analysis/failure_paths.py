@@ -13,7 +13,7 @@ from smachac.ir import nodes
 from smachac.ir.graph import Event, is_unread
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED, fails, successes
-from smachac.ir.script_paths import steps_in_script
+from smachac.ir.script_paths import PlainPaths, steps_in_script
 from smachac.ir.traversal import outcome_names
 from smachac.records import dataclass, field
 
@@ -59,7 +59,7 @@ def starts_failure(node: Node, outcome: str) -> bool:
 
 
 def failures(
-    states: Iterable[tuple[str, Node]], routes: Routes, plain: Mapping[str, str]
+    states: Iterable[tuple[str, Node]], routes: Routes, plain: PlainPaths
 ) -> Iterator[Failure]:
     """Every failure that can begin, in the order of the script; one for each way that it takes.
     `plain` are the plain paths.
@@ -84,7 +84,7 @@ def _failures(
     path: str,
     node: Node,
     name: str,
-    plain: Mapping[str, str],
+    plain: PlainPaths,
 ) -> Iterator[Failure]:
     root = routes.root
     order = outcome_names(root)
@@ -133,7 +133,7 @@ def _after_success(routes: Routes, path: str, node: Node) -> set[tuple[str, str]
     return {(arrival.target, _final(arrival)) for arrival in arrivals}
 
 
-def _way(path: str, outcome: str, arrival: Arrival, plain: Mapping[str, str]) -> tuple[str, ...]:
+def _way(path: str, outcome: str, arrival: Arrival, plain: PlainPaths) -> tuple[str, ...]:
     """The states that a failure passes, in brackets how they end; last where it leads, which may
     be an outcome of the machine."""
     ends = [(path, outcome), *(arrival.through if arrival.target else arrival.through[:-1])]

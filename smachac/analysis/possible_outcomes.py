@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 from smachac.analysis.control_flow import (
     Linear,
+    absorbed,
     children_names,
-    corrected,
     is_open,
+    unknown_outcomes,
 )
 from smachac.analysis.outcome_rules import (
     OTHER,
@@ -100,18 +101,16 @@ def _declared(node: Node, results: Iterable[str]) -> tuple[str, ...]:
 
 def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
     """The exits that can be reached from the initial state."""
-    whole = corrected(container)
+    whole = absorbed(container)
     names = children_names(whole)
     exits = frozenset(outcome_names(whole))
     ends: dict[str, tuple[str, ...]] = {}
     states: dict[str, Node] = {}
-    for child in whole.children[len(container.children) :]:  # missing states
-        states[child.name], ends[child.name] = child, ()
-    for old, child in zip(container.children, whole.children, strict=False):
+    for child in whole.children:
         states[child.name] = child
-        # The corrected leaf has more information than the misspelt one.
-        is_known = old.outcomes or is_open(old)
-        ends[child.name] = known[f"{path}/{old.name}"] if is_known else outcome_names(child)
+        ends[child.name] = known.get(f"{path}/{child.name}", ())
+    for child in container.children:
+        ends[child.name] += tuple(step.outcome for step in unknown_outcomes(child))
     todo = [whole.initial] if whole.initial in names else list(states)
     seen, found = set(todo), set[str]()
     while todo:
@@ -129,7 +128,7 @@ def _linear(path: str, container: Linear, known: OutcomesByPath) -> set[str]:
                 found |= exits
         if is_open(child):
             found |= exits - handled
-        if is_unread(child):
+        if is_unread(child) and len(seen) < len(states):
             more += states
         todo += (name for name in dict.fromkeys(more) if name not in seen)
         seen.update(more)

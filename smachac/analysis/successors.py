@@ -17,7 +17,7 @@ from smachac.analysis.possible_outcomes import Endings
 from smachac.diagnostics.diagnostic import PathStep, ended, entered
 from smachac.ir.graph import START, Edge, Event, edges, exit_vertex, machine_graph
 from smachac.ir.nodes import Concurrence, Container, Node
-from smachac.ir.script_paths import steps_in_script
+from smachac.ir.script_paths import NO_SUGAR, PlainPaths, steps_in_script
 from smachac.ir.traversal import outcome_names
 
 
@@ -127,20 +127,28 @@ def _results(
 
 
 def path_to(
-    before: Mapping[Event, Event | None], last: Event, plain: Mapping[str, str] = {}
+    before: Mapping[Event, Event | None], last: Event, plain: PlainPaths = NO_SUGAR
 ) -> tuple[str, ...]:
     """A shortest path to an event: the states that are entered, by their names in the script, and
     in brackets the outcomes between them. Where containers end together with a leaf, the outcome is
-    that of the leaf. `plain` are the plain paths."""
+    that of the leaf, with its time limit and tries. `plain` are the plain paths."""
     events: list[Event] = []
     here: Event | None = last
     while here is not None:
         events.append(here)
         here = before[here]
     found: list[PathStep] = []
+    ending = ""  # the plain path of the state whose outcome is the last step
     for path, outcome in events[-2::-1]:
+        if path in plain.added:
+            continue
         if not outcome:
             found.append(entered(path.rpartition("/")[2], path))
+            continue
+        state = plain.get(path, path)
+        if found and found[-1].is_outcome and state == ending:
+            found[-1] = ended(outcome)
         elif found and not found[-1].is_outcome:
             found.append(ended(outcome))
+            ending = state
     return tuple(label for _, label in steps_in_script(plain, found))

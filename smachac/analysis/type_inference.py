@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Mapping, Sequence
-from functools import reduce
+from functools import cached_property, reduce
 from typing import Literal, TypeAlias
 
 from smachac.analysis.expression_errors import always_fails
@@ -52,22 +52,49 @@ MOST_ROUNDS = 20
 """The most times that one computation is typed again because its inputs have changed."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Types:
     """The types of a machine.
 
     `keys` maps the path of a container and a key of its userdata to the key's type; `inputs` and
     `outputs` do so for leaves, under their own names. `constants` are the literals that reach a
     cell with a declared type and fit it. `cells` are the keys of containers and the inputs of
-    leaves, with the flows that arrive there.
+    leaves, with the flows that arrive there. `every` are all cells, `readers` the computations that
+    read them.
     """
 
-    keys: Mapping[tuple[str, str], Type]
-    inputs: Mapping[tuple[str, str], Type]
-    outputs: Mapping[tuple[str, str], Type]
-    clashes: tuple[Clash, ...] = ()
-    constants: tuple[TypeFlow, ...] = ()
-    cells: Mapping[tuple[str, str], Cell] = field(default_factory=dict, repr=False)
+    clashes: tuple[Clash, ...]
+    constants: tuple[TypeFlow, ...]
+    every: Sequence[Cell] = field(repr=False)
+    readers: Readers = field(repr=False)
+
+    @cached_property
+    def keys(self) -> Mapping[tuple[str, str], Type]:
+        return self._by_role["scope"]
+
+    @cached_property
+    def inputs(self) -> Mapping[tuple[str, str], Type]:
+        return self._by_role["input"]
+
+    @cached_property
+    def outputs(self) -> Mapping[tuple[str, str], Type]:
+        return self._by_role["output"]
+
+    @cached_property
+    def cells(self) -> Mapping[tuple[str, str], Cell]:
+        roles = ("scope", "input")
+        return {(cell.path, cell.key): cell for cell in self.every if cell.role in roles}
+
+    @cached_property
+    def _by_role(self) -> Mapping[Role, Mapping[tuple[str, str], Type]]:
+        """The types of the cells by role, path and key: of a correct machine few are needed."""
+        found: dict[Role, dict[tuple[str, str], Type]] = {
+            role: {} for role in ("scope", "input", "output", "variable")
+        }
+        types = key_types(self.every, self.readers)
+        for cell in self.every:
+            found[cell.role].setdefault((cell.path, cell.key), types.get(cell) or cell.declared)
+        return found
 
     def names(self, path: str, leaf: Leaf) -> dict[str, Type]:
         """The types of the keys that code of a leaf reads (see `type_of_call`)."""
@@ -139,7 +166,7 @@ class _Inference:
                 self.leaf(path, node, around)
 
     def cell(self, path: str, key: str, role: Role, node: Node | None, span: Span) -> Cell:
-        made = Cell(path=path, key=key, role=role, node=node, span=span)
+        made = Cell(path, key, role, node, span)
         self.cells.append(made)
         return made
 
@@ -149,7 +176,7 @@ class _Inference:
             return
         if cell.declared == ANY:
             cell.declared, cell.span = type_, span
-        flow = TypeFlow(type=type_, how="declared", span=span, cell=cell)
+        flow = TypeFlow(type_, "declared", span, cell)
         if cell.flows:
             self.arrive(flow)
         else:
@@ -352,23 +379,11 @@ class _Inference:
     # Results
 
     def result(self) -> Types:
-        found: dict[Role, dict[tuple[str, str], Type]] = {
-            role: {} for role in ("scope", "input", "output", "variable")
-        }
-        types = key_types(self.cells, self.readers)
-        cells: dict[tuple[str, str], Cell] = {}
-        for cell in self.cells:
-            which = cell.path, cell.key
-            found[cell.role].setdefault(which, types.get(cell) or cell.declared)
-            if cell.role == "scope" or cell.role == "input":
-                cells[which] = cell
         return Types(
-            keys=found["scope"],
-            inputs=found["input"],
-            outputs=found["output"],
             clashes=tuple(self.clashes.values()),
             constants=tuple(self.constants),
-            cells=cells,
+            every=self.cells,
+            readers=self.readers,
         )
 
 
@@ -415,7 +430,7 @@ Readers: TypeAlias = "Mapping[Cell, Sequence[Computation]]"
 """The computations that read a cell."""
 
 
-def key_types(cells: list[Cell], readers: Readers) -> dict[Cell, Type]:
+def key_types(cells: Sequence[Cell], readers: Readers) -> dict[Cell, Type]:
     """The types of the cells without a declaration. Linked ones have one type."""
     groups = Groups()
     free = [cell for cell in cells if cell.declared == ANY]
@@ -482,7 +497,7 @@ class Groups:
 Role: TypeAlias = Literal["scope", "input", "output", "variable"]
 
 
-@dataclass(slots=True, eq=False, kw_only=True)
+@dataclass(slots=True, eq=False)
 class Cell:
     """A cell that holds values: a key of a container (`scope`) or of a leaf, or a variable.
 
@@ -503,7 +518,7 @@ class Cell:
     holds: Type | None = None
 
 
-@dataclass(slots=True, eq=False, kw_only=True)
+@dataclass(slots=True, eq=False)
 class TypeFlow:
     """A typed value that has arrived at a cell. Nobody changes it; it is not frozen, because a
     frozen one takes four times as long to make.
@@ -548,14 +563,7 @@ class TypeFlow:
     def moved_to(self, cell: Cell) -> TypeFlow:
         """The same value one link later."""
         return TypeFlow(
-            type=self.type,
-            how=self.how,
-            span=self.span,
-            cell=cell,
-            value=self.value,
-            before=self,
-            first=self.first or self,
-            judged=self.judged,
+            self.type, self.how, self.span, cell, self.value, self, self.first or self, self.judged
         )
 
 

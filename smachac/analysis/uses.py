@@ -156,8 +156,10 @@ def items_read(container: Container) -> tuple[str, ...]:
 def place_of(node: Node, key: Key) -> Span:
     """The place of a key of a state: in its list of keys, else its remap, else the state. A list of
     keys in Python is one of a class, which other states can have."""
-    is_own = key.span.source is node.span.source and node.span.source.language != "python"
-    if is_own and key.span.source is not NOWHERE.source:
+    source = node.span.source
+    if key.span.source is source and source.language != "python" and source is not NOWHERE.source:
         return key.span
-    remap = next((remap for remap in node.remaps if remap.key == key.name), None)
-    return remap.span if remap is not None else node.span
+    for remap in node.remaps:
+        if remap.key == key.name:
+            return remap.span
+    return node.span

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import groupby
 
@@ -29,7 +29,7 @@ from smachac.checks.userdata import (
 )
 from smachac.diagnostics.diagnostic import Diagnostic, Finding, Report, diagnostic
 from smachac.ir.nodes import Machine
-from smachac.ir.script_paths import steps_in_script
+from smachac.ir.script_paths import PlainPaths, steps_in_script
 
 MACHINE_RULES: tuple[Rule, ...] = (
     expressions.bad_expression,
@@ -153,7 +153,7 @@ def _diagnostics(context: Context, rules: Iterable[Rule]) -> Iterator[Diagnostic
             yield diagnostic(rule.code, finding, places)
 
 
-def _in_script(plain: Mapping[str, str], finding: Finding, shown: list[tuple[int, str]]) -> Finding:
+def _in_script(plain: PlainPaths, finding: Finding, shown: list[tuple[int, str]]) -> Finding:
     """A finding with the paths of the script. `shown`: the steps of its witness path."""
     path = []
     for at, label in shown:

@@ -148,9 +148,8 @@ def _check_once(
 ) -> int:
     """Check once; the exit code. The real paths of all files that were read go into `used`.
     `previous`: see `check_scripts`."""
-    from smachac.batch import check_scripts
+    from smachac.batch import check_scripts, processes_for
     from smachac.checks.robot.workspace import unreachable
-    from smachac.commands.git import changed_since
     from smachac.diagnostics.diagnostic import Severity
     from smachac.frontend.discovery import scripts_of
     from smachac.frontend.files import Disk
@@ -162,14 +161,14 @@ def _check_once(
     def check(disk: Disk, previous: dict[str, Previous] | None = None) -> Batch:
         folders = arguments.scripts, arguments.templates
         cached = not (arguments.no_cache or arguments.watch or arguments.changed_since)
+        others = sim_rule is None and previous is None and not disk.texts
         return check_scripts(
-            paths, disk, *folders, sim_rule, previous, everything=arguments.all, cached=cached
-        )
+            paths, disk, *folders, sim_rule, previous, everything=arguments.all, cached=cached,
+            processes=processes_for(len(paths)) if others else 1)  # fmt: skip
 
     whole = check(disk, previous)
     used.update(*whole.uses.values())
-    revision = arguments.changed_since
-    changed = changed_since(revision, frozenset(used)) if revision else None
+    changed = _changed(arguments.changed_since, used)
     found, notes = _select(whole, changed, arguments)
     if arguments.write_baseline:
         return _write_baseline(arguments, found.report)
@@ -214,6 +213,15 @@ def _check_once(
         }
         _put(found, failing, clusters, coverage, notes, arguments)
     return FINDINGS if any(failing.values()) or (arguments.diff and fixes) else OK
+
+
+def _changed(revision: str | None, used: set[str]) -> set[str] | None:
+    """The files that differ from a revision; None without one."""
+    if not revision:
+        return None
+    from smachac.commands.git import changed_since
+
+    return changed_since(revision, frozenset(used))
 
 
 def _select(
@@ -389,7 +397,7 @@ def _watch(arguments: Namespace) -> int:
     """Check, and check again when a file changes, until Ctrl-C."""
     from smachac.frontend.files import Disk, stamps
 
-    disk = Disk()  # files that did not change are read and parsed once
+    disk = Disk(in_pieces=True)  # files that did not change are read and parsed once
     previous: dict[str, Previous] = {}
     known: set[str] = set()
     while True:

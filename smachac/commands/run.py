@@ -345,27 +345,35 @@ def _where(errors: list[dict[str, Any]]) -> str:
 
 
 def sugar_of(machine: Machine) -> Sugar:
-    """The containers made of sugar, for the progress of a run."""
-    from smachac.ir.script_paths import added_states, script_paths, sugared_containers
-    from smachac.ir.traversal import walk
+    """The parts of states in traces, for the progress of a run."""
+    from smachac.ir.written import written
     from smachac.runtime.tracing.progress import Repeated, Sugar
 
-    found = sugared_containers(machine.root)
-    repeated = {"retry": "attempt", "for_each": "item"}
-    shown = script_paths(machine.root)
-    return Sugar(
-        states={path: each.state for path, each in found.items()},
-        repeated={
-            path: Repeated(each.child, repeated[each.role], each.limit)
-            for path, each in found.items()
-            if each.role in repeated
-        },
-        limits={path: each.limit for path, each in found.items() if each.role == "timeout"},
-        added=added_states(machine.root),
-        catching=frozenset(
-            shown.get(path, path) for path, node in walk(machine.root) if node.catches
-        ),
-    )
+    states: dict[str, str] = {}
+    repeated: dict[str, Repeated] = {}
+    limits: dict[str, str] = {}
+    added: set[str] = set()
+    catching: set[str] = set()
+    words = {"try": "attempt", "item": "item"}
+    for state in written(machine).states.values():
+        badges = {badge.field: badge for badge in state.badges}
+        around = ""
+        for part in state.parts:
+            if part.role in ("timer", "pause"):
+                added.add(part.shown)
+                continue
+            if part.role != "state":
+                states[part.shown] = state.path
+            if part.begins is not None:
+                count = badges["retry" if part.begins == "try" else "for_each"].number
+                of = "" if count is None else str(count)
+                repeated[around] = Repeated(part.shown, words[part.begins], of)
+            if part.role == "timeout":
+                limits[part.shown] = badges["timeout"].limit
+            around = part.shown
+        if state.catches:
+            catching.add(state.path)
+    return Sugar(states, repeated, limits, frozenset(added), frozenset(catching))
 
 
 def play_orders(

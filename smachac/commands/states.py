@@ -65,9 +65,8 @@ def _known_types(templates: list[Path]) -> list[Known]:
 
     from smachac.frontend.files import disk_library
     from smachac.frontend.schema import CONTAINERS
-    from smachac.frontend.types.state_types import find_state_type
     from smachac.pysource.user_code import languages
-    from smachac.report.state_types import Known, container_type
+    from smachac.report.state_types import Known, container_type, usable_types
     from smachac.targets import load_target, target_names
 
     found: Report = []
@@ -80,11 +79,7 @@ def _known_types(templates: list[Path]) -> list[Known]:
         return Known(type_, place, tuple(sorted({*able, *others})))
 
     known = []
-    for name in sorted(library.template_names()):
-        type_ = find_state_type(name, library, [])
-        mine = any(library.own_template(f"{name}{end}") for end in (".yml", ".tpl.py", ".tpl"))
-        if type_ is None or not (mine or library.template(f"{name}.yml")):
-            continue  # a template that only other templates include
-        known.append(row(type_, "of this project" if mine else "built-in"))
+    for type_, own in usable_types(library):
+        known.append(row(type_, "of this project" if own else "built-in"))
     known += [row(container_type(name), "built-in") for name in CONTAINERS.values()]
     return sorted(known, key=lambda each: (each.place == "built-in", each.type.name))

@@ -35,6 +35,7 @@ examples:
   smachac sweep main.yml --vary userdata.speed=0.1..0.5 --vary params.arm=left,right
   smachac sweep main.yml --vary scene.block.x=0.4..0.6        poses in the scene: x, y, z, yaw
   smachac sweep main.yml --expect succeeded --at-least 0.95 --junit sweep.xml    in CI
+  smachac sweep main.yml --baseline before.json               compare with an earlier sweep
   smachac run main.yml --seed 17 --set userdata.speed=0.21    repeat one run
 
 exit codes: 0 success, 1 too few runs have the outcome of --expect, or the script has errors,
@@ -84,6 +85,9 @@ def sweep_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--at-least", type=share, metavar="SHARE",
                         help="fail if fewer runs are a success, 0 to 1 (with --expect: 1)"
                         )  # fmt: skip
+    parser.add_argument("--baseline", type=as_path, metavar="FILE",
+                        help="compare with an earlier sweep, whose --format json is in FILE"
+                        )  # fmt: skip
     parser.add_argument("--format", choices=("text", "json", "html"), default="text", help=FORMAT)
     parser.add_argument("-o", "--output", type=as_path, metavar="FILE",
                         help="write the report to FILE")  # fmt: skip
@@ -117,6 +121,7 @@ def share(text: str) -> float:
 
 def sweep_command(arguments: Namespace) -> int:
     """Perform the runs that are missing, and report; the exit code."""
+    from smachac.sweep.comparison import BaselineError
     from smachac.sweep.database import Database, DatabaseError
     from smachac.sweep.engine import WorkerError
 
@@ -134,6 +139,10 @@ def sweep_command(arguments: Namespace) -> int:
             return usage(f"--{option} {path} {what}")
     if (twice := _file_with_two_uses(arguments)) is not None:
         return usage(twice)
+    try:
+        before = _baseline(arguments)
+    except BaselineError as error:
+        return usage(f"--baseline {arguments.baseline} cannot be used: {error}")
     prepared = _prepared(arguments)
     if isinstance(prepared, int):
         return prepared
@@ -144,7 +153,7 @@ def sweep_command(arguments: Namespace) -> int:
         return usage(str(error))
     try:
         signals = _perform(arguments, task, database)
-        code = _report(arguments, machine, task, database)
+        code = _report(arguments, machine, before, database)
         database.check_file()
         if signals:
             print(_interruption(arguments, database), file=sys.stderr)
@@ -170,7 +179,7 @@ def _interruption(arguments: Namespace, database: Database) -> str:
 def _file_with_two_uses(arguments: Namespace) -> str | None:
     """A message if two of the arguments name one file, which the report would overwrite."""
     uses: dict[str, str] = {}
-    for name in ("script", "faults", "mock", "database", "output", "junit"):
+    for name in ("script", "faults", "mock", "baseline", "database", "output", "junit"):
         path: Path | None = getattr(arguments, name)
         if path is None or (path.exists() and not path.is_file()):
             continue
@@ -353,13 +362,29 @@ class _Progress:
             print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
-def _report(arguments: Namespace, machine: Checked, task: Task, database: Database) -> int:
-    """Write the reports; the exit code."""
+def _baseline(arguments: Namespace) -> Summary | None:
+    """The summary of the earlier sweep, if one is given. Raises BaselineError."""
+    from smachac.sweep.comparison import BaselineError, read_baseline
+
+    path: Path | None = arguments.baseline
+    if path is None:
+        return None
+    try:
+        text = path.read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise BaselineError(getattr(error, "strerror", None) or "it is no text") from None
+    return read_baseline(text)
+
+
+def _report(
+    arguments: Namespace, machine: Checked, before: Summary | None, database: Database
+) -> int:
+    """Write the reports; the exit code. `before` is the summary of an earlier sweep."""
     from smachac.ir.outcome_names import successes
     from smachac.sweep.summary import Totals, summarize
 
     good = {arguments.expect} if arguments.expect is not None else successes(machine.root)
-    totals = Totals(good)
+    totals = Totals(machine, good)
     for run in database.runs(arguments.seed, arguments.runs):
         totals.add(run)
     command = _command(arguments)
@@ -367,7 +392,7 @@ def _report(arguments: Namespace, machine: Checked, task: Task, database: Databa
         machine, totals, planned=arguments.runs, first=arguments.seed, command=command
     )
     try:
-        _write(arguments, machine, summary, database, totals, command)
+        _write(arguments, machine, summary, before, database, totals, command)
     except OSError as error:
         name = f" {error.filename}" if error.filename else ""
         print(f"cannot write the report{name}: {error.strerror or error}", file=sys.stderr)
@@ -391,6 +416,7 @@ def _write(
     arguments: Namespace,
     machine: Checked,
     summary: Summary,
+    before: Summary | None,
     database: Database,
     totals: Totals,
     command: list[str],
@@ -398,13 +424,20 @@ def _write(
     """Write the report and JUnit. Raises OSError."""
     from smachac.commands.writing import put_all
     from smachac.report.json import json_text
+    from smachac.sweep.comparison import compare
     from smachac.sweep.page import summary_html
     from smachac.sweep.summary import replay
     from smachac.sweep.text import junit_text, summary_text
 
-    render: dict[str, Callable[[Summary], str]]
-    render = {"json": json_text, "html": summary_html, "text": summary_text}
-    text = render[arguments.format](summary)
+    differences = compare(before, summary) if before is not None and summary["runs"] else []
+    match arguments.format:
+        case "json":
+            more = {"differences": [each._asdict() for each in differences]} if before else {}
+            text = json_text({**summary, **more})
+        case "html":
+            text = summary_html(summary, _graph(machine, totals), differences)
+        case _:
+            text = summary_text(summary, differences)
     files = {}
     if arguments.output is not None:
         files[arguments.output] = text.encode()
@@ -418,6 +451,16 @@ def _write(
         put_all(files)
     if arguments.output is None:
         sys.stdout.write(text)
+
+
+def _graph(machine: Checked, totals: Totals) -> str:
+    """The page of the viewer with what the runs visited."""
+    from smachac.verify.coverage import Coverage
+    from smachac.verify.statistics_page import statistics_html
+
+    taken = Coverage(machine)
+    taken.covered = totals.covered
+    return statistics_html(machine, totals.statistics, taken)
 
 
 def _verdict(arguments: Namespace, totals: Totals) -> int:

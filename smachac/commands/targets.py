@@ -1,4 +1,4 @@
-"""The command `targets`: list the targets and their options."""
+"""The command `targets`: list the targets, their options and what they lack."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from smachac.commands.output import OK
 
 EXAMPLES = """\
 examples:
-  smachac targets                                        the targets, each with its options
+  smachac targets                                        the targets, their options, what they lack
   smachac build main.yml --target dot --option depth=1   use a target and one of its options
 
 exit codes: 0 success, 2 wrong usage, 70 a bug in smachac
@@ -30,4 +30,6 @@ def targets_command(arguments: Namespace) -> int:
         print(f"{name:<10} {target.description}")
         for option, text in target.options.items():
             print(f"{'':<10}   --option {option}=...  {text}")
+        for part in target.lacks:
+            print(f"{'':<10}   lacks {part}")
     return OK

@@ -81,8 +81,10 @@ def _files(parser: argparse.ArgumentParser, traces: str, *formats: str) -> None:
 
 def trace_command(arguments: Namespace) -> int:
     """Judge every trace, or count in them; the exit code."""
+    from smachac.ir.written import written
     from smachac.report.terminal import on_one_line
     from smachac.sweep.database import DatabaseError
+    from smachac.verify.coverage import script_coverage
     from smachac.verify.statistics_report import statistics_json, statistics_text
     from smachac.verify.trace_report import refusals, trace_json, trace_text, untaken
 
@@ -97,11 +99,12 @@ def trace_command(arguments: Namespace) -> int:
         )
     except (UnreadableTraceError, DatabaseError) as error:
         return usage(str(error))
-    never = untaken(machine, taken)
+    covered = script_coverage(taken.items, taken.covered, written(machine))
+    never = untaken(covered)
     bad = refusals(judged)
     if arguments.action == "check":
         render = trace_json if arguments.format == "json" else trace_text
-        sys.stdout.write(render(judged, never, len(taken.items)))
+        sys.stdout.write(render(judged, never, len(covered.items)))
     elif not bad:
         show = statistics_json if arguments.format == "json" else statistics_text
         sys.stdout.write(show(machine, statistics, never))

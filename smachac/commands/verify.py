@@ -44,6 +44,7 @@ EXAMPLES = """\
 examples:
   smachac verify main.yml                        compare the generated Python with the script
   smachac verify main.yml --targets python,cpp   compare the generated C++ too (needs a compiler)
+  smachac verify main.yml --targets scxml        compare the SCXML document, on SCION (needs Node)
   smachac verify main.yml --program pick.py      compare this file, edited by hand or built before
   smachac verify main.yml --header pick.hpp      compare this C++ header (needs a compiler)
   smachac verify main.yml --targets cpp --option mode=step   compare the stepped C++
@@ -55,7 +56,7 @@ exit codes: 0 success, 1 a program behaves differently, cannot be run, or the sc
 2 wrong usage, 70 a bug in smachac, 130 interrupted
 """
 
-TARGETS = ("python", "cpp")
+TARGETS = ("python", "cpp", "scxml")
 """The targets whose programs `verify` can run."""
 
 SUFFIXES = {
@@ -69,8 +70,8 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EXAMPLES
     parser.add_argument("script", type=as_path, help=SCRIPT)
     parser.add_argument("--targets", type=names, metavar="A,B,...",
-                        help="targets to compare: python, cpp (default: those of --program and"
-                        " --header, else python)")  # fmt: skip
+                        help="targets to compare: python, cpp, scxml (default: those of --program"
+                        " and --header, else python)")  # fmt: skip
     parser.add_argument("--program", type=as_path, metavar="FILE",
                         help="compare this Python file, not a newly generated one")  # fmt: skip
     parser.add_argument("--header", type=as_path, metavar="FILE",
@@ -212,10 +213,12 @@ def _generated_player(
     from smachac.driver import build
     from smachac.frontend.files import module_folders
     from smachac.targets.python import TARGET
-    from smachac.verify.players import cpp, python
+    from smachac.verify.players import cpp, python, scxml
 
     if target == "cpp":
         return cpp.player(machine, report, bounds)
+    if target == "scxml":
+        return scxml.player(machine, report, folders=[script.resolve().parent])
     files = build(machine, TARGET, library, report)
     ((file, text),) = files.items() or [("", "")]
     return python.player(file, text, machine, folders=module_folders(script))

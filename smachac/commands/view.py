@@ -38,6 +38,7 @@ EXAMPLES = """\
 examples:
   smachac view main.yml                        the picture, drawn again when a file changes
   smachac view machine.py                      the machine in a Python file
+  smachac view main.yml --generated            with the states that fields as `retry` add
   smachac view main.yml --attach run.jsonl     replay a trace; follow it while it is written
   smachac view main.yml --attach run.jsonl --film film.mp4   with the film of `run --record`
   smachac run main.yml --view                  watch a run, and control it
@@ -81,6 +82,9 @@ def view_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=port, default=0, metavar="PORT",
                         help="the port of the page (default: one that is free)")  # fmt: skip
     browser(parser)
+    parser.add_argument("--generated", action="store_true",
+                        help="also show the states that `timeout`, `retry` and `for_each` add"
+                        )  # fmt: skip
     machine_name(parser)
     search_folders(parser)
     colour(parser)
@@ -186,15 +190,17 @@ def _serve(arguments: Namespace, attached: Path | Topic | None, film: Film | Non
     """Serve the picture of a script, and a trace with its film or a ROS topic, until Ctrl-C.
     Raises RosError."""
     from smachac.ir.recursion import deep_recursion
+    from smachac.ir.written import generated, written
     from smachac.sim.video import RATE, SPEED
     from smachac.targets.html.page import FILM_ID
     from smachac.view.feed import Feed
     from smachac.view.picture import Picture
 
     feed = Feed()
-    is_edited = attached is None and not is_python(arguments.script)
+    is_edited = attached is None and not is_python(arguments.script) and not arguments.generated
     data = None if film is None else {FILM_ID: {"type": film.type, "rate": RATE, "speed": SPEED}}
-    picture = Picture(feed, arguments.script.stem, editable=is_edited, data=data)
+    view = generated if arguments.generated else written
+    picture = Picture(feed, arguments.script.stem, editable=is_edited, data=data, view=view)
     script = ViewedScript(arguments, picture)
     edits = edits_of_script(script) if is_edited else None
     try:
@@ -440,10 +446,10 @@ def _server(
     def act(body: Mapping[str, object]) -> object:
         if control is None:
             raise ActionError("nothing runs here")
-        words = [body.get(name) for name in ("action", "path", "outcome")]
-        action, path, outcome = (word if isinstance(word, str) else None for word in words)
+        words = [body.get(name) for name in ("action", "path", "outcome", "round")]
+        action, *place = (word if isinstance(word, str) else None for word in words)
         try:
-            control.act(action or "", path, outcome)
+            control.act(action or "", *place)
         except ControlError as error:
             raise ActionError(str(error)) from None
         return control.status()
@@ -516,8 +522,7 @@ class RunView:
 @contextmanager
 def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator[RunView]:
     """The view of a run with `--view`. Raises PortError."""
-    from smachac.ir.script_paths import script_paths
-    from smachac.ir.traversal import walk
+    from smachac.ir.written import written
     from smachac.view.control import Control
     from smachac.view.feed import Feed
     from smachac.view.live import LiveTrace
@@ -525,9 +530,7 @@ def run_view(arguments: Namespace, machine: Machine, report: Report) -> Iterator
 
     feed = Feed()
     trace = LiveTrace(feed)
-    paths = script_paths(machine.root)
-    places = frozenset(paths.get(path, path) for path, _ in walk(machine.root))
-    control = Control(paths, trace.send, paused=arguments.view_paused, places=places)
+    control = Control(written(machine), trace.send, paused=arguments.view_paused)
     picture = Picture(feed, machine.root.name)
     picture.update(machine, report)
     server = _server(arguments.view, picture, feed, control)

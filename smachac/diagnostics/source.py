@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from functools import cached_property
+from operator import attrgetter
 from typing import Literal, NamedTuple, NoReturn
 
 from smachac.records import dataclass
@@ -31,6 +32,18 @@ class Source:
             at = find("\n", at + 1)
         return starts
 
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """The pieces of the text in their order, without gaps: one, unless an editor changes it."""
+        return [Piece(self, 0)]
+
+    def piece_at(self, offset: int) -> Piece:
+        """The piece in which an offset is."""
+        pieces = self.pieces
+        if len(pieces) == 1:
+            return pieces[0]
+        return pieces[max(bisect_right(pieces, offset, key=_begin) - 1, 0)]
+
     def position(self, offset: int) -> tuple[int, int]:
         """Line and column of an offset, both counted from 1."""
         line = bisect_right(self.line_starts, offset)
@@ -45,12 +58,52 @@ class Source:
         return self.text[starts[number - 1] : end].rstrip("\r")
 
 
-class Span(NamedTuple):
+_begin = attrgetter("begin")
+
+
+class Piece:
+    """A part of a text, to which spans are relative: a whole text, or a state of a text in an
+    editor. After an edit before it, `Source.pieces` moves it into the new text: what has been
+    computed from the state stays valid, with its spans."""
+
+    __slots__ = ("begin", "source")
+
+    def __init__(self, source: Source, begin: int) -> None:
+        self.source = source
+        self.begin = begin
+
+
+class _Range(NamedTuple):
+    """A range of a piece, as offsets in characters from its begin."""
+
+    piece: Piece
+    first: int
+    last: int
+
+
+class Span(_Range):
     """A range of a source, as offsets in characters: `start` included, `end` excluded."""
 
-    source: Source
-    start: int
-    end: int
+    __slots__ = ()
+
+    def __new__(cls, source: Source, start: int, end: int) -> Span:
+        piece = source.piece_at(start)
+        return new_tuple(cls, (piece, start - piece.begin, end - piece.begin))
+
+    def __getnewargs__(self) -> tuple[Source, int, int]:
+        return self.source, self.start, self.end
+
+    @property
+    def source(self) -> Source:
+        return self.piece.source
+
+    @property
+    def start(self) -> int:
+        return self.piece.begin + self.first
+
+    @property
+    def end(self) -> int:
+        return self.piece.begin + self.last
 
     @property
     def line(self) -> int:
@@ -62,7 +115,8 @@ class Span(NamedTuple):
 
     @property
     def text(self) -> str:
-        return self.source.text[self.start : self.end]
+        begin = self.piece.begin
+        return self.piece.source.text[begin + self.first : begin + self.last]
 
     def __str__(self) -> str:
         line, column = self.source.position(self.start)
@@ -70,10 +124,6 @@ class Span(NamedTuple):
 
     def __repr__(self) -> str:
         return f"Span({self})"
-
-
-NOWHERE = Span(Source("<none>", ""), 0, 0)
-"""The span of nodes without a text: machines made by a program, such as a test."""
 
 
 class Word(NamedTuple):
@@ -86,6 +136,9 @@ class Word(NamedTuple):
 new_tuple = tuple.__new__
 """A maker of named tuples, `new_tuple(Word, (text, span))`. It takes half of the time of a call of
 their class: a long script has millions of spans."""
+
+NOWHERE = Span(Source("<none>", ""), 0, 0)
+"""The span of nodes without a text: machines made by a program, such as a test."""
 
 
 def assert_never(value: NoReturn) -> NoReturn:

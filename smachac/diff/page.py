@@ -12,7 +12,14 @@ from smachac.diff.report import change_text, summary
 from smachac.diff.states import State, States
 from smachac.ir.nodes import Leaf, Machine, Origin
 from smachac.ir.outcome_names import fails, successes
-from smachac.targets.html.model import VERSION, edges_of, form_of, place_in_script, snippet
+from smachac.targets.html.model import (
+    VERSION,
+    badge_data,
+    edges_of,
+    form_of,
+    place_in_script,
+    snippet,
+)
 from smachac.targets.html.page import render_page
 
 ORIGINS = frozenset(get_args(Origin))
@@ -69,7 +76,7 @@ def _findings(comparison: Comparison, root: str) -> Iterator[dict[str, str]]:
 def _node(union: Union, path: str) -> dict[str, Any]:
     """A state for the viewer; its outcomes are those before and after."""
     state = union.shown[path]
-    inner, outer = state.chain[-1], state.chain[0]
+    node, outer = state.node, state.written.outer
     file, line = place_in_script(state.span)
     good = successes(outer)
     children = union.children[path]
@@ -82,8 +89,8 @@ def _node(union: Union, path: str) -> dict[str, Any]:
         "children": children,
         "initial": first[0] if len(first) == 1 else None,
         "type": state.type or None,
-        "role": None,
-        "doc": inner.doc,
+        "badges": [badge_data(badge) for badge in state.written.badges],
+        "doc": outer.doc,
         "file": file,
         "line": line,
         "snippet": snippet(state.span),
@@ -94,15 +101,14 @@ def _node(union: Union, path: str) -> dict[str, Any]:
         "inputs": [],
         "outputs": [],
         "findings": [],
-        "tags": list(inner.tags),
+        "tags": list(node.tags),
         "change": union.look[path],
     } | _form(union, path)
 
 
 def _kind(union: Union, state: State, path: str) -> str:
-    inner = state.chain[-1]
-    if not isinstance(inner, Leaf):
-        return inner.keyword
+    if not isinstance(state.node, Leaf):
+        return state.node.keyword
     return "machine" if union.children[path] else "leaf"
 
 
@@ -121,8 +127,7 @@ def _form(union: Union, path: str) -> dict[str, Any]:
 
 def _form_in(state: State, place: Mapping[str, str]) -> dict[str, Any]:
     """The fields of a container; `place` has other paths for its states."""
-    inner = state.chain[-1]
-    form = {} if isinstance(inner, Leaf) else form_of(state.path, inner)
+    form = {} if isinstance(state.node, Leaf) else form_of(state.path, state.node)
     for rule in form.get("rules", ()):
         rule["when"] = [[place.get(path, path), outcome] for path, outcome in rule["when"]]
     return form
@@ -144,11 +149,9 @@ def _key(edge: Mapping[str, Any]) -> object:
 def _of_machine(states: States, place: Mapping[str, str]) -> Iterator[dict[str, Any]]:
     """The edges inside the containers of a machine; `place` has other paths for its states. A
     transition that the script does not write is the same as one that it writes."""
-    for path, state in states.items():
-        container = state.chain[-1]
-        if isinstance(container, Leaf):
-            continue
-        for edge in edges_of(path, container):
+    written = {path: state.written for path, state in states.items()}
+    for path, state in written.items():
+        for edge in edges_of(state, written):
             source, target = edge["source"], edge["target"]
             yield {
                 **edge,

@@ -1,7 +1,6 @@
 """The states of a script as a comparison sees them: a list of facts for each, by its path.
 
-A state and the containers of its sugar (`timeout`, `retry`, `for_each`) are one state here, with
-the path that the script shows.
+They are those of the view `ir.written`: a state with `timeout`, `retry` or `for_each` is one state.
 """
 
 from __future__ import annotations
@@ -14,8 +13,8 @@ from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, Sequence, StateMachine
 from smachac.ir.printer import print_data
 from smachac.ir.properties import in_words
-from smachac.ir.script_paths import role, role_in_words, sugared_child, walk_script
 from smachac.ir.traversal import leads_to_child
+from smachac.ir.written import Badge, WrittenState, written
 from smachac.records import dataclass, field
 
 FactKind = Literal[
@@ -42,27 +41,30 @@ Value: TypeAlias = "tuple[str | StateName, ...]"
 
 @dataclass(slots=True, kw_only=True)
 class State:
-    """A state of a script. `chain` is its node, with the containers of its sugar outside of it,
-    outermost first; `children` are the paths of the states inside."""
+    """A state of a script. `children` are the paths of the states inside."""
 
+    written: WrittenState
     path: str
-    chain: list[Node]
     parent: str | None
-    children: list[str] = field(default_factory=list)
+    children: list[str]
     facts: dict[Fact, Value] = field(default_factory=dict)
 
     @property
+    def node(self) -> Node:
+        return self.written.node
+
+    @property
     def name(self) -> str:
-        return self.path.rpartition("/")[2]
+        return self.written.name
 
     @property
     def type(self) -> str:
         """The state type, or the kind of the container."""
-        return self.chain[-1].type
+        return self.node.type
 
     @property
     def span(self) -> Span:
-        return self.chain[-1].span
+        return self.node.span
 
 
 _OUTCOME = "outcome "
@@ -73,26 +75,15 @@ States = dict[str, State]
 
 def states_of(machine: Machine) -> States:
     """The states of a machine with their facts. Of two states with one path the first counts."""
-    found: States = {}
-    for each in walk_script(machine.root):
-        known = found.get(each.plain)
-        if each.added:
-            continue
-        if known is None:
-            parent = each.plain.rpartition("/")[0] if found else None
-            if parent is None or parent in found:
-                found[each.plain] = State(path=each.plain, chain=[each.node], parent=parent)
-                if parent is not None:
-                    found[parent].children.append(each.plain)
-        elif not isinstance(last := known.chain[-1], Leaf) and sugared_child(last) is each.node:
-            known.chain.append(each.node)
-    siblings = {
-        path: frozenset(child.name for child in around.children)
-        for path, state in found.items()
-        if not isinstance(around := state.chain[-1], Leaf)
+    view = written(machine)
+    found = {
+        path: State(written=each, path=path, parent=each.parent, children=list(each.children))
+        for path, each in view.states.items()
     }
     for state in found.values():
-        state.facts = dict(_facts(state, siblings.get(state.parent or "")))
+        around = None if state.parent is None else found[state.parent].children
+        names = None if around is None else frozenset(view.states[path].name for path in around)
+        state.facts = dict(_facts(state, names))
     found[machine.root.name].facts |= dict(_machine_facts(machine))
     return found
 
@@ -113,16 +104,15 @@ def _machine_facts(machine: Machine) -> Iterator[tuple[Fact, Value]]:
 def _facts(state: State, siblings: frozenset[str] | None) -> Iterator[tuple[Fact, Value]]:
     """The facts of a state; `siblings` are the names of the states of its container, if it is in
     one."""
-    inner, outer = state.chain[-1], state.chain[0]
-    yield from _interface(inner, outer)
-    for container in state.chain[:-1]:
-        assert not isinstance(container, Leaf)
-        yield from _sugar(container)
-    if isinstance(inner, Leaf):
-        for variable in inner.variables:
+    node, outer = state.node, state.written.outer
+    yield from _interface(node, outer)
+    for badge in state.written.badges:
+        yield from _badge_facts(badge)
+    if isinstance(node, Leaf):
+        for variable in node.variables:
             yield ("variable", variable.name), (print_data(variable.value.data),)
     else:
-        yield from _container(inner, state.path)
+        yield from _container(node, state.path)
     if siblings is not None:
         yield from _transitions(outer, siblings, state.path)
 
@@ -130,10 +120,10 @@ def _facts(state: State, siblings: frozenset[str] | None) -> Iterator[tuple[Fact
 def _interface(inner: Node, outer: Node) -> Iterator[tuple[Fact, Value]]:
     for name, text in (
         ("template", inner.type),
-        ("doc", inner.doc),
+        ("doc", outer.doc),
         ("claims", ", ".join(inner.claims)),
         ("tags", ", ".join(inner.tags)),
-        ("caught as", inner.catches),
+        ("caught as", inner.catches or outer.catches),
     ):
         if text:
             yield ("field", name), (text,)
@@ -149,22 +139,18 @@ def _interface(inner: Node, outer: Node) -> Iterator[tuple[Fact, Value]]:
             yield ("remapping", remap.key), (remap.to,)
 
 
-def _sugar(container: Container) -> Iterator[tuple[Fact, Value]]:
-    """The facts of a container of sugar: the values of the timers that it adds, or its limit."""
-    what = role(container)
-    inside = sugared_child(container)
-    added = [child for child in container.children if child is not inside]
-    values = [
-        print_data(variable.value.data)
-        for child in added
-        if isinstance(child, Leaf)
-        for variable in child.variables
-    ]
-    name = "retry delay" if what == "try" else what
-    yield ("field", name), (", ".join(values) or role_in_words(container),)
-    if isinstance(container, nodes.Iterator):
-        for (_, each), value in _loop(container):
-            yield ("field", f"{what}: {each}"), value
+def _badge_facts(badge: Badge) -> Iterator[tuple[Fact, Value]]:
+    """The facts of a field that acts on the whole state: its value, and after which outcomes the
+    next try or item begins."""
+    if badge.field == "catches":  # a fact of the interface
+        return
+    yield ("field", badge.field), (badge.limit,)
+    if badge.items is not None:
+        yield ("field", f"{badge.field}: in"), (print_data(badge.items.data),)
+    if badge.delay:
+        yield ("field", f"{badge.field}: delay"), (badge.delay,)
+    if badge.again:
+        yield ("field", f"{badge.field}: on"), (", ".join(sorted(badge.again)),)
 
 
 def _container(container: Container, path: str) -> Iterator[tuple[Fact, Value]]:

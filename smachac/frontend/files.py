@@ -36,6 +36,10 @@ from smachac.robots import xacro_files
 from smachac.robots.encodings import EncodingError, decoded
 from smachac.robots.files import Packages, find_mesh, installed_packages
 
+TYPE_CHECKING = False  # annotations only: few commands parse texts in pieces
+if TYPE_CHECKING:
+    from smachac.frontend.text.pieces import PieceTree
+
 PACKAGE = Path(__file__).parent.parent
 BUILT_IN = (PACKAGE / "stdlib", PACKAGE / "targets" / "python" / "templates")
 """The folders of the built-in state types and of the templates of containers."""
@@ -170,7 +174,8 @@ class Disk:
 
     `texts` replace the files at their (real) paths. `searched` collects the paths, as given, of
     all files that were searched, found or not; the caller may empty it. `plain`: all line ends
-    become line feeds. `refused`: the paths that are not read, as given, and why.
+    become line feeds. `refused`: the paths that are not read, as given, and why. `in_pieces`: the
+    states of a file that is replaced keep their trees where they did not change (pieces.py).
     """
 
     def __init__(
@@ -179,10 +184,12 @@ class Disk:
         *,
         plain: bool = False,
         refused: Mapping[str, Diagnostic] | None = None,
+        in_pieces: bool = False,
     ) -> None:
         self.texts = dict(texts or {})
         self.refused = dict(refused or {})
         self.plain = plain
+        self._pieces: dict[str, tuple[PieceTree, ...]] | None = {} if in_pieces else None
         self.searched: set[str] = set()
         self._sources: dict[str, tuple[Source | None, Report]] = {}
         self._stamps: dict[str, Stamp] = {}
@@ -209,13 +216,37 @@ class Disk:
         report.extend(problems_found)
         return source
 
+    def known(self, path: str) -> Source | None:
+        """The text of a file that was read, by its real path."""
+        return self._sources.get(path, (None, []))[0]
+
     def parse(self, source: Source, report: Report) -> Tree | None:
         """As `yaml_mends.parse_mended`."""
         if source not in self._trees:
             found: Report = []
-            self._trees[source] = (parse_mended(source, found), found)
+            tree = self._parse_in_pieces(source) or parse_mended(source, found)
+            self._trees[source] = (tree, found)
         tree, problems_found = self._trees[source]
         report.extend(problems_found)
+        return tree
+
+    def release(self, source: Source) -> None:
+        """Forget the tree of a text, unless an editor needs it: it takes half of the memory of a
+        check."""
+        if self._pieces is None:
+            self._trees.pop(source, None)
+
+    def _parse_in_pieces(self, source: Source) -> Tree | None:
+        """As `pieces.parse_in_pieces`, for the texts of files."""
+        path = os.path.realpath(source.name)
+        if self._pieces is None or self.known(path) is not source:
+            return None
+        from smachac.frontend.text.pieces import parse_in_pieces
+
+        found = parse_in_pieces(source, self._pieces.get(path, ()))
+        if found is None:
+            return None
+        tree, self._pieces[path] = found
         return tree
 
     def expand(self, file: str, arguments: Mapping[str, str], packages: Packages) -> str:
@@ -402,11 +433,6 @@ def disk_library(
     def script_folders(caller: str) -> list[Path]:
         return list(dict.fromkeys([Path(caller).parent, *scripts, *project.scripts]))
 
-    def searched(folders: Sequence[Path]) -> list[str]:
-        """The folders for messages, without those of the project that do not exist."""
-        own = (*project.scripts, *project.templates)
-        return [str(folder) for folder in folders if folder not in own or folder.is_dir()]
-
     def script(name: str, caller: str) -> Source | None:
         path = _found(name, script_folders(caller), SUFFIXES, disk, refuse)
         return disk.read(path, report) if path else None
@@ -427,12 +453,13 @@ def disk_library(
         definitions=lambda path, report: definitions(path, message_folders(), disk, report),
         definition_names=lambda folder: definition_names(folder, message_folders()),
         folders_with=lambda files: _folders_with(files, main.parent),
-        script_folders=lambda caller: searched(script_folders(caller)),
-        template_folders=lambda: searched(template_folders[: -len(BUILT_IN)]),
+        script_folders=lambda caller: _searched(script_folders(caller), project),
+        template_folders=lambda: _searched(template_folders[: -len(BUILT_IN)], project),
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
         robot_names=lambda caller: _with_ending(script_folders(caller), ROBOT_FILES),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
         parse=disk.parse,
+        release=disk.release,
         ros=project.ros if ros is None else ros,
         bounds=project.bounds,
         policy=project.policy,
@@ -441,6 +468,12 @@ def disk_library(
         mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
         expand=disk.expand,
     )
+
+
+def _searched(folders: Sequence[Path], project: Project) -> list[str]:
+    """The folders for messages, without those of the project that do not exist."""
+    own = (*project.scripts, *project.templates)
+    return [str(folder) for folder in folders if folder not in own or folder.is_dir()]
 
 
 def definitions(path: str, folders: Sequence[Path], disk: Disk, report: Report) -> list[Source]:

@@ -41,8 +41,9 @@ class Library(UserCode):
     names of the files in all folders with a path, such as `std_srvs/srv`; `folders_with(files)` the
     folders below that of the main script that have one of these files. The lists of folders and
     names are for messages. `policy` are the severities of the project, `bounds` the bounds of texts
-    and lists. `parse` may return one tree for all scripts that share a text. `robot(file)` returns
-    a description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
+    and lists. `parse` may return one tree for all scripts that share a text; `release(source)` is
+    called where that of a script is not needed again, and may forget it. `robot(file)` returns a
+    description or URDF file of a built-in robot, or a file of PyBullet's data. `mesh(name, urdf,
     packages)` returns the path of a mesh that a URDF file names (`find_mesh`); no mesh is opened.
     `expand(file, arguments, packages)` returns the URDF text of a xacro file; it raises XacroError.
     `settings_read` is False
@@ -58,6 +59,7 @@ class Library(UserCode):
     script_names: Callable[[str], Sequence[str]] = lambda caller: ()
     robot_names: Callable[[str], Sequence[str]] = lambda caller: ()
     parse: Callable[[Source, Report], Tree | None] = parse
+    release: Callable[[Source], None] = lambda source: None
     policy: Policy = field(default_factory=Policy)
     bounds: Bounds = Bounds()
     robot: Callable[[str], Source | None] = lambda file: None

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from smachac.ir.nodes import Concurrence
+from smachac.ir.nodes import Concurrence, OutcomeRule
 
 
 def matching_rule(node: Concurrence, ended: Mapping[str, object]) -> int:
@@ -26,3 +26,10 @@ def outcome_of(node: Concurrence, ended: Mapping[str, object]) -> str:
     """The outcome of a concurrence whose branches ended with these outcomes, by name."""
     rule = matching_rule(node, ended)
     return node.rules[rule].outcome if rule >= 0 else node.default_outcome
+
+
+def by_priority(node: Concurrence) -> list[OutcomeRule]:
+    """The rules by priority: the first of them that matches determines the outcome."""
+    numbered = enumerate(node.rules)
+    found = sorted(numbered, key=lambda each: (len(each[1].when), each[0]), reverse=True)
+    return [rule for _, rule in found]

@@ -106,23 +106,26 @@ def _targets_inside(child: Node, names: frozenset[str]) -> list[str]:
 def _transition_edges(container: nodes.StateMachine | nodes.Sequence) -> Iterator[Edge]:
     if any(child.name == container.initial for child in container.children):
         yield Edge(START, container.initial, "", "enter")
-    for source, target, step in transitions(container):
-        yield Edge(source, target, step.outcome, step.origin, step)
+    for child, steps in transitions(container):
+        for target, step in steps:
+            yield Edge(child.name, target, step.outcome, step.origin, step)
 
 
 def transitions(
     container: nodes.StateMachine | nodes.Sequence,
-) -> Iterator[tuple[str, Vertex, Transition]]:
-    """The transitions of a container that can be taken, each with the vertices that it leads from
-    and to."""
+) -> Iterator[tuple[Node, list[tuple[Vertex, Transition]]]]:
+    """The transitions of each state of a container that can be taken, with the vertices that they
+    lead to."""
     names = frozenset([child.name for child in container.children])
     exits = {outcome.name: exit_vertex(outcome.name) for outcome in container.outcomes}
     for child in container.children:
+        steps: list[tuple[Vertex, Transition]] = []
         for step in _live_transitions(child):
             if step.target in names and step.origin != "implicit":  # `leads_to_child`
-                yield child.name, step.target, step
+                steps.append((step.target, step))
             elif step.target in exits:
-                yield child.name, exits[step.target], step
+                steps.append((exits[step.target], step))
+        yield child, steps
 
 
 def _concurrence_edges(container: Concurrence) -> Iterator[Edge]:

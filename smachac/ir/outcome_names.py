@@ -105,6 +105,22 @@ def successes(node: Node) -> frozenset[str]:
     return frozenset([name for name in names if name.lower() in words]).difference(failures)
 
 
+def meaning(outcome: str, failure: bool) -> str:
+    """`failure`, `stop`, `success`, or empty for an outcome with another meaning."""
+    if failure:
+        return "failure"
+    if outcome.lower() in STOPS:
+        return "stop"
+    return "success" if outcome.lower() in GOOD | SUCCESSES else ""
+
+
+def of_one_meaning(node: Node, word: str, names: Iterable[str]) -> str | None:
+    """The only one of these outcomes of a state that has the meaning of an unknown one."""
+    wanted = meaning(word, is_failure(word))
+    alike = [name for name in names if meaning(name, fails(node, name)) == wanted]
+    return alike[0] if wanted and len(alike) == 1 else None
+
+
 def good_first(
     outcomes: Iterable[str], failed: Callable[[str], bool] = is_failure
 ) -> tuple[str, ...]:

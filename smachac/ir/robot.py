@@ -6,8 +6,11 @@ import math
 
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.records import dataclass, field
-from smachac.robots.description import Limb
 from smachac.robots.fields import IDENTITY, Pose
+
+TYPE_CHECKING = False  # annotations only: most scripts have no robot
+if TYPE_CHECKING:
+    from smachac.robots.description import Limb
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,12 +8,11 @@ path: `sm/DRIVE (timeout)/TIMER`. Paths of the graph are called full paths.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import PathStep
-from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Node, StateMachine
+from smachac.ir.nodes import Container, Leaf, Node, StateMachine
 from smachac.ir.traversal import containers
 
 
@@ -71,11 +70,24 @@ def script_paths(root: Node) -> dict[str, str]:
     return {each.full: each.shown for each in walk_script(root) if each.shown != each.full}
 
 
-def plain_paths(root: Node) -> dict[str, str]:
-    """The paths in the script without roles, by full path; only those that differ."""
+class PlainPaths(dict[str, str]):
+    """The paths in the script without roles, by full path; only those that differ. `added` are the
+    full paths of the timers and pauses of sugar."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.added: set[str] = set()
+
+
+NO_SUGAR = PlainPaths()
+"""The plain paths of a machine without sugar."""
+
+
+def plain_paths(root: Node) -> PlainPaths:
+    """The plain paths of a machine."""
+    found = PlainPaths()
     if isinstance(root, Leaf) or not _has_sugar(root):
-        return {}
-    found: dict[str, str] = {}
+        return found
     stack: list[tuple[str, str, Container]] = [(root.name, root.name, root)]
     while stack:
         full, plain, container = stack.pop()
@@ -87,6 +99,8 @@ def plain_paths(root: Node) -> dict[str, str]:
             shown = plain if child is inside else f"{plain}/{child.name}"
             if shown != below:
                 found[below] = shown
+            if inside is not None and child is not inside:
+                found.added.add(below)
             if not isinstance(child, Leaf):
                 stack.append((below, shown, child))
     return found
@@ -96,62 +110,6 @@ def _has_sugar(root: Node) -> bool:
     return any(node.sugar for _, node in containers(root))
 
 
-class Sugared(NamedTuple):
-    """A container made of sugar as messages describe it: the path of its state in the script, its
-    role, its limit in words (`3` tries, `20 s`, `5` items; empty if it is not known), and the path
-    in the script of its child."""
-
-    state: str
-    role: str
-    limit: str
-    child: str
-
-
-def sugared_containers(root: Node) -> dict[str, Sugared]:
-    """The containers made of sugar by their paths in the script."""
-    found: dict[str, Sugared] = {}
-    for each in walk_script(root) if _has_sugar(root) else ():
-        child = None if isinstance(each.node, Leaf) else sugared_child(each.node)
-        if child is not None:
-            below = f"{each.plain} ({role(child)})" if role(child) else each.plain
-            found[each.shown] = Sugared(each.plain, role(each.node), _limit(each.node), below)
-    return found
-
-
-def added_states(root: Node) -> frozenset[str]:
-    """The paths in the script of the timers and pauses that sugar adds."""
-    if not _has_sugar(root):
-        return frozenset()
-    return frozenset(each.shown for each in walk_script(root) if each.added)
-
-
-def in_words(role: str, limit: str) -> str:
-    """The role of a container made of sugar with its limit, in words."""
-    match role:
-        case "retry":
-            return f"at most {limit} {'try' if limit == '1' else 'tries'}"
-        case "timeout":
-            return f"time limit of {limit}"
-        case "for_each":
-            return f"loop over {limit or 'the'} item{'s' * (limit != '1')}"
-    return "one try"
-
-
-def role_in_words(node: Node) -> str:
-    """The role of a container made of sugar, in words; empty for all other nodes."""
-    what = role(node)
-    return in_words(what, _limit(node)) if what else ""
-
-
-def _limit(node: Node) -> str:
-    match node:
-        case nodes.Iterator(items=nodes.Value(data=tuple() as items)):
-            return str(len(items))
-        case Concurrence(children=(_, Leaf(variables=(nodes.Variable(value=seconds),)))):
-            return f"{seconds.data:g} s" if isinstance(seconds.data, float) else ""
-    return ""
-
-
 def name_in_script(node: Node) -> str:
     """The name of a node in the script: for a container made of sugar, that of its state."""
     while not isinstance(node, Leaf) and (inside := sugared_child(node)) is not None:
@@ -159,12 +117,12 @@ def name_in_script(node: Node) -> str:
     return node.name
 
 
-def steps_in_script(plain: Mapping[str, str], steps: Sequence[PathStep]) -> list[tuple[int, str]]:
+def steps_in_script(plain: PlainPaths, steps: Sequence[PathStep]) -> list[tuple[int, str]]:
     """The steps of a path as the script shows them: their numbers and labels. `plain` are the plain
     paths.
 
     A state and the containers of its sugar are one step, where they are entered together or end
-    with the same outcome.
+    with the same outcome; timers and pauses are none.
     """
     if not plain:
         return [(at, step.label) for at, step in enumerate(steps)]
@@ -176,6 +134,9 @@ def steps_in_script(plain: Mapping[str, str], steps: Sequence[PathStep]) -> list
             if not (skipped and step.is_outcome):
                 kept.append(at)
             skipped = False
+            continue
+        if step.node in plain.added:
+            skipped = True
             continue
         same = plain.get(step.node, step.node) == plain.get(last, last)
         if same and not steps[kept[-1]].is_outcome:
@@ -191,6 +152,6 @@ def steps_in_script(plain: Mapping[str, str], steps: Sequence[PathStep]) -> list
     return [(at, _label(plain, steps[at])) for at in kept]
 
 
-def _label(plain: Mapping[str, str], step: PathStep) -> str:
+def _label(plain: PlainPaths, step: PathStep) -> str:
     path = plain.get(step.node) if step.node is not None else None
     return step.label if path is None else path.rpartition("/")[2]

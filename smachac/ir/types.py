@@ -28,6 +28,7 @@ WORDS = (*SCALARS, *STRUCTS, "list", "dict")
 name is known."""
 
 _WORD = re.compile(r"[^\W\d]\w*(?:[./-]\w+)*")
+_QUANTITY = re.compile(r'(float|int)<([^<>\[\]",?\s]+)>')
 
 
 class Type(NamedTuple):
@@ -86,6 +87,9 @@ def parse_type(text: str) -> Type | None:
     text = text.strip()
     if _WORD.fullmatch(text):
         return Type(text) if text != "one_of" else None
+    number = _QUANTITY.fullmatch(text)
+    if number is not None:  # a check of a short script often needs no parser beside these
+        return Type(number[1], (number[2],))
     depth = text.count("[") + text.count("?") + text.count(" of ") + text.count("{")
     if len(text) > LONGEST or depth > DEEPEST:
         return None

@@ -65,7 +65,8 @@ def _words(here: Request) -> Iterable[Completion]:
 
 def _is_look_up(here: Request) -> bool:
     """Whether the word is alone in two brackets: `[[word]]`."""
-    source, start, end = here.place.word.span
+    word = here.place.word
+    source, start, end = word.source, word.start, word.end
     return source.text[max(start - 2, 0) : start] == "[[" and source.text[end : end + 2] == "]]"
 
 

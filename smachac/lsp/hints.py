@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from smachac.frontend.text.yaml_tree import Map, Scalar, Seq
-from smachac.ir.nodes import Leaf
-from smachac.ir.traversal import containers
 from smachac.ir.types import ANY
+from smachac.ir.written import written
 from smachac.lsp.hover import full_path
 from smachac.lsp.navigation import script_path
 from smachac.lsp.place import Body, top_bodies
@@ -63,14 +62,12 @@ def _transition_hints(view: View, path: str) -> Iterator[Hint]:
     if view.machine is None:
         return
     seen: set[int] = set()
-    for _, container in containers(view.machine.root):
-        for child in container.children:
-            if child.span.source is not view.source or child.span.start in seen:
-                continue
-            if container.sugar or (not isinstance(child, Leaf) and child.sugar):
-                continue
-            steps = [each for each in child.transitions if each.origin == "implicit"]
-            if steps:
-                seen.add(child.span.start)
-                words = ", ".join(f"{each.outcome} \u2192 {each.target}" for each in steps)
-                yield Hint(offset=child.span.end + 1, text=f" {words}", is_type=False)
+    for state in written(view.machine).states.values():
+        node = state.node
+        if node.span.source is not view.source or node.span.start in seen:
+            continue
+        steps = [each for each in node.transitions if each.origin == "implicit"]
+        if steps and node is state.outer:
+            seen.add(node.span.start)
+            words = ", ".join(f"{each.outcome} \u2192 {each.target}" for each in steps)
+            yield Hint(offset=node.span.end + 1, text=f" {words}", is_type=False)

@@ -110,8 +110,8 @@ def _named(named: Named, facts: Facts, view: View, path: str) -> str:
     if context is None or plain is None:
         return f"{named.kind} `{named.name}`"
     full = full_path(context, plain)
-    if named.kind == "state":
-        return _text(paragraphs(*state_text(explain_state(context, full, []))))
+    if named.kind == "state" and plain in context.written.states:
+        return _text(paragraphs(*state_text(explain_state(context, plain, []))))
     return _text(paragraphs(*key_text(explain_key(context, full, named.name))))
 
 

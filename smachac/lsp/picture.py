@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from smachac.diagnostics.source import Span
-from smachac.ir.traversal import walk
+from smachac.ir.written import written
 from smachac.lsp.session import View
 from smachac.targets.dot import graph
 from smachac.targets.dot.style import identifier
@@ -15,8 +15,9 @@ def picture(view: View) -> tuple[str, dict[str, Span]] | None:
     machine = view.machine
     if machine is None:
         return None
-    lines = graph.picture(machine, depth=None, rankdir="TB")
+    shown = written(machine)
+    lines = graph.picture(machine, shown)
     spans = {}
-    for path, node in walk(machine.root):
-        spans["/".join(map(identifier, path.split("/")))] = node.span
+    for path, state in shown.states.items():
+        spans["/".join(map(identifier, path.split("/")))] = state.node.span
     return "\n".join([*lines, ""]), spans

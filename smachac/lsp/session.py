@@ -73,7 +73,7 @@ class Session:
 
     def __init__(self, folders: Iterable[Path] = ()) -> None:
         self.folders = [Path(os.path.realpath(folder)) for folder in folders]
-        self.disk = Disk()
+        self.disk = Disk(in_pieces=True)
         self.open: dict[str, None] = {}
         self._uses: dict[str, frozenset[str]] = {}
         self._contexts: dict[str, tuple[Analysis, Context | None]] = {}

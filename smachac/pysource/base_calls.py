@@ -13,6 +13,7 @@ from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.functions import alternatives, returns_of
 from smachac.pysource.modules import Module, Names, OwnClass
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 
 NO_BASE_ARGUMENT = FaultKind(
     name="no base argument",
@@ -103,7 +104,7 @@ def arguments_to_base(own: OwnClass) -> Mapping[str, tuple[PythonText, ast.expr]
     given = [*zip(call.positional, call.arguments, strict=False)]
     given += [(each.arg or "", each.value) for each in call.node.keywords]
     found |= {name: (call.module.text, value) for name, value in given}
-    for each in ast.walk(call.base):
+    for each in walk_code(call.base):
         match each:
             case (
                 ast.Name(id=name, ctx=ast.Store() | ast.Del())
@@ -133,7 +134,7 @@ def _base_call(own: OwnClass, at: int, names: Names) -> _Call | None:
         return None
     me = [each.arg for each in (*maker.args.posonlyargs, *maker.args.args)][:1]
     calls = [(each, _arguments(each, node, own.classes[base][1], me))
-             for each in ast.walk(maker) if isinstance(each, ast.Call)]  # fmt: skip
+             for each in walk_code(maker) if isinstance(each, ast.Call)]  # fmt: skip
     found = [(each, given) for each, given in calls if given is not None]
     if len(found) != 1 or taken not in own.classes[base][1].body:
         return None

@@ -16,6 +16,7 @@ from smachac.pysource.library_names import MODULES, is_shadowed, module_of_libra
 from smachac.pysource.modules import Module, OwnClass, find_class, names_of, of_other_objects
 from smachac.pysource.own_objects import Objects
 from smachac.pysource.silent_results import called_function, is_silent
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import tried_code
 
@@ -98,7 +99,7 @@ def call_slips(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
         for method in node.body:
             if not isinstance(method, ast.FunctionDef):
                 continue
-            every = [each for each in ast.walk(method) if each not in others]
+            every = [each for each in walk_code(method) if each not in others]
             tried = tried_code(every)
             every = [each for each in every if each not in tried]
             code = _MethodCode(own, module, node, method, every, objects)
@@ -312,7 +313,7 @@ def _no_modules(
             continue
         done.add(name)
         calls = any(isinstance(one, ast.Call) and isinstance(one.func, ast.Name)
-                    and one.func.id == name for one in ast.walk(module.text.tree))  # fmt: skip
+                    and one.func.id == name for one in walk_code(module.text.tree))  # fmt: skip
         near = f"import {name}` in place of `from {name} import {name}"
         if attribute == name:
             near = f"{name}` in place of `{name}.{name}"
@@ -329,5 +330,5 @@ def _is_local(method: ast.FunctionDef, name: str) -> bool:
     return any(
         (isinstance(each, ast.arg) and each.arg == name)
         or (isinstance(each, ast.Name) and each.id == name and not isinstance(each.ctx, ast.Load))
-        for each in ast.walk(method)
+        for each in walk_code(method)
     )

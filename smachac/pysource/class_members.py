@@ -14,6 +14,7 @@ from smachac.ir.class_facts import ClassFault
 from smachac.pysource.functions import caught
 from smachac.pysource.modules import Module, OwnClass, file_of, find_class, names_of
 from smachac.pysource.own_objects import NO_MEMBER, has_no_base, members_of, shows_all
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 KINDS = frozenset(["Enum", "IntEnum", "StrEnum", "Flag", "IntFlag"])
@@ -28,7 +29,7 @@ def missing_constants(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
     have, each once: `Mode.FASTT`."""
     done = set[tuple[str, str]]()
     for module, node in own.classes:
-        every = [*ast.walk(node)]
+        every = [*walk_code(node)]
         tried, bound = caught(node), _bound(every)
         quoted = {each.value for each in every if isinstance(each, ast.Constant)}
         known: dict[str, tuple[Module, ast.ClassDef] | None] = {}

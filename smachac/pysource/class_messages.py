@@ -18,6 +18,7 @@ from smachac.ir.argument_parts import argument_uses, own_names
 from smachac.ir.class_facts import ClassMessages, MessageRef
 from smachac.ir.message_types import PARTS, DefinitionKind
 from smachac.pysource.modules import Module, OwnClass
+from smachac.pysource.syntax_tree import walk_code
 
 SUBSCRIBES = frozenset(["Subscriber", "create_subscription"])
 """Functions of rospy and rclpy that receive a type and a callback for its messages."""
@@ -130,7 +131,7 @@ def _attributes(module: Module, names: _Names) -> Iterator[tuple[MessageRef, Wor
             found = names.modules.get(ast.unparse(node.value))
             if found is not None:
                 span = module.text.span(node)
-                span = span._replace(start=max(span.end - len(node.attr), 0))
+                span = Span(span.source, max(span.end - len(node.attr), 0), span.end)
                 yield MessageRef(found[1], found[0], node.attr), Word(node.attr, span)
 
 
@@ -145,7 +146,7 @@ def _callbacks(node: ast.ClassDef, names: _Names) -> Mapping[str, MessageRef]:
     nothing else in the class uses."""
     found: dict[str, MessageRef] = {}
     used: Counter[str] = Counter()
-    for each in ast.walk(node):
+    for each in walk_code(node):
         match each:
             case ast.Attribute(value=ast.Name(id="self"), attr=name):
                 used[name] += 1
@@ -172,7 +173,7 @@ def _with_function(
     """The facts with those about one method."""
     if module.text.is_filled(module.text.span(function)):
         return found
-    nodes = [each for line in function.body for each in ast.walk(line)]
+    nodes = [each for line in function.body for each in walk_code(line)]
     keywords = [
         (ref, tuple(_keyword(module, one, one.arg) for one in each.keywords if one.arg))
         for each in nodes

@@ -17,6 +17,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
 from smachac.pysource.functions import caught
 from smachac.pysource.modules import AttributeUse, Module, OwnClass, of_other_objects
+from smachac.pysource.syntax_tree import walk_code
 
 UNDEFINED_NAME = FaultKind(
     name="undefined name",
@@ -189,7 +190,7 @@ def _unbound(node: ast.ClassDef, shared: Set[str]) -> Iterator[tuple[ast.Name, M
               for message in Checker(tree, builtins=shared, withDoctest=False).messages
               if isinstance(message, UndefinedName | UndefinedLocal)}  # fmt: skip
     methods = {part: method for method in node.body if isinstance(method, Method)
-               for body in method.body for part in ast.walk(body)}  # fmt: skip
+               for body in method.body for part in walk_code(body)}  # fmt: skip
     for part in _evaluated(node) if places else ():
         if isinstance(part, ast.Name) and (part.lineno, part.col_offset) in places:
             yield part, methods.get(part)
@@ -209,7 +210,7 @@ def _reached(own: OwnClass, method: str) -> set[str]:
         if name in found or function is None:
             continue
         found.add(name)
-        todo += [each.attr for each in ast.walk(function[1])
+        todo += [each.attr for each in walk_code(function[1])
                  if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name)
                  and each.value.id == "self"]  # fmt: skip
     return found
@@ -278,7 +279,7 @@ class _Near:
         elif self._is_text(node, bound):
             near = f'"{node.id}"'
         else:
-            local = {name for part in ast.walk(method) for name in _bound(part)} if method else ()
+            local = {name for part in walk_code(method) for name in _bound(part)} if method else ()
             known = {*self.module.names, *local} if bound else self.anywhere - BUILT_IN
             near = guesser(sorted(known)).sure(node.id)
         if near is None and not bound and not self.module.name:
@@ -316,7 +317,7 @@ class _Near:
             if word.text == "self" or len(given) != 2:
                 return None  # a fault of the parameters of `execute`
             parameter = method.args.args[1]
-            names = (part.id for part in ast.walk(method) if isinstance(part, ast.Name))
+            names = (part.id for part in walk_code(method) if isinstance(part, ast.Name))
             if parameter.arg in names:
                 return ClassFault(kind=UNDEFINED_NAME, name=word, near=parameter.arg)
             start = text.offset(parameter.lineno, parameter.col_offset)
@@ -353,7 +354,7 @@ class _Near:
 
 def _arguments(function: ast.FunctionDef) -> set[str]:
     """The names of the parameters of a function."""
-    return {each.arg for each in ast.walk(function.args) if isinstance(each, ast.arg)}
+    return {each.arg for each in walk_code(function.args) if isinstance(each, ast.arg)}
 
 
 def _declared_global(every: Iterable[ast.AST]) -> Iterator[str]:
@@ -407,7 +408,7 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     if any(not DYNAMIC.isdisjoint(module.identifiers)
            or not LATE.isdisjoint(module.attributes["any"]) for module in modules):  # fmt: skip
         return []
-    defined |= {each.attr for _, node in own.classes for each in ast.walk(node)
+    defined |= {each.attr for _, node in own.classes for each in walk_code(node)
                 if isinstance(each, ast.Attribute) and isinstance(each.ctx, ast.Store)}  # fmt: skip
     use: AttributeUse = "outside" if own.root == "state" else "stored"
     elsewhere = [names for module in modules
@@ -416,7 +417,7 @@ def undefined_methods(own: OwnClass) -> list[ClassFault]:
     defined |= INHERITED
     found, unread = list[ClassFault](), _only_unread(own, modules)
     constructor = own.method("__init__")
-    arguments = ast.walk(constructor[1].args) if constructor is not None else ()
+    arguments = walk_code(constructor[1].args) if constructor is not None else ()
     given = {each.arg for each in arguments if isinstance(each, ast.arg)}
     for module, node in own.classes:
         others = of_other_objects(node)
@@ -471,7 +472,7 @@ def _only_unread(own: OwnClass, modules: Iterable[Module]) -> str | None:
     found = own.method("__init__")
     if found is None:
         return None
-    kept = {each.attr for each in ast.walk(found[1]) if isinstance(each, ast.Attribute)
+    kept = {each.attr for each in walk_code(found[1]) if isinstance(each, ast.Attribute)
             and _of_self(each) and isinstance(each.ctx, ast.Store)}  # fmt: skip
     unread = [name for name in kept
               if not any(name in module.attributes["read"] for module in modules)]  # fmt: skip

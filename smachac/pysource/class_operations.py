@@ -12,6 +12,7 @@ from smachac.diagnostics.source import Span, Word
 from smachac.ir.class_facts import Compared, TableLookUp
 from smachac.pysource.functions import access_of
 from smachac.pysource.modules import Module, OwnClass, of_other_objects
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.userdata_parts import TESTS, added_entries, tried_code, written_keys
 
 PURE = frozenset(["len", "abs", "min", "max", "round", "sum", "int", "float", "bool"])
@@ -51,7 +52,7 @@ def operations(module: Module, function: ast.FunctionDef) -> tuple[Word, ...]:
     Not those of keys that it writes, and those in `try`; nothing if it tests the types of values.
     """
     userdata = function.args.args[1].arg
-    every = [*ast.walk(function)]
+    every = [*walk_code(function)]
     if any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
         return ()
     tried, written = tried_code(every), written_keys(every, userdata)
@@ -80,7 +81,7 @@ def _is_known(
 ) -> bool:
     """Whether an expression has no names but those of the userdata and of pure functions, and reads
     a key that the code does not write."""
-    every = [*ast.walk(node)]
+    every = [*walk_code(node)]
     used = {each.id for each in every if isinstance(each, ast.Name)}
     keys = {found.key for each in every if (found := access_of(each, userdata)) is not None}
     return used <= names and bool(keys) and not keys & written
@@ -99,7 +100,7 @@ def _written_values(every: list[ast.AST], userdata: str) -> list[ast.expr]:
 
 def number_writes(module: Module, function: ast.FunctionDef) -> tuple[Span, ...]:
     """The places of the values that `execute` writes to userdata keys and that are one number."""
-    every = [*ast.walk(function)]
+    every = [*walk_code(function)]
     values = _written_values(every, function.args.args[1].arg)
     if not values:
         return ()
@@ -113,7 +114,7 @@ def collection_writes(
 ) -> Iterator[tuple[Span, Literal["list", "dict"]]]:
     """The places of the values that `execute` writes to userdata keys and that are a list or a
     dictionary, also in a local variable."""
-    every = [*ast.walk(function)]
+    every = [*walk_code(function)]
     values = _written_values(every, function.args.args[1].arg)
     if not values:
         return
@@ -192,12 +193,12 @@ def compared_texts(
     for ever (`kept`), and the keys that `execute` does not write; not the default values of
     parameters."""
     userdata = execute.args.args[1].arg if execute is not None else ""
-    written = written_keys([*ast.walk(execute)], userdata) if execute is not None else frozenset()
+    written = written_keys([*walk_code(execute)], userdata) if execute is not None else frozenset()
     defaults = _defaults(own)
     for module, node in own.classes:
         others = of_other_objects(node)
-        inside = {*ast.walk(execute)} if execute in node.body and execute is not None else set()
-        for each in ast.walk(node):
+        inside = {*walk_code(execute)} if execute in node.body and execute is not None else set()
+        for each in walk_code(node):
             for side, texts in _equalities(each) if each not in others else ():
                 key = access_of(side, userdata) if each in inside else None
                 match side:
@@ -264,7 +265,7 @@ def table_look_ups(
     `BINS[self.side]`; not those in `try`, and not where the class tests the keys."""
     userdata = execute.args.args[1].arg if execute is not None else ""
     for module, node in own.classes:
-        every = [*ast.walk(node)]
+        every = [*walk_code(node)]
         left_out = of_other_objects(node) | tried_code(every)
         for each in every:
             match each:

@@ -67,6 +67,7 @@ from smachac.pysource.other_modules import module_with
 from smachac.pysource.own_objects import missing_members, uncalled_members
 from smachac.pysource.silent_results import silent_results
 from smachac.pysource.source import PythonText, name_span
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 from smachac.pysource.userdata_parts import parts_of_arguments, parts_read
 
@@ -189,7 +190,7 @@ def read_template(source: Source, name: str, library: UserCode) -> ClassFacts | 
 def _in_template(module: Module, name: str) -> ast.ClassDef | None:
     classes = [node for node in module.text.tree.body if isinstance(node, ast.ClassDef)]
     named = [node for node in classes if node.name == name]
-    running = [node for node in classes if any(_is_execute(each) for each in ast.walk(node))]
+    running = [node for node in classes if any(_is_execute(each) for each in walk_code(node))]
     for some in (named, running, classes):
         if some:
             return some[0] if len(some) == 1 else None
@@ -233,10 +234,13 @@ def read_module(word: Word, library: UserCode) -> ClassFacts | None:
         return None
 
 
-def facts_of(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts | None:
-    """The facts about a class of a module; None if it cannot be read."""
+def facts_of(
+    module: Module, node: ast.ClassDef, library: UserCode, *, whole: bool = True
+) -> ClassFacts | None:
+    """The facts about a class of a module; None if it cannot be read. If it is not `whole`, only
+    those about its structure and about what `execute` returns, reads and writes."""
     try:
-        return _facts(module, node, library)
+        return _facts(module, node, library) if whole else _structure(module, node, library)
     except (RecursionError, MemoryError, ValueError):
         return None
 
@@ -275,6 +279,26 @@ def _at_the_name(fault: ClassFault, word: Word) -> ClassFault:
     start = word.span.start + max(at, 0)
     span = Span(word.span.source, start, min(start + len(fault.name.text), word.span.end))
     return replace(fault, name=Word(fault.name.text, span))
+
+
+def _structure(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
+    """The facts about the structure of a class and the flow of `execute`."""
+    own = with_bases(module, node, library)
+    flow, _, place = _execute(own, library)
+    return ClassFacts(
+        name=Word(node.name, name_span(module.text, node)),
+        faults=(*_faults(own, module, node), *slips(own)),
+        endings=flow.endings,
+        complete=flow.complete and not flow.passed,
+        execute=place,
+        silent=flow.silent,
+        always_silent=flow.always_silent,
+        open_end=flow.open_end,
+        in_loop=flow.in_loop,
+        reads=flow.reads,
+        writes=flow.writes,
+        closed=bool(flow.endings) and all(each.written is not None for each in flow.endings),
+    )
 
 
 def _facts(module: Module, node: ast.ClassDef, library: UserCode) -> ClassFacts:
@@ -330,7 +354,7 @@ def _hooks(own: OwnClass) -> tuple[str, ...]:
     found = [name for name in HOOKS if own.method(name) is not None]
     if not found or own.root != "state":
         return ()
-    used = {each.attr for _, node in own.classes for each in ast.walk(node)
+    used = {each.attr for _, node in own.classes for each in walk_code(node)
             if isinstance(each, ast.Attribute)}  # fmt: skip
     return tuple(name for name in found if name not in used)
 
@@ -384,7 +408,7 @@ def _execute(own: OwnClass, library: UserCode) -> tuple[Flow, ast.FunctionDef | 
     if found is None:
         return Flow(), None, None
     module, function = found
-    named = sum(_is_execute(each) for _, node in own.classes for each in ast.walk(node))
+    named = sum(_is_execute(each) for _, node in own.classes for each in walk_code(node))
     plain = is_plain(function) and len(function.args.args) == 2 and not function.args.posonlyargs
     tags = any(piece.startswith("{%") for piece in _fillings(module, function))
     overridden = sum("execute" in names for names in own.names)
@@ -406,7 +430,7 @@ def _does_nothing(node: ast.stmt) -> bool:
 
 def _checks_stop(node: ast.ClassDef) -> bool:
     """Whether a class uses a method with a name such as `preempt_requested`."""
-    attributes = (each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute))
+    attributes = (each.attr for each in walk_code(node) if isinstance(each, ast.Attribute))
     return any("preempt" in name for name in attributes)
 
 
@@ -500,9 +524,9 @@ def _constructor_faults(own: OwnClass) -> list[ClassFault]:
             and each.attr == "__init__"
             and not _names_super(each.value)
         )
-        for each in ast.walk(owner)
+        for each in walk_code(owner)
     )
-    calls = calls or any(map(is_uncalled_super, ast.walk(owner)))  # "super not called"
+    calls = calls or any(map(is_uncalled_super, walk_code(owner)))  # "super not called"
     return [] if calls else [_without_call(own, *found)]
 
 
@@ -550,7 +574,7 @@ def _call_faults(own: OwnClass) -> Iterator[ClassFault]:
     names = {each.name for _, each in own.classes}
     others = own.root != "state" or sum("__init__" in each for each in own.names) != 1
     me = maker.args.args[0].arg
-    for call in ast.walk(maker):
+    for call in walk_code(maker):
         match call:
             case ast.Call(func=ast.Attribute(value=base, attr="__init__")):
                 span = module.text.span(call)
@@ -588,7 +612,7 @@ def _list_faults(own: OwnClass) -> Iterator[ClassFault]:
     if found is None or len(own.classes) > 1:
         return
     module, maker = found
-    for call in ast.walk(maker):
+    for call in walk_code(maker):
         if not isinstance(call, ast.Call) or not _is_super(call):
             continue
         for keyword in call.keywords:
@@ -672,7 +696,7 @@ def _parameters(own: OwnClass) -> tuple[Parameter, ...] | None:
     if any(module.text.is_filled(word.span) for word in words.values()):
         return None
     uses: dict[str, tuple[Span, ...]] = {}
-    for each in ast.walk(function):
+    for each in walk_code(function):
         if isinstance(each, ast.Name):
             uses[each.id] = (*uses.get(each.id, ()), module.text.span(each))
     return tuple(
@@ -719,7 +743,7 @@ def _passed(text: PythonText, node: ast.ClassDef) -> Iterator[tuple[str, tuple[s
     defaults = {each.arg: default for each, default in pairs}
     changed = {
         each.id if isinstance(each, ast.Name) else ast.unparse(each.value)
-        for each in ast.walk(maker)
+        for each in walk_code(maker)
         if (isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load))
         or isinstance(each, ast.Attribute)
     }
@@ -749,7 +773,7 @@ def _base_call(
         return None
     if any(piece.startswith("{%") for piece in text.fillings(text.span(maker))):
         return None
-    calls = [each for each in ast.walk(maker) if isinstance(each, ast.Call) and _is_super(each)]
+    calls = [each for each in walk_code(maker) if isinstance(each, ast.Call) and _is_super(each)]
     alone = [each.value for each in maker.body if isinstance(each, ast.Expr)]
     if len(calls) != 1 or calls[0] not in alone:
         return None

@@ -16,6 +16,7 @@ from smachac.pysource.class_names import SMACH_CLASSES, STATE_METHODS
 from smachac.pysource.library_names import methods_of_objects
 from smachac.pysource.modules import Module, OwnClass, compared, of_other_objects
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 
 SUPER_NOT_CALLED = FaultKind(
     name="super not called",
@@ -98,7 +99,7 @@ def slips(own: OwnClass) -> Iterator[ClassFault]:
     objects = methods_of_objects(own)
     for module, node in own.classes:
         others = of_other_objects(node)
-        every = [each for each in ast.walk(node) if each not in others]
+        every = [each for each in walk_code(node) if each not in others]
         found = [*_uncalled(module.text, every, methods, objects), *_compared(module.text, every)]
         if "super" not in module.names:
             found += _uncalled_super(module.text, every)
@@ -139,7 +140,7 @@ def _uncalled(
         return False
 
     tried = {inner for each in every if isinstance(each, ast.Try)
-             for line in each.body for inner in ast.walk(line)}  # fmt: skip
+             for line in each.body for inner in walk_code(line)}  # fmt: skip
     for each in every:
         if isinstance(each, ast.If | ast.While | ast.IfExp | ast.Assert):
             for part in operands(each.test):

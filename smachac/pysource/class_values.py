@@ -12,6 +12,7 @@ from smachac.pysource.class_operations import bound_once
 from smachac.pysource.functions import alternatives, is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function, of_other_objects
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 NO_TUPLE = FaultKind(
@@ -44,7 +45,7 @@ def written_values(own: OwnClass, execute: ast.FunctionDef, library: UserCode) -
     have, at the place of the variable."""
     found = []
     for module, function, userdata in _with_userdata(own, execute):
-        for node in ast.walk(function):
+        for node in walk_code(function):
             key = _written_key(node, userdata)
             if key is None or not isinstance(node, ast.Assign):
                 continue
@@ -123,7 +124,7 @@ def _result_in_local(
     tests which one it has."""
     if not isinstance(value, ast.Name):
         return []
-    every = [*ast.walk(function)]
+    every = [*walk_code(function)]
     result = dict(bound_once(every)).get(value.id)
     if result is None or _is_tested(every, value.id):
         return []
@@ -182,7 +183,7 @@ def kept_parameters(own: OwnClass) -> dict[str, str]:
     if found is None:
         return {}
     maker = found[1]
-    changed = {each.id for each in ast.walk(maker)
+    changed = {each.id for each in walk_code(maker)
                if isinstance(each, ast.Name) and not isinstance(each.ctx, ast.Load)}  # fmt: skip
     given = {each.arg for each in (*maker.args.args[1:], *maker.args.kwonlyargs)} - changed
     kept: dict[str, str] = {}
@@ -196,9 +197,9 @@ def kept_parameters(own: OwnClass) -> dict[str, str]:
 def _loops(own: OwnClass, kept: dict[str, str]) -> Iterator[tuple[str, Word]]:
     for module, node in own.classes:
         others = of_other_objects(node)
-        every = [each for each in ast.walk(node) if each not in others]
+        every = [each for each in walk_code(node) if each not in others]
         tried = {inner for each in every if isinstance(each, ast.Try)
-                 for line in each.body for inner in ast.walk(line)}  # fmt: skip
+                 for line in each.body for inner in walk_code(line)}  # fmt: skip
         tested = any(isinstance(each, ast.Name) and each.id in ("isinstance", "type", "hasattr")
                      for each in every)  # fmt: skip
         for each in every:
@@ -227,7 +228,7 @@ def lost_results(own: OwnClass) -> Iterator[ClassFault]:
 
 
 def _lost(module: Module, function: ast.FunctionDef) -> Iterator[ClassFault]:
-    every = [*ast.walk(function)]
+    every = [*walk_code(function)]
     assigns = [each for each in every if isinstance(each, ast.Assign) and len(each.targets) == 1]
     for node in assigns:
         match node:
@@ -304,7 +305,7 @@ def _in_parentheses(module: Module, node: ast.expr) -> Span | None:
 
 def _used_as_list(node: ast.ClassDef) -> Iterator[str]:
     """The attributes of the object that a class uses as lists."""
-    for each in ast.walk(node):
+    for each in walk_code(node):
         match each:
             case ast.Call(func=ast.Name(id="list" | "tuple" | "set" | "sorted"), args=[value]):
                 pass

@@ -53,7 +53,7 @@ def unknown_states(graph: Graph) -> Mapping[str, str]:
     reasons = dict(reversed(graph.coverage.unknown))
     found: dict[str, str] = {}
     for path, node in walk(graph.machine.root):
-        if _is_made(node):
+        if _is_unknown(node):
             found[path] = NOT_ALL if node.name == ELSEWHERE else SEVERAL
         elif node is not graph.machine.root and node.span in reasons:
             found[path] = reasons[node.span]
@@ -63,15 +63,18 @@ def unknown_states(graph: Graph) -> Mapping[str, str]:
 def _places(graph: Graph) -> Iterator[tuple[Span, str]]:
     """The places at which something of a machine is not known."""
     yield from graph.coverage.unknown
-    made = [node for _, node in walk(graph.machine.root) if _is_made(node)]
+    made = [node for _, node in walk(graph.machine.root) if _is_unknown(node)]
     yield from ((node.span, SEVERAL) for node in made if node.name != ELSEWHERE)
     if not graph.coverage.unknown:  # else they name what is not known of the container
         yield from ((node.span, NOT_ALL) for node in made if node.name == ELSEWHERE)
 
 
 def _is_made(node: Node) -> bool:
-    """Whether `graph.py` has made a state: for the unknown part of a container, or for a target
-    that is one of several."""
-    return isinstance(node, Leaf) and node.type == ELSEWHERE and (
-        node.name == ELSEWHERE or not node.open
-    )  # fmt: skip
+    """Whether `graph.py` has made a state: for the unknown part of a container, for a target that
+    is one of several, or for the function that selects the outcome of a concurrence."""
+    return isinstance(node, Leaf) and node.synthetic
+
+
+def _is_unknown(node: Node) -> bool:
+    """Whether a state stands for what is not known."""
+    return isinstance(node, Leaf) and node.synthetic and node.type == ELSEWHERE

@@ -27,6 +27,7 @@ from smachac.pysource.modules import Module, OwnClass, compared, constant_node, 
 from smachac.pysource.path_ends import PathEnds
 from smachac.pysource.skipped_writes import Paths, SkippedWrites
 from smachac.pysource.source import PythonText, name_span
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 from smachac.records import dataclass
 
@@ -92,7 +93,7 @@ class _Reader:
         self.text = module.text
         self.function = function
         self.userdata = userdata
-        self.nodes = list(ast.walk(function))
+        self.nodes = list(walk_code(function))
         self.path_ends = PathEnds(module.names, self._never_returns, self._never_exhausted)
         self.own_name = _first_argument(function)
         self.called: dict[ast.Call, Flow | None] = {}
@@ -235,7 +236,7 @@ class _Reader:
                 return (module, function, 1) if is_plain(function) else None
             case ast.Name() | ast.Attribute():
                 name = next(
-                    (each.id for each in ast.walk(called) if isinstance(each, ast.Name)), ""
+                    (each.id for each in walk_code(called) if isinstance(each, ast.Name)), ""
                 )
                 found = None if self._is_local(name) else self._function(called)
                 if found is not None and is_plain(found[1]):
@@ -328,7 +329,7 @@ class _Reader:
 
     def _skips(self, node: ast.AST) -> dict[str, Word]:
         """The keys that the called functions in an expression set only on some paths."""
-        calls = [self.called.get(each) for each in ast.walk(node) if isinstance(each, ast.Call)]
+        calls = [self.called.get(each) for each in walk_code(node) if isinstance(each, ast.Call)]
         return {key: place for flow in calls if flow is not None for key, place in flow.skipped}
 
     def _accesses(self) -> tuple[tuple[Word, ...], tuple[Word, ...]]:
@@ -343,7 +344,7 @@ class _Reader:
                 case ast.Compare(left=ast.Constant(str() as word), ops=[ast.In() | ast.NotIn()]):
                     tested.add(word)
                 case ast.Try(handlers=[_, *_]):
-                    tried.update(inner for each in node.body for inner in ast.walk(each))
+                    tried.update(inner for each in node.body for inner in walk_code(each))
         lines = [*map(compared, self.nodes)]
         compared_keys = {line.left for line in lines if line is not None}
         updated = {each.target for each in self.nodes if isinstance(each, ast.AugAssign)}
@@ -609,7 +610,7 @@ class _Reader:
                     tests.append(node)
                 case ast.Call(func=ast.Attribute(attr="get" | "pop")):
                     tests.append(node)
-        names = (each for test in tests for each in ast.walk(test) if isinstance(each, ast.Name))
+        names = (each for test in tests for each in walk_code(test) if isinstance(each, ast.Name))
         return any(each.id == name for each in names)
 
     def _results(self, call: ast.Call, before: Keys) -> bool:

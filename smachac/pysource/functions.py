@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass
 
 WIDE = frozenset(["AttributeError", "Exception", "BaseException"])
@@ -83,14 +84,14 @@ def returns_of(body: list[ast.stmt]) -> Iterator[ast.Return]:
 def caught(node: ast.ClassDef) -> set[ast.AST]:
     """The nodes in a `try` that catches the error of a missing attribute."""
     found: set[ast.AST] = set()
-    for each in ast.walk(node):
+    for each in walk_code(node):
         if isinstance(each, ast.Try) and any(map(_is_wide, each.handlers)):
-            found.update(inner for line in each.body for inner in ast.walk(line))
+            found.update(inner for line in each.body for inner in walk_code(line))
     return found
 
 
 def _is_wide(handler: ast.ExceptHandler) -> bool:
     if handler.type is None:
         return True
-    names = {each.id for each in ast.walk(handler.type) if isinstance(each, ast.Name)}
+    names = {each.id for each in walk_code(handler.type) if isinstance(each, ast.Name)}
     return bool(names & WIDE)

@@ -27,6 +27,7 @@ from smachac.pysource.modules import (
 )
 from smachac.pysource.other_modules import module_with
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 NO_IMPORTED_MODULE = FaultKind(
@@ -196,7 +197,7 @@ def _name_elsewhere(name: str, module: str, near: str | None, lines: tuple[int, 
 
 def _lines_with(name: str, user: PythonText) -> tuple[int, ...]:
     """The lines of code that use a name, each once."""
-    found = (each for each in ast.walk(user.tree) if isinstance(each, ast.Name))
+    found = (each for each in walk_code(user.tree) if isinstance(each, ast.Name))
     spans = [user.span(each) for each in found if each.id == name]
     return tuple(sorted({span.line for span in spans}))
 
@@ -220,4 +221,4 @@ def _no_module(name: str, place: Word, library: UserCode) -> Iterator[ClassFault
 
 def makes_names(tree: ast.Module) -> bool:
     """Whether code of a module can define names in another way than by a statement at its top."""
-    return any(isinstance(each, ast.Name) and each.id in MAKES_NAMES for each in ast.walk(tree))
+    return any(isinstance(each, ast.Name) and each.id in MAKES_NAMES for each in walk_code(tree))

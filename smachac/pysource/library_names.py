@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import SUGGESTION, ClassFault, FaultKind
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ def missing_name(module: str, name: str) -> str | None:
 
 def attributes(tree: ast.AST) -> Iterator[tuple[str, ast.Attribute]]:
     """The attributes of names in code that may be modules, with the name of each module."""
-    for each in ast.walk(tree):
+    for each in walk_code(tree):
         match each:
             case ast.Attribute(value=ast.Name(id=name)) if name in MODULES:
                 yield name, each

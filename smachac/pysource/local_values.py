@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from smachac.diagnostics.source import Span, Word
 from smachac.pysource.modules import OwnClass
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 
 
 def text_of(own: OwnClass, function: ast.FunctionDef) -> PythonText:
@@ -20,16 +21,16 @@ def unused_values(own: OwnClass, function: ast.FunctionDef) -> tuple[tuple[str, 
     """The local variables that `execute` assigns and does not use, with the key of each."""
     text = text_of(own, function)
     userdata = function.args.args[1].arg
-    names = [each for each in ast.walk(function) if isinstance(each, ast.Name)]
+    names = [each for each in walk_code(function) if isinstance(each, ast.Name)]
     used = {each.id for each in names if not isinstance(each.ctx, ast.Store)}
-    assigned = [each.targets[0] for each in ast.walk(function)
+    assigned = [each.targets[0] for each in walk_code(function)
                 if isinstance(each, ast.Assign) and len(each.targets) == 1]  # fmt: skip
     local = tuple(
         (each.id, Word(f"{userdata}.{each.id}", text.span(each)))
         for each in assigned
         if isinstance(each, ast.Name) and each.id not in used
     )
-    read = {each.attr for _, node in own.classes for each in ast.walk(node)
+    read = {each.attr for _, node in own.classes for each in walk_code(node)
             if isinstance(each, ast.Attribute) and not isinstance(each.ctx, ast.Store)
             and not (isinstance(each.value, ast.Name) and each.value.id == userdata)}  # fmt: skip
     kept = tuple(

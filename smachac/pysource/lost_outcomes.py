@@ -14,6 +14,7 @@ from smachac.ir.outcome_names import PREEMPTED
 from smachac.pysource.functions import is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function
 from smachac.pysource.path_ends import PathEnds
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 LOST_OUTCOME = FaultKind(
@@ -60,7 +61,7 @@ def lost_outcomes(own: OwnClass, library: UserCode) -> list[ClassFault]:
 def _listed_outcomes(own: OwnClass) -> Iterator[str]:
     """The outcomes that the constructors of a class and of its base classes list."""
     for _, node in own.classes:
-        for each in ast.walk(node):
+        for each in walk_code(node):
             match each:
                 case ast.keyword(
                     arg="outcomes", value=ast.List(elts=items) | ast.Tuple(elts=items)
@@ -82,7 +83,7 @@ def _alone(
     returned = {each.value.value for each in returns_of(execute.body)
                 if isinstance(each.value, ast.Constant)}  # fmt: skip
     ends = {id(each) for each in _last_lines(execute.body)}  # SM309
-    local = {each.id for each in ast.walk(execute)
+    local = {each.id for each in walk_code(execute)
              if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}  # fmt: skip
     for each in _statements(execute.body):
         span = module.text.span(each)
@@ -126,7 +127,7 @@ def _results(own: OwnClass, name: str) -> tuple[set[str], bool, bool]:
     whole = not nothing and PathEnds(module.names, lambda _: False).block(function.body)
     answers = PREEMPTED in texts and any(
         isinstance(each, ast.Attribute) and each.attr == "service_preempt"
-        for each in ast.walk(function)
+        for each in walk_code(function)
     )
     return texts, whole, answers
 
@@ -183,7 +184,7 @@ def _unbound(
 ) -> Iterator[ClassFault]:
     """Names that only the body of a `try` sets, and that the lines after it use although an
     `except` goes on. Code in loops is not judged: an earlier round can have set the name."""
-    every = [*ast.walk(execute)]
+    every = [*walk_code(execute)]
     if any(isinstance(each, ast.Global | ast.Nonlocal | ast.Delete) for each in every):
         return
     ends = PathEnds(module.names, lambda called: _can_raise(own, module, called, library))
@@ -209,7 +210,7 @@ def _unbound(
 
 def _leaves(node: ast.AST) -> bool:
     """Whether code has a statement that leaves it, perhaps under a condition."""
-    return any(isinstance(each, _Leaves) for each in ast.walk(node))
+    return any(isinstance(each, _Leaves) for each in walk_code(node))
 
 
 def _head(handler: ast.ExceptHandler, module: Module) -> str:
@@ -233,9 +234,9 @@ def _blocks(body: list[ast.stmt]) -> Iterator[list[ast.stmt]]:
 
 def _set_only_in(node: ast.Try, execute: ast.FunctionDef, every: list[ast.AST]) -> set[str]:
     """The names that only the body of a `try` sets, behind or by a call that can fail."""
-    calls = [(each.lineno, each.col_offset) for line in node.body for each in ast.walk(line)
+    calls = [(each.lineno, each.col_offset) for line in node.body for each in walk_code(line)
              if isinstance(each, ast.Call)]  # fmt: skip
-    inner = [each for line in (*node.body, *node.orelse) for each in ast.walk(line)]
+    inner = [each for line in (*node.body, *node.orelse) for each in walk_code(line)]
     stores = [each for each in inner if isinstance(each, ast.Name)
               and isinstance(each.ctx, ast.Store)]  # fmt: skip
     lines = {name: min(each.lineno for each in stores if each.id == name)
@@ -298,4 +299,4 @@ def _can_raise(own: OwnClass, module: Module, called: ast.expr, library: UserCod
             found = own.method(name)
         case _:
             found = find_function(module, called, library)
-    return found is not None and any(isinstance(each, ast.Raise) for each in ast.walk(found[1]))
+    return found is not None and any(isinstance(each, ast.Raise) for each in walk_code(found[1]))

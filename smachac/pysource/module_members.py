@@ -24,6 +24,7 @@ from smachac.pysource.modules import (
     source_module,
 )
 from smachac.pysource.own_objects import NO_MEMBER
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 FUNCTION_NOT_CALLED = FaultKind(
@@ -61,7 +62,7 @@ def _uncalled(
 ) -> Iterator[ClassFault]:
     """The functions of the project whose name without `()` is used as a number or a truth value, is
     kept in the userdata, or is a line."""
-    for function in ast.walk(node):
+    for function in walk_code(node):
         if not isinstance(function, _Function):
             continue
         values = {id(each): each for each in _values(function, tried)}
@@ -108,7 +109,7 @@ def _texts(dotted: str | None, library: UserCode) -> list[str]:
 def _values(function: ast.AST, tried: Set[ast.AST]) -> Iterator[_Reference]:
     """The names in a function whose value is a number, a truth value or a value of the userdata,
     or that are alone in a line."""
-    for each in ast.walk(function):
+    for each in walk_code(function):
         found: list[ast.expr] = []
         match each:
             case ast.BinOp(left=left, right=right):
@@ -135,7 +136,7 @@ def _kept(function: ast.AST, values: dict[int, _Reference]) -> Iterator[_Referen
     if not used:
         return
     stored: dict[str, int] = {}
-    for each in ast.walk(function):
+    for each in walk_code(function):
         match each:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
                 stored[name] = stored.get(name, 0) + 1
@@ -143,7 +144,7 @@ def _kept(function: ast.AST, values: dict[int, _Reference]) -> Iterator[_Referen
                 stored[name] = 2
             case ast.Global(names=names) | ast.Nonlocal(names=names):
                 stored.update(dict.fromkeys(names, 2))
-    for each in ast.walk(function):
+    for each in walk_code(function):
         match each:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 if name in used and stored[name] == 1 and isinstance(value, _Reference):
@@ -159,7 +160,7 @@ def _missing(
     """The attributes of imported modules of the project that these do not define; `done` are names
     that have a fault. A module is parsed only if its text does not contain the name."""
     words: dict[str, tuple[str, set[str]]] = {}
-    for each in ast.walk(node):
+    for each in walk_code(node):
         match each:
             case ast.Attribute(value=ast.Name() | ast.Attribute() as owner, attr=name):
                 head = first_name(owner)

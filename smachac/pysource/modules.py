@@ -16,6 +16,7 @@ from smachac.diagnostics.source import Source, Span, Word
 from smachac.diagnostics.spelling import guesser
 from smachac.ir.class_facts import DID_YOU_MEAN, ClassFault, FaultKind
 from smachac.pysource.source import ASSIGNED, PythonText, python_text, syntax_error
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 from smachac.records import dataclass
 
@@ -79,7 +80,7 @@ class Module:
     @cached_property
     def nodes(self) -> tuple[ast.AST, ...]:
         """All nodes, in the order of `ast.walk`."""
-        return (*ast.walk(self.text.tree),)
+        return (*walk_code(self.text.tree),)
 
     @cached_property
     def identifiers(self) -> frozenset[str]:
@@ -100,7 +101,7 @@ class Module:
     def tried(self) -> frozenset[ast.AST]:
         """The nodes in the bodies of `try`."""
         bodies = (line for node in self.nodes if isinstance(node, ast.Try) for line in node.body)
-        return frozenset(inner for line in bodies for inner in ast.walk(line))
+        return frozenset(inner for line in bodies for inner in walk_code(line))
 
     @cached_property
     def attributes(self) -> Mapping[AttributeUse, frozenset[str]]:
@@ -129,7 +130,7 @@ class Module:
             for node in self.text.tree.body
             if isinstance(node, ast.ClassDef)
             and len(node.bases) == 1 and is_smach_state(self, node.bases[0])
-            for part in ast.walk(node)
+            for part in walk_code(node)
             if isinstance(part, ast.Attribute) and _is_self(part.value)
         }  # fmt: skip
 
@@ -207,14 +208,14 @@ class OwnClass:
         found: dict[str, list[tuple[Module, ast.expr | None, Span]]] = {}
         for module, node in self.classes:
             others = of_other_objects(node)
-            for method in ast.walk(node):
+            for method in walk_code(node):
                 if method in others:
                     continue
                 if isinstance(method, ast.Assign | ast.AnnAssign | ast.AugAssign):
                     targets = method.targets if isinstance(method, ast.Assign) else [method.target]
                     value = None if isinstance(method, ast.AugAssign) else method.value
                     for target in targets:
-                        for each in ast.walk(target):
+                        for each in walk_code(target):
                             if isinstance(each, ast.Attribute) and _is_self(each.value):
                                 whole = value if each is target else None
                                 entry = (module, whole, module.text.span(each))
@@ -250,13 +251,13 @@ def of_other_objects(node: ast.ClassDef) -> set[ast.AST]:
     in a method that have a parameter of this name."""
     found: set[ast.AST] = set()
     own = {*node.body}
-    for each in ast.walk(node):
+    for each in walk_code(node):
         inner = each is not node and isinstance(each, ast.ClassDef)
         if isinstance(each, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
-            given = [arg.arg for arg in ast.walk(each.args) if isinstance(arg, ast.arg)]
+            given = [arg.arg for arg in walk_code(each.args) if isinstance(arg, ast.arg)]
             inner = each not in own and "self" in given
         if inner and each not in found:
-            found.update(ast.walk(each))
+            found.update(walk_code(each))
     return found
 
 

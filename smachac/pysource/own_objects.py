@@ -22,6 +22,7 @@ from smachac.pysource.modules import (
     of_other_objects,
     source_module,
 )
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 NO_MEMBER = FaultKind(
@@ -42,7 +43,7 @@ def missing_members(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
     done = set[tuple[str, str]]()
     for module, node in own.classes:
         set_here = module.attributes["changed"]
-        for use in objects.uses(module, node, ast.walk(node)):
+        for use in objects.uses(module, node, walk_code(node)):
             if (use.name, use.member) in done:
                 continue
             names, methods = members_of(use.definition)
@@ -65,7 +66,7 @@ def uncalled_members(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
     """The methods of objects of plain classes without `()`, in a condition or alone in a line."""
     objects = Objects(own, library)
     for module, node in own.classes:
-        set_here = {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)
+        set_here = {each.attr for each in walk_code(node) if isinstance(each, ast.Attribute)
                     and not isinstance(each.ctx, ast.Load)}  # fmt: skip
         kinds: dict[ast.expr, FaultKind] = {}
         kinds.update((part, kind) for kind, part in _conditions_and_lines(node))
@@ -146,7 +147,7 @@ class Objects:
 
 def _conditions_and_lines(node: ast.ClassDef) -> Iterator[tuple[FaultKind, ast.expr]]:
     """The expressions of which code uses the truth alone, and those alone in a line."""
-    for each in ast.walk(node):
+    for each in walk_code(node):
         match each:
             case (
                 ast.If(test=test)
@@ -167,7 +168,7 @@ def _is_method(node: ast.ClassDef, name: str) -> bool:
     ]
     set_ = any(isinstance(each, ast.Attribute | ast.Name) and isinstance(each.ctx, ast.Store)
                and name in (getattr(each, "attr", ""), getattr(each, "id", ""))
-               for each in ast.walk(node))  # fmt: skip
+               for each in walk_code(node))  # fmt: skip
     return len(methods) == 1 and not methods[0].decorator_list and not set_
 
 
@@ -183,7 +184,7 @@ def _help(methods: list[str]) -> str:
 
 def _bound(node: ast.ClassDef) -> Iterator[str]:
     """The names that the code of a class binds itself."""
-    for each in ast.walk(node):
+    for each in walk_code(node):
         match each:
             case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
                 yield name
@@ -234,8 +235,8 @@ def shows_all(module: Module, name: str, other: Module, node: ast.ClassDef) -> b
     all names that it has itself."""
     if other.text.fillings(other.text.span(node)):
         return False
-    used = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
-    used |= {each.attr for each in ast.walk(node) if isinstance(each, ast.Attribute)}
+    used = {each.id for each in walk_code(node) if isinstance(each, ast.Name)}
+    used |= {each.attr for each in walk_code(node) if isinstance(each, ast.Attribute)}
     bound = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
     late = {"setattr", "vars", "__dict__", "locals", "exec", "globals"} & used
     outside = any(_sets(each, name) for one in (module, other) for each in one.nodes)
@@ -255,7 +256,7 @@ def _sets(node: ast.AST, name: str) -> bool:
 def members_of(node: ast.ClassDef) -> tuple[set[str], list[str]]:
     """The names of a class and of the attributes of its objects, and its public methods."""
     names = set[str]()
-    for each in ast.walk(node):
+    for each in walk_code(node):
         match each:
             case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
                 names.add(name)

@@ -11,6 +11,7 @@ from smachac.ir.class_facts import ClassFault, FaultKind
 from smachac.pysource.functions import is_plain, returns_of
 from smachac.pysource.modules import Module, OwnClass, find_function
 from smachac.pysource.source import name_span
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import UserCode
 
 NO_RETURN = FaultKind(
@@ -52,7 +53,7 @@ def silent_results(own: OwnClass, library: UserCode) -> Iterator[ClassFault]:
 
 def _used_calls(method: ast.FunctionDef) -> Iterator[ast.Call]:
     """The calls whose result is used as a value, also over a local variable that has one value."""
-    every = [*ast.walk(method)]
+    every = [*walk_code(method)]
     names = [each for each in every if isinstance(each, ast.Name)]
     bound = Counter(each.id for each in names if not isinstance(each.ctx, ast.Load))
     bound.update(each.arg for each in every if isinstance(each, ast.arg))
@@ -106,7 +107,7 @@ def called_function(
                 (isinstance(each, ast.arg) and each.arg == head)
                 or (isinstance(each, ast.Name) and each.id == head
                     and not isinstance(each.ctx, ast.Load))
-                for each in ast.walk(method)
+                for each in walk_code(method)
             )  # fmt: skip
             return (
                 None

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from smachac.diagnostics.source import Word
 from smachac.pysource.path_ends import PathEnds
+from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass, field
 
 NONE: frozenset[str] = frozenset()
@@ -160,7 +161,7 @@ class SkippedWrites:
     def _tested(self, test: ast.expr) -> frozenset[str]:
         """The keys that a condition examines, which its branches can depend on."""
         found = set()
-        for node in ast.walk(test):
+        for node in walk_code(test):
             match node:
                 case ast.Attribute(value=ast.Name(id=name), attr=key) if name == self.userdata:
                     found.add(key)
@@ -191,7 +192,7 @@ class SkippedWrites:
         """The keys that statements set before anything in them can raise an exception."""
         found = NONE
         for each in body:
-            if any(isinstance(node, ast.Call | ast.Subscript) for node in ast.walk(each)):
+            if any(isinstance(node, ast.Call | ast.Subscript) for node in walk_code(each)):
                 break
             found |= self.effects(each)
         return found

@@ -18,11 +18,11 @@ from smachac.records import dataclass
 ASSIGNED = "Maybe you meant '==' instead of '='?"
 """The end of the message of Python for `=` in a comparison."""
 
-LONGEST = 200_000
+LONGEST = 1_000_000
 """The longest text that is read, in characters."""
 
 _RAW = re.compile(r"\{%[-+]?\s*raw\b")
-_NOT_PORTABLE_LINES = re.compile(r"\r(?!\n)|[\f\v]")
+_NOT_PORTABLE_LINES = re.compile(r"\r(?!\n)")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,8 +78,8 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
         if not template:  # finds `await` outside `async`, and `return` outside a function
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", SyntaxWarning)
-                compile(text, "", "exec", dont_inherit=True)
-    except (SyntaxError, RecursionError, MemoryError):
+                compile(tree, "", "exec", dont_inherit=True)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
     return PythonText(source=source, tree=tree, filled=filled)
 

@@ -20,6 +20,7 @@ from smachac.pysource.base_calls import TOO_MANY_ARGUMENTS
 from smachac.pysource.class_names import UNDEFINED_NAME
 from smachac.pysource.modules import template_module
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 from smachac.pysource.user_code import StateFault, TemplateBody, UserCode
 
 ARGUMENT_ORDER = FaultKind(
@@ -166,7 +167,7 @@ def _unknown_class(
     guess = guesser([name])
     found = [
         Word(each.func.id, span)
-        for each in ast.walk(text.tree)
+        for each in walk_code(text.tree)
         if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
         if (span := text.span(each.func)) and body.start(1) <= span.start < body.end(1)
         if each.func.id not in names and not text.is_filled(span)
@@ -243,7 +244,7 @@ def _only_call(text: PythonText, body: re.Match[str], start: re.Pattern[str]) ->
     """The only call of a class in the block `body`, also behind an expression of Jinja that prints
     nothing: `{{ '' }}Measure(...)`."""
     starts = {each.end() - 1 for each in start.finditer(text.source.text, *body.span(1))}
-    found = [each for each in ast.walk(text.tree)
+    found = [each for each in walk_code(text.tree)
              if isinstance(each, ast.Call) and isinstance(each.func, ast.Name)
              and text.span(each.func).end in starts]  # fmt: skip
     return found[0] if len(found) == 1 else None

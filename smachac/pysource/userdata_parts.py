@@ -10,6 +10,7 @@ from smachac.ir.class_facts import Part, Step
 from smachac.pysource.functions import is_plain
 from smachac.pysource.modules import OwnClass
 from smachac.pysource.source import PythonText
+from smachac.pysource.syntax_tree import walk_code
 
 TESTS = frozenset(["hasattr", "isinstance", "type"])
 """Functions that test what a value is; code with one of them may handle values of every type."""
@@ -25,7 +26,7 @@ def parts_of_arguments(own: OwnClass, execute: ast.FunctionDef) -> Iterator[Part
     """The parts of userdata keys that helpers of the class read, where `execute` passes the value
     of the key as an argument: `self._log(userdata.parcel)`."""
     userdata = execute.args.args[1].arg
-    every = [*ast.walk(execute)]
+    every = [*walk_code(execute)]
     calls = [each for each in every if isinstance(each, ast.Call)]
     if not calls or any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
         return
@@ -57,7 +58,7 @@ def parts_of_arguments(own: OwnClass, execute: ast.FunctionDef) -> Iterator[Part
 
 def _is_rebound(function: ast.FunctionDef, name: str) -> bool:
     """Whether a function binds the name of a parameter again."""
-    binds = [each for each in ast.walk(function)
+    binds = [each for each in walk_code(function)
              if (isinstance(each, ast.Name) and each.id == name and not _is_read(each))
              or (isinstance(each, ast.arg) and each.arg == name)]  # fmt: skip
     return len(binds) > 1
@@ -66,7 +67,7 @@ def _is_rebound(function: ast.FunctionDef, name: str) -> bool:
 def tried_code(every: Sequence[ast.AST]) -> set[ast.AST]:
     """The code in the body of a `try`."""
     return {inner for each in every if isinstance(each, ast.Try)
-            for line in each.body for inner in ast.walk(line)}  # fmt: skip
+            for line in each.body for inner in walk_code(line)}  # fmt: skip
 
 
 def _parts(
@@ -74,7 +75,7 @@ def _parts(
 ) -> tuple[Part, ...]:
     """The parts that a function reads of the userdata of a name, and of its parameters in `given`,
     which are values of keys."""
-    every = [*ast.walk(function)]
+    every = [*walk_code(function)]
     tried = tried_code(every)
     if any(isinstance(each, ast.Name) and each.id in TESTS for each in every):
         return ()
@@ -145,8 +146,8 @@ def added_entries(own: OwnClass, execute: ast.FunctionDef) -> frozenset[str] | N
     """The entries that the code of a class can add to the values of keys; None if their names are
     not known, or if it passes a whole value to other code."""
     userdata = execute.args.args[1].arg
-    every = [each for _, node in own.classes for each in ast.walk(node)]
-    names = _names([*ast.walk(execute)], userdata, {})
+    every = [each for _, node in own.classes for each in walk_code(node)]
+    names = _names([*walk_code(execute)], userdata, {})
     found: set[str] = set()
     for each in every:
         match each:

@@ -32,6 +32,7 @@ from smachac.ir.nodes import (
 )
 from smachac.ir.nodes import Sequence as SequenceNode
 from smachac.ir.outcome_names import PREEMPTED, good_first, is_failure
+from smachac.ir.script_paths import sugared_child
 from smachac.ir.traversal import leads_to_child, outcome_names, walk
 from smachac.ir.types import Type
 from smachac.refactor.cst import Collection, Item
@@ -249,7 +250,9 @@ def add_state(
     """
     machine = _machine(script)
     path, parent = find_state(machine, container)
-    if isinstance(parent, Leaf) or parent.sugar:
+    while not isinstance(parent, Leaf) and (inside := sugared_child(parent)) is not None:
+        path, parent = f"{path}/{inside.name}", inside
+    if isinstance(parent, Leaf):
         raise RefusedError(parent.span, f"`{parent.name}` is not a container of the script")
     if isinstance(parent, Iterator):
         raise RefusedError(parent.span, f"`{parent.name}` runs one state: it cannot have two")

@@ -63,8 +63,9 @@ class Candidate(NamedTuple):
     @property
     def order(self) -> tuple[object, ...]:
         """The place among all candidates: the same in every run."""
-        edits = self.repair.edits
-        return (self.cost, [(edit.span.source.name, *edit.span[1:], edit.text) for edit in edits])
+        spans = [(edit.span, edit.text) for edit in self.repair.edits]
+        rows = [(span.source.name, span.start, span.end, text) for span, text in spans]
+        return (self.cost, rows)
 
 
 def candidate(

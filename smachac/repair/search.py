@@ -51,8 +51,11 @@ MOST_FINDINGS = 100
 """In a report of more findings nothing is searched."""
 
 MOST_REVEALING = 1.5
-"""Up to this cost, a repair after which more is understood can reveal other findings: the name that
-it writes is like the one that it replaces."""
+"""Up to this cost, a repair after which more texts or types are understood can reveal other
+findings: the name that it writes is like the one that it replaces."""
+
+ONE_SLIP = 1.0
+"""The same for a repair after which more names of transitions are known."""
 
 Again: TypeAlias = "Callable[[Mapping[Source, str]], Analysis]"
 """A function that analyses a script again after changes of its texts."""
@@ -63,10 +66,11 @@ Mark: TypeAlias = "tuple[str, Severity, str, tuple[str, ...]]"
 
 class Unknown(NamedTuple):
     """How much of a script is not understood, in the order of the phases: texts that could not be
-    read, and states of an unknown type."""
+    read, states of an unknown type, and transitions with an unknown name."""
 
     unread: int
     unresolved: int
+    unnamed: int
 
 
 def clusters_of(
@@ -78,11 +82,12 @@ def clusters_of(
     """
     found: list[Cluster] = []
     wanted = {identity(item) for item in shown}
-    for analysis in batch.analyses.values():
-        mine = [item for item in analysis.report if identity(item) in wanted]
-        if not mine:
-            continue
+    for name, known in batch.analyses.items():
+        mine = [item for item in known.report if identity(item) in wanted]
         most = MOST_CLUSTERS - len(found)
+        if not most or all(item.severity is Severity.INFO for item in mine):
+            continue
+        analysis = batch.whole(name)
         for cluster in clusters(analysis, mine, again(analysis, extra), most):
             found.append(cluster)
             wanted -= {identity(item) for item in (cluster.finding, *cluster.explained)}
@@ -263,7 +268,8 @@ def _proof(
         left, still = _marks(after.report), unknown(after)
         if still > before or left[_mark(item)] >= marks[_mark(item)]:
             continue
-        if left - marks and (still == before or candidate.cost > MOST_REVEALING):
+        more = MOST_REVEALING if still[:2] < before[:2] else ONE_SLIP
+        if left - marks and (still == before or candidate.cost > more):
             continue
         if _leaves_its_type(item, candidate, analysis.machine, after.machine):
             continue
@@ -311,8 +317,9 @@ def unknown(analysis: Analysis) -> Unknown:
     """What an analysis has not understood."""
     unread = sum(item.code in ("SM001", "SM006") for item in analysis.report)
     if analysis.machine is None:
-        return Unknown(unread + 1, 0)
-    return Unknown(unread, _unresolved(analysis.machine))
+        return Unknown(unread + 1, 0, 0)
+    unnamed = sum(item.code in ("SM101", "SM102") for item in analysis.report)
+    return Unknown(unread, _unresolved(analysis.machine), unnamed)
 
 
 def _unresolved(machine: Machine) -> int:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from smachac.analysis.context import Context
@@ -15,7 +16,7 @@ from smachac.analysis.def_use import (
     written_on,
 )
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
-from smachac.analysis.uses import Use
+from smachac.analysis.uses import Use, UseKind
 from smachac.diagnostics.source import Span
 from smachac.ir import nodes
 from smachac.ir.nodes import Preset
@@ -32,12 +33,15 @@ MOST_READERS = 100
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UseStatus:
-    """A use of a key by the state at a path of the script. For a read: whether the key is set
+    """A use of a key by the state at a path of the script; `kind` is that of the state without its
+    badges; `own`: it is the container of the key itself. For a read: whether the key is set
     there, and a path on which it is not; for a write: the outcomes with which the key is set, and
     whether these are all."""
 
     use: Use
     path: str
+    kind: UseKind
+    own: bool
     outcomes: tuple[str, ...] = ()
     always: bool = True
     status: Status | None = None
@@ -95,7 +99,23 @@ def explain_keys(context: Context, pairs: Iterable[tuple[str, str]]) -> Iterator
         if pair not in done:
             same = same_key(context.flow, *pair)
             done.update(same)
-            yield tuple(explain_key(context, path, key) for path, key in same)
+            yield _in_script(context, {path: explain_key(context, path, key) for path, key in same})
+
+
+def _in_script(context: Context, parts: Mapping[str, KeyPart]) -> KeyExplanation:
+    """A key in the containers of the script, without those that were made of a field of a state,
+    unless it is in such a container alone, as the item of a loop."""
+    view = context.written
+    own = {path: part for path, part in parts.items() if view.parts[path].role == "state"}
+    if not own:
+        return tuple(parts.values())
+    found = []
+    for path, part in own.items():
+        inside, outer = part.inside, around(context.flow, path)
+        while inside and outer is not None and outer in parts and outer not in own:
+            inside, outer = parts[outer].inside, around(context.flow, outer)
+        found.append(replace(part, inside=inside))
+    return tuple(found)
 
 
 def explain_key(context: Context, path: str, key: str) -> KeyPart:
@@ -105,15 +125,15 @@ def explain_key(context: Context, path: str, key: str) -> KeyPart:
     container = scope.container
     outer = around(flow, path)
     beyond = (scope.inputs.get(key), scope.outputs.get(key))
-    shown = context.script_paths.get(outer or "", outer)
+    view = context.written
+    shown = None if outer is None else view.state(outer)
     inside = next(((shown, name) for name in beyond if shown and name), None)
     preset = next((each for each in container.userdata if each.key == key), None)
     found = scope.uses.of(key)
     read = [use for use in found if use.reads and use.path != path]
     followed = key_statuses(flow, path, key, [use.path for use in read[:MOST_READERS]])
-    paths = context.script_paths
     return KeyPart(
-        container=paths.get(path, path),
+        container=view.state(path),
         key=key,
         type=context.types.keys.get((path, key), ANY),
         value=_value(context, path, preset) if preset else "",
@@ -130,21 +150,29 @@ def _value(context: Context, path: str, preset: Preset) -> str:
     return SECRET if secret else print_data(preset.value.data)
 
 
+_OF_LEAVES: Mapping[UseKind, UseKind] = {"copies in": "reads", "copies out": "writes"}
+"""The uses of a key by a leaf, whose container of a field copies the key."""
+
+
 def _use_status(
     context: Context, scope: UserdataScope, use: Use, status: Status | None
 ) -> UseStatus:
     """A use of a key, with the path of its state in the script. `status`: that of a reader."""
-    flow, shown = context.flow, context.script_paths.get(use.path, use.path)
+    flow, shown = context.flow, context.written.state(use.path)
+    state = context.written.states.get(shown)
+    is_leaf = state is not None and isinstance(state.node, nodes.Leaf)
+    kind = _OF_LEAVES.get(use.kind, use.kind) if is_leaf else use.kind
+    own = use.path == scope.path
     if use.writes:
         outcomes = written_on(flow, scope, use)
         always = outcomes == outcome_names(use.node)
-        return UseStatus(use=use, path=shown, outcomes=outcomes, always=always)
+        return UseStatus(use=use, path=shown, kind=kind, own=own, outcomes=outcomes, always=always)
     if status is None or not use.reads:
-        return UseStatus(use=use, path=shown)
+        return UseStatus(use=use, path=shown, kind=kind, own=own)
     without: tuple[str, ...] = ()
     if status in ("sometimes", "never"):
         without = path_without(flow, use.path, use.outer, context.plain_paths)
-    return UseStatus(use=use, path=shown, status=status, without=without)
+    return UseStatus(use=use, path=shown, kind=kind, own=own, status=status, without=without)
 
 
 def key_text(part: KeyPart) -> tuple[str, list[Paragraph]]:
@@ -174,12 +202,12 @@ def _use_text(part: KeyPart, use_status: UseStatus) -> tuple[str, list[str]]:
     where = place(use.span)
     status = f": {STATUS[use_status.status]}" if use_status.status else ""
     unset = list(way("  unset on the path ", use_status.without))
-    match use.kind:
+    match use_status.kind:
         case "presets":
             return "set", [f"before {name} starts, to {part.value}{where}"]
         case "items":
             return "set", [f"by {name}, to each item in turn{where}"]
-        case "reads" if use_status.path == part.container:
+        case "reads" if use_status.own:
             return "read", [f"by {name} itself, which iterates over it{where}"]
         case "reads":
             return "read", [f"by {name}{called}{status}{where}", *unset]
@@ -217,7 +245,7 @@ def _use_json(use_status: UseStatus) -> dict[str, Any]:
     use = use_status.use
     found: dict[str, Any] = {
         "state": use_status.path,
-        "use": use.kind,
+        "use": use_status.kind,
         "as": use.key,
         "at": at(use.span),
     }

@@ -34,13 +34,11 @@ def explain_name(context: Context, report: Report, name: str, form: str) -> str:
     its container. Raises UnclearError if the name has no meaning, or too many.
     """
     flow = context.flow
-    paths = [path for path, _ in context.states]
     states = _states(context, name)
-    shown = context.script_paths
-    exact = [path for path in states if shown.get(path, path) == name]
+    exact = [path for path in states if path == name]
     keys = _keys(context, name)
     if not states and not keys:
-        raise UnclearError(_unknown(flow, [shown.get(path, path) for path in paths], name))
+        raise UnclearError(_unknown(flow, context.written.states, name))
     if len(states) > 1 and not exact:
         raise UnclearError(_several_states(context, name, states, keys))
     if not states and len(keys) > 1 and all(key != name.rpartition("/")[2] for _, key in keys):
@@ -51,14 +49,17 @@ def explain_name(context: Context, report: Report, name: str, form: str) -> str:
 
 
 def _states(context: Context, name: str) -> list[str]:
-    """The full paths of the states of a name: the end of a path in the script, of one without roles
-    (`LOOK/TIMER`), or of a full path."""
-    states = dict(context.states)
-    for paths in (context.script_paths, context.plain_paths, {}):
-        found = [path for path in states if _ends(paths.get(path, path), name)]
-        if found:
-            return found
-    return []
+    """The paths in the script of the states of a name: the end of a path in the script, or of one
+    in traces, also without its brackets (`LOOK/TIMER`)."""
+    view = context.written
+    found = [path for path in view.states if _ends(path, name)]
+    if not found:
+        found = [
+            part.state
+            for shown, part in view.traced.items()
+            if _ends(shown, name) or _ends(f"{part.state}/{shown.rpartition('/')[2]}", name)
+        ]
+    return list(dict.fromkeys(found))
 
 
 def _ends(path: str, name: str) -> bool:
@@ -67,12 +68,12 @@ def _ends(path: str, name: str) -> bool:
 
 def _keys(context: Context, name: str) -> list[tuple[str, str]]:
     """The keys of a name: those of containers, else those of states."""
-    names, paths = key_names(context.flow), context.script_paths
+    names, view = key_names(context.flow), context.written
     pairs = names.get(name, [])
     where, _, key = name.rpartition("/")
     if not pairs and where:
         found = names.get(key, [])
-        pairs = [pair for pair in found if _ends(paths.get(pair[0], pair[0]), where)]
+        pairs = [pair for pair in found if _ends(view.state(pair[0]), where)]
         pairs = pairs or [pair for pair in found if _ends(pair[0], where)]
         name = key
     return [pair for pair in pairs if pair[1] == name] or pairs
@@ -89,9 +90,8 @@ def _unknown(flow: DataFlow, paths: Iterable[str], name: str) -> str:
 def _several_states(
     context: Context, name: str, states: list[str], keys: list[tuple[str, str]]
 ) -> str:
-    shown = context.script_paths
     lines = [f"there are {len(states)} states `{name}`; give the path of one of them:"]
-    named = [f"  {shown.get(path, path)} ({context.spans[path]})" for path in states]
+    named = [f"  {path} ({context.written.states[path].node.span})" for path in states]
     named += [f"  {path} (a key)" for path in _key_paths(context, keys)]
     return "\n".join([*lines, *_few(named)])
 
@@ -102,8 +102,7 @@ def _several_keys(context: Context, name: str, keys: list[tuple[str, str]]) -> s
 
 
 def _key_paths(context: Context, keys: list[tuple[str, str]]) -> list[str]:
-    paths = context.script_paths
-    return [f"{paths.get(path, path)}/{key}" for path, key in keys]
+    return list(dict.fromkeys(f"{context.written.state(path)}/{key}" for path, key in keys))
 
 
 def _few(lines: list[str]) -> list[str]:

@@ -12,9 +12,9 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.wording import MOST_LISTED
 from smachac.ir.nodes import Key, Leaf, Node, Transition
 from smachac.ir.printer import print_data
-from smachac.ir.script_paths import Sugared, in_words, role, sugared_containers
 from smachac.ir.traversal import outcome_names, remapping
 from smachac.ir.types import ANY, Type
+from smachac.ir.written import Badge, Round, WrittenState
 from smachac.records import dataclass, field
 from smachac.report.outline import STATUS, Paragraph, article, at, place, way
 
@@ -32,26 +32,24 @@ class StateKey:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exit:
-    """An outcome, the states or outcomes that it leads to, and the transitions on the way."""
+    """An outcome, the states or outcomes that it leads to, and the transitions on the way. After an
+    outcome of one try or item, `again` is what begins next."""
 
     outcome: str
-    arrivals: tuple[Arrival, ...]
-    steps: tuple[Transition, ...]
+    arrivals: tuple[Arrival, ...] = ()
+    steps: tuple[Transition, ...] = ()
+    again: Round | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateExplanation:
-    """The state of the state at a path.
+    """The state as it was written.
 
-    `plain` is the path without roles, `sugar` the containers made around it. `entered` are the
-    preceding states with their outcomes; an empty name is the start of the container. `way` is a
-    shortest path to the state, empty if there is none.
+    `entered` are the preceding states with their outcomes; an empty name is the start of the
+    container. `way` is a shortest path to the state, empty if there is none.
     """
 
-    path: str
-    plain: str
-    node: Node
-    sugar: tuple[Sugared, ...]
+    written: WrittenState
     reads: tuple[StateKey, ...]
     writes: tuple[StateKey, ...]
     claims: tuple[str, ...]
@@ -61,93 +59,103 @@ class StateExplanation:
     exits: tuple[Exit, ...]
     report: Report = field(compare=False, repr=False)
 
+    @property
+    def node(self) -> Node:
+        return self.written.node
+
+    @property
+    def path(self) -> str:
+        return self.written.path
+
 
 def explain_state(context: Context, path: str, report: Report) -> StateExplanation:
-    """The explanation of the state at a path, which must exist."""
+    """The explanation of the state at a path in the script, which must exist."""
     routes, types = context.routes, context.types
-    node, plain = routes.nodes[path], context.plain_paths.get(path, path)
-    sugar = [each for each in sugared_containers(routes.root).values() if each.state == plain]
-    names = remapping(node)
+    state = context.written.states[path]
+    node, outer, full, whole = state.node, state.outer, state.full, state.outer_full
+    names = remapping(outer)
+    given = {key.name for key in outer.inputs}
 
     def read(key: Key) -> StateKey:
-        outer = names[key.name]
-        status = key_status(context.flow, path, outer) if node is not routes.root else None
-        known = types.inputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
-        return StateKey(key=key, type=known, outer=outer, status=status)
+        status = None
+        if node is not routes.root:
+            place = (whole, names[key.name]) if key.name in given else (full, key.name)
+            status = key_status(context.flow, *place)
+        known = types.inputs.get((full, key.name)) or types.keys.get((full, key.name), key.type)
+        return StateKey(key=key, type=known, outer=names[key.name], status=status)
 
     def written(key: Key) -> StateKey:
-        known = types.outputs.get((path, key.name)) or types.keys.get((path, key.name), key.type)
+        known = types.outputs.get((full, key.name)) or types.keys.get((full, key.name), key.type)
         return StateKey(key=key, type=known, outer=names[key.name])
 
-    found = [*outcome_names(node), *(step.outcome for step in node.transitions)]
+    found = [*outcome_names(outer), *(step.outcome for step in outer.transitions)]
+    exits = [
+        Exit(
+            outcome=name,
+            arrivals=tuple(
+                _in_script(context, path, name, each) for each in routes.arrivals(whole, name)
+            ),
+            steps=tuple(step for step in outer.transitions if step.outcome == name),
+            again=state.next_round(name),
+        )
+        for name in dict.fromkeys(found)
+    ]
+    exits += [
+        Exit(outcome=name, again=state.next_round(name))
+        for name in state.repeated
+        if name not in found
+    ]
     return StateExplanation(
-        path=context.script_paths.get(path, path),
-        plain=plain,
-        node=node,
-        sugar=tuple(sugar) if not role(node) else (),
+        written=state,
         reads=tuple(map(read, node.inputs)),
         writes=tuple(map(written, node.outputs)),
-        claims=tuple(sorted(context.claims[path])),
-        entered=tuple(_entries(context, plain)),
-        way=_way(context, path),
-        reachable=(path, "") in routes.before,
-        exits=tuple(
-            Exit(
-                outcome=name,
-                arrivals=tuple(
-                    _in_script(context, path, name, each) for each in routes.arrivals(path, name)
-                ),
-                steps=tuple(step for step in node.transitions if step.outcome == name),
-            )
-            for name in dict.fromkeys(found)
-        ),
-        report=[item for item in report if item.finding.node == plain],
+        claims=tuple(sorted(context.claims[full])),
+        entered=tuple(_entries(context, state)),
+        way=_way(context, state),
+        reachable=(whole, "") in routes.before,
+        exits=tuple(exits),
+        report=[item for item in report if item.finding.node == path],
     )
 
 
-def _way(context: Context, path: str) -> tuple[str, ...]:
-    before, entry = context.routes.before, (path, "")
+def _way(context: Context, state: WrittenState) -> tuple[str, ...]:
+    before, entry = context.routes.before, (state.outer_full, "")
     return path_to(before, entry, context.plain_paths) if entry in before else ()
 
 
-def _entries(context: Context, plain: str) -> dict[tuple[str, str], None]:
-    """The states, with outcomes, after which the state at a plain path is entered, or a container
-    of its sugar from outside it."""
-    routes, paths = context.routes, context.plain_paths
-    mine = {path for path in routes.nodes if paths.get(path, path) == plain}
+def _entries(context: Context, state: WrittenState) -> dict[tuple[str, str], None]:
+    """The states, with outcomes, after which a state is entered."""
+    routes, view = context.routes, context.written
+    entry = (state.outer_full, "")
     found: dict[tuple[str, str], None] = {}
-    for path, outcome in routes.before:
-        here = paths.get(path, path)
-        inside = here.startswith(f"{plain}/") or (path in mine and not outcome)
-        if inside or not any(to in mine for to, end in routes.after((path, outcome)) if not end):
+    for full, outcome in routes.before:
+        if not view.is_whole(full) or entry not in routes.after((full, outcome)):
             continue
-        found[here.rpartition("/")[2] if outcome else "", outcome] = None
+        name = view.states[view.state(full)].name
+        found[name if outcome else "", outcome] = None
     return found
 
 
 def _in_script(context: Context, path: str, outcome: str, arrival: Arrival) -> Arrival:
-    """Where an outcome of the state at a path leads, with plain paths. The containers of its sugar
-    that end with the same outcome are left out."""
-    paths = context.plain_paths
-    through = [(paths.get(path, path), outcome)]
+    """Where an outcome of the state at a path leads, with paths of the script."""
+    view = context.written
+    through = [(path, outcome)]
     for inner, end in arrival.through:
-        shown = (paths.get(inner, inner), end)
-        through += [shown] if shown != through[-1] else []
-    return Arrival(tuple(through[1:]), paths.get(arrival.target, arrival.target))
+        shown = (view.state(inner), end)
+        if view.is_whole(inner) and shown != through[-1]:
+            through.append(shown)
+    return Arrival(tuple(through[1:]), view.state(arrival.target))
 
 
 def state_text(state: StateExplanation) -> tuple[str, list[Paragraph]]:
     """A headline and its paragraphs."""
     node = state.node
+    outer = state.written.outer
     lines = [f"{article(kind(node))}{place(node.span)}"]
-    lines += [
-        f"with `{each.role}`: {in_words(each.role, each.limit)}"
-        for each in state.sugar
-        if each.role != "try"
-    ]
+    lines += [_badge_text(badge) for badge in state.written.badges]
     lines += [f"from the sub-script called at {call}" for call in node.via]
-    if node.doc:
-        lines.append(" ".join(node.doc.split()))
+    if outer.doc:
+        lines.append(" ".join(outer.doc.split()))
     return f"state {state.path}", [
         ("is", lines),
         ("holds", list(_held(node))),
@@ -163,13 +171,19 @@ def state_text(state: StateExplanation) -> tuple[str, list[Paragraph]]:
     ]
 
 
+def _badge_text(badge: Badge) -> str:
+    """What a field of the state does, in words."""
+    if badge.field == "catches":
+        return f"an exception ends it with {badge.outcome}"
+    what = "item" if badge.field == "for_each" else "try"
+    again = f", the next {what} after {' or '.join(badge.again)}" if badge.again else ""
+    return f"with `{badge.field}`: {badge.text}{again}"
+
+
 def kind(node: Node) -> str:
-    """The state type; for a container its class and, if a field of a state created it, that
-    field."""
+    """The state type, for a container its class."""
     if isinstance(node, Leaf):
         return node.type or "state that could not be read"
-    if node.sugar:
-        return f"{type(node).__name__} made for `{node.sugar}`"
     return type(node).__name__
 
 
@@ -209,7 +223,7 @@ def _written(node: Node, state_key: StateKey) -> str:
 
 
 def _entered(state: StateExplanation) -> Iterator[str]:
-    container = state.plain.rpartition("/")[0].rpartition("/")[2]
+    container = state.path.rpartition("/")[0].rpartition("/")[2]
     if not state.reachable:
         yield "never: no path from the start leads to this state"
         return
@@ -226,11 +240,15 @@ def _entered(state: StateExplanation) -> Iterator[str]:
 def _left(state: StateExplanation, leaving: Exit) -> str:
     if "/" not in state.path:
         return f"on {leaving.outcome}: the machine has ended"
+    again = [f"the next {leaving.again}"] if leaving.again else []
     places = [step.span for step in leaving.steps if step.origin == "written"]
     where = place(places[0]) if places else ""
     if leaving.arrivals:
-        ways = " or ".join(dict.fromkeys(_arrival(state.node, each) for each in leaving.arrivals))
+        arrivals = (_arrival(state.node, each) for each in leaving.arrivals)
+        ways = " or ".join(dict.fromkeys([*again, *arrivals]))
         return f"on {leaving.outcome}: {ways}{where}"
+    if again:
+        return f"on {leaving.outcome}: {again[0]}"
     if leaving.steps:
         return f"on {leaving.outcome}: to {leaving.steps[0].target}, which does not exist{where}"
     return f"on {leaving.outcome}: it has no transition"
@@ -256,7 +274,7 @@ def state_json(state: StateExplanation) -> dict[str, Any]:
     return {
         "state": state.path,
         "type": kind(node),
-        "doc": node.doc,
+        "doc": state.written.outer.doc,
         "at": at(node.span),
         "called": [at(call) for call in node.via],
         "reads": [_key_json(each) for each in state.reads],
@@ -284,6 +302,7 @@ def _exit_json(leaving: Exit) -> dict[str, Any]:
     arrivals: Iterable[Arrival] = leaving.arrivals
     return {
         "outcome": leaving.outcome,
+        **({"next": leaving.again} if leaving.again else {}),
         "leads": [
             {"through": [list(each) for each in arrival.through], "to": arrival.target}
             for arrival in arrivals

@@ -8,7 +8,7 @@ from html import escape
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.ir.nodes import Container, Machine
-from smachac.ir.traversal import walk
+from smachac.ir.written import written
 from smachac.report.terminal import visible
 from smachac.report.text import render_text, summary
 
@@ -67,7 +67,8 @@ def _svg(machine: Machine) -> str:
     program = shutil.which("dot")
     if program is None:
         return ""
-    text = "\n".join(picture(machine, depth=None, rankdir="TB"))
+    view = written(machine)
+    text = "\n".join(picture(machine, view, depth=view.fitting_depth()))
     try:
         done = subprocess.run(
             [program, "-Tsvg"],
@@ -85,9 +86,11 @@ def _svg(machine: Machine) -> str:
 def _table(machine: Machine) -> str:
     """The states with their types and transitions, in Markdown."""
     lines = ["| state | type | transitions |", "| --- | --- | --- |"]
-    for path, node in walk(machine.root):
+    for path, state in written(machine).states.items():
+        node = state.node
         kind = type(node).__name__ if isinstance(node, Container) else node.type
-        edges = ", ".join(f"{edge.outcome} → {edge.target}" for edge in node.transitions)
+        kind = ", ".join([kind, *(badge.text for badge in state.badges)])
+        edges = ", ".join(f"{edge.outcome} → {edge.target}" for edge in state.outer.transitions)
         cells = (escape(visible(text)).replace("|", "&#124;") for text in (path, kind, edges))
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from smachac.frontend import schema
+from smachac.frontend.loader import Library
+from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.nodes import ContainerKind, StateType, VariableType
 from smachac.ir.types import ANY, Type
 from smachac.report.terminal import on_one_line
@@ -40,6 +42,17 @@ def container_type(name: ContainerKind) -> StateType:
         },
         given=frozenset(["outcomes", "input_keys", "output_keys"]),
     )
+
+
+def usable_types(library: Library) -> Iterator[tuple[StateType, bool]]:
+    """The state types that a script can name, by name, and whether they are of the user. A built-in
+    template without an interface is none: only other templates include it."""
+    for name in sorted(library.template_names()):
+        own = any(library.own_template(f"{name}{end}") for end in (".yml", ".tpl.py", ".tpl"))
+        if own or library.template(f"{name}.yml"):
+            type_ = find_state_type(name, library, [])
+            if type_ is not None:
+                yield type_, own
 
 
 def list_text(known: Sequence[Known]) -> str:

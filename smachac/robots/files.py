@@ -12,9 +12,12 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from smachac.robots.core_schema import value_of
-from smachac.robots.description import Description, Station, read
 from smachac.robots.encodings import decoded
 from smachac.robots.fields import DataError
+
+TYPE_CHECKING = False  # annotations only: most scripts have no robot
+if TYPE_CHECKING:
+    from smachac.robots.description import Description, Station
 
 BUILT_IN = ("panda", "baxter", "iiwa")
 """The names of the robots that are built in."""
@@ -108,6 +111,8 @@ def built_in(name: str) -> Description | Station:
     """The built-in robot of that name. Raises KeyError for another name."""
     if name not in BUILT_IN:
         raise KeyError(name)
+    from smachac.robots.description import read
+
     return read(read_file(FOLDER / f"{name}.yml"))
 
 

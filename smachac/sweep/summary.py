@@ -1,24 +1,26 @@
-"""The summary of a sweep as plain data: rates with intervals, coverage, failures by path, times."""
+"""The summary of a sweep as plain data: shares, intervals, failures by cause, coverage, times."""
 
 from __future__ import annotations
 
 import shlex
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
-from smachac.ir.nodes import Leaf, Machine, Node
-from smachac.ir.script_paths import added_states, script_paths
-from smachac.ir.traversal import outcome_names, walk
-from smachac.records import dataclass, field
+from smachac.ir.nodes import Leaf, Machine
+from smachac.ir.traversal import outcome_names
+from smachac.ir.written import Written, WrittenState, written
+from smachac.sweep.failures import Failures, Group
 from smachac.sweep.task import Run, merge_states
 from smachac.sweep.variation import Single, value_text
-from smachac.verify.coverage import CoverageItem, coverage_items
+from smachac.verify.coverage import CoverageItem, coverage_items, script_coverage
 from smachac.verify.result import place
-from smachac.verify.trace_statistics import StateStatistics, TraceStatistics, wilson_interval
-
-LAST_STEPS = 3
-"""The last ends of states by which failures are grouped."""
+from smachac.verify.trace_statistics import (
+    TraceStatistics,
+    WrittenStatistics,
+    wilson_interval,
+    written_statistics,
+)
 
 PARTS = 10
 """The parts into which the range of a varied number is divided."""
@@ -26,22 +28,30 @@ PARTS = 10
 Summary = dict[str, Any]
 
 
-@dataclass(slots=True, kw_only=True)
-class _Group:
-    """Failures with the same end."""
+class Difference(NamedTuple):
+    """The share of runs with a property before and after, and the difference with its interval.
+    `what` is empty for the successes, else what failed first."""
 
-    outcome: str | None
-    error: str
-    steps: list[tuple[str, str]]
-    runs: list[tuple[int, Mapping[str, Single]]] = field(default_factory=list)
+    what: str
+    before: float
+    after: float
+    difference: float
+    interval: tuple[float, float]
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the interval does not contain 0."""
+        low, high = self.interval
+        return low > 0 or high < 0
 
 
 class Totals:
-    """The totals of runs, which are added one by one; the runs themselves are not kept. If no
-    outcome is known as a success, each run with an outcome is good."""
+    """The totals of the runs of a machine, which are added one by one; the runs themselves are not
+    kept. If no outcome is known as a success, each run with an outcome is good."""
 
-    def __init__(self, successes: Collection[str]) -> None:
+    def __init__(self, machine: Machine, successes: Collection[str]) -> None:
         self.successes = successes
+        self.failures = Failures(machine, successes)
         self.runs = 0
         self.outcomes: Counter[str | None] = Counter()
         self.statistics = TraceStatistics()
@@ -49,7 +59,6 @@ class Totals:
         self.faults: Counter[str] = Counter()
         self.seconds: list[float] = []
         self.values: dict[str, list[tuple[Single, bool]]] = {}
-        self._groups: dict[tuple[object, ...], _Group] = {}
 
     def add(self, run: Run) -> None:
         """Add a run, in the order of seeds."""
@@ -64,13 +73,7 @@ class Totals:
         for name, value in run.values.items():
             self.values.setdefault(name, []).append((value, good))
         if not good:
-            steps = run.steps[-LAST_STEPS:]
-            error = run.error.partition("\n")[0]
-            key = (run.outcome, error, *steps)
-            group = self._groups.setdefault(
-                key, _Group(outcome=run.outcome, error=error, steps=steps)
-            )
-            group.runs.append((run.seed, run.values))
+            self.failures.add(run)
 
     def is_good(self, run: Run) -> bool:
         """Whether a run is no failure."""
@@ -80,18 +83,13 @@ class Totals:
     def succeeded(self) -> int:
         return sum(self.outcomes[name] for name in self.successes)
 
-    def groups(self) -> list[_Group]:
-        """The failures by their ends, the most frequent first."""
-        return sorted(self._groups.values(), key=lambda group: (-len(group.runs), group.runs[0][0]))
-
 
 def summarize(
     machine: Machine, totals: Totals, *, planned: int, first: int, command: Sequence[str]
 ) -> Summary:
     """The summary as data for JSON. `planned` runs were to be done, with seeds from `first` on;
     `command` are the words that run the script once, without seed and varied values."""
-    shown = script_paths(machine.root)
-    added = added_states(machine.root)
+    view = written(machine)
     runs = totals.runs
     names = dict.fromkeys([*outcome_names(machine.root), *filter(None, totals.outcomes)])
     return {
@@ -106,13 +104,12 @@ def summarize(
             for name in [*names, *([None] if totals.outcomes[None] else [])]
         ],
         "seconds": _times(totals.seconds),
-        "coverage": _coverage(machine, totals, shown),
+        "coverage": _coverage(machine, totals, view),
         "states": [
-            _state(shown.get(path, path), node, totals.statistics.states[path])
-            for path, node in walk(machine.root)
-            if path in totals.statistics.states and path not in added
+            _state(view.states[path], visits)
+            for path, visits in written_statistics(totals.statistics.states, view).items()
         ],
-        "failures": [_failure(group, shown, command) for group in totals.groups()],
+        "failures": [_failure(group, runs, command) for group in totals.failures.groups()],
         "faults": dict(sorted(totals.faults.items())),
         "varied": [_varied(name, values) for name, values in totals.values.items()],
     }
@@ -156,51 +153,62 @@ def _parts(values: Sequence[tuple[float, Any]], count: int) -> list[tuple[float,
     return [(ends[k], ends[k + 1], each) for k, each in enumerate(inside)]
 
 
-def _coverage(machine: Machine, totals: Totals, shown: Mapping[str, str]) -> dict[str, Any]:
-    items = coverage_items(machine)
-    added = added_states(machine.root)
-    states = [path for path, _ in walk(machine.root) if path not in added]
-    missing = [item for item in items if item not in totals.covered]
-    unvisited = [path for path in states if path not in totals.statistics.states]
+def _coverage(machine: Machine, totals: Totals, view: Written) -> dict[str, Any]:
+    covered = script_coverage(coverage_items(machine), totals.covered, view)
+    missing = covered.missing()
+    unvisited = [
+        path
+        for path, state in view.states.items()
+        if state.outer_full not in totals.statistics.states
+    ]
     return {
         "states": {
-            "visited": len(states) - len(unvisited),
-            "total": len(states),
-            "missing": [shown.get(path, path) for path in unvisited],
+            "visited": len(view.states) - len(unvisited),
+            "total": len(view.states),
+            "missing": unvisited,
         },
         "transitions": {
-            "taken": len(items) - len(missing),
-            "total": len(items),
+            "taken": len(covered.items) - len(missing),
+            "total": len(covered.items),
             "missing": [
-                {"path": item.path, "outcome": item.outcome, "to": item.target, "src": place(span)}
-                for item, span in ((each.renamed(shown), items[each]) for each in missing)
+                {
+                    "path": item.path,
+                    "outcome": item.outcome,
+                    "to": item.target,
+                    "src": place(covered.items[item]),
+                }
+                for item in missing
             ],
         },
     }
 
 
-def _state(path: str, node: Node, state: StateStatistics) -> dict[str, Any]:
+def _state(state: WrittenState, found: WrittenStatistics) -> dict[str, Any]:
+    visits = found.visits
     return {
-        "path": path,
-        "leaf": isinstance(node, Leaf),
-        "visits": state.visits,
-        "unfinished": state.unfinished,
-        "mean": state.mean,
-        "longest": state.longest,
-        "seconds": state.seconds,
-        "outcomes": dict(sorted(state.outcomes.items(), key=lambda each: (-each[1], each[0]))),
+        "path": state.path,
+        "leaf": isinstance(state.node, Leaf),
+        "visits": visits.visits,
+        "unfinished": visits.unfinished,
+        "mean": visits.mean,
+        "longest": visits.longest,
+        "seconds": visits.seconds,
+        "outcomes": dict(sorted(visits.outcomes.items(), key=lambda each: (-each[1], each[0]))),
+        "rounds": dict(found.rounds),
     }
 
 
-def _failure(group: _Group, shown: Mapping[str, str], command: Sequence[str]) -> dict[str, Any]:
+def _failure(group: Group, runs: int, command: Sequence[str]) -> dict[str, Any]:
+    """A group of failures: `first` and `turning` are numbers of steps, from 0."""
     seed, values = group.runs[0]
     return {
-        "count": len(group.runs),
+        **_share(len(group.runs), runs),
         "outcome": group.outcome,
         "error": group.error,
-        "end": [
-            {"path": shown.get(path, path), "outcome": outcome} for path, outcome in group.steps
-        ],
+        "steps": [step._asdict() for step in group.steps],
+        "first": group.first,
+        "turning": group.turning,
+        "left_out": group.left_out,
         "seeds": [seed for seed, _ in group.runs],
         "replay": replay(command, seed, values),
     }

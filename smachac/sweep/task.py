@@ -18,8 +18,7 @@ from smachac.frontend.text.yaml_tree import parse
 from smachac.interpreter.interpreter import MAX_STEPS
 from smachac.interpreter.scenario import Scenario
 from smachac.ir.nodes import Checked, Leaf
-from smachac.ir.script_paths import script_paths
-from smachac.ir.traversal import walk
+from smachac.ir.written import written
 from smachac.records import dataclass, field
 from smachac.robots.faults import Fault
 from smachac.runtime.tracing.writer import with_shown_paths
@@ -59,8 +58,8 @@ class Run:
 
     `outcome` is None if the run failed; `error` then has the reason. `seconds` is its duration,
     in simulated time if a world was open; `wall` the time that it took. `steps` are the last ends
-    of leaves, path and outcome; `faults` the faults that happened; `world` a digest of the
-    simulated world at the end of the machine.
+    of states as they were written, path and outcome, which is empty for an exception; `faults` the
+    faults that happened; `world` a digest of the simulated world at the end of the machine.
     """
 
     seed: int
@@ -175,8 +174,13 @@ class _Recorder:
         result: Run,
         observe: Callable[[dict[str, Any]], None] | None,
     ) -> None:
-        self._full = {shown: full for full, shown in script_paths(machine.root).items()}
-        self._leaves = {path for path, node in walk(machine.root) if isinstance(node, Leaf)}
+        view = written(machine)
+        self._full = {part.shown: part.full for part in view.parts.values()}
+        self._ending = {
+            state.outer_full
+            for state in view.states.values()
+            if isinstance(state.node, Leaf) or state.badges
+        }
         self._root = machine.root.name
         self._statistics = TraceStatistics()
         self._coverage = Coverage(machine)
@@ -195,8 +199,8 @@ class _Recorder:
             result.faults.append(found["fault"])
             return
         self._coverage.record(found)
-        if kind == "exit" and found["path"] in self._leaves:
-            result.steps.append((found["path"], found["outcome"]))
+        if (kind == "exit" and found["path"] in self._ending) or kind == "error":
+            result.steps.append((found["path"], found.get("outcome", "")))
             del result.steps[:-MOST_STEPS]
         elif kind == "finish":
             result.world = _world_digest()

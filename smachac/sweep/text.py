@@ -8,19 +8,28 @@ from xml.etree import ElementTree as ET
 
 from smachac.report.junit import xml_text
 from smachac.report.terminal import on_one_line
-from smachac.sweep.summary import Summary
+from smachac.sweep.summary import Difference, Summary
 from smachac.sweep.task import Run
 from smachac.verify.statistics_report import percent, seconds, table
+from smachac.verify.trace_statistics import rounds_in_words
 
 MOST_LINES = 10
 """Limit on the groups of failures and on the missing transitions in the text; JSON has all."""
+
+EXCEPTION = "an exception"
+"""What stands in place of an outcome where an exception ended the run."""
 
 MOST_SEEDS = 8
 """Limit on the seeds of a group of failures in the text."""
 
 
-def summary_text(summary: Summary) -> str:
-    """The summary for a terminal."""
+def points(difference: float) -> str:
+    """A difference of shares in percentage points: `+3.5`."""
+    return f"{100 * difference:+.1f}"
+
+
+def summary_text(summary: Summary, differences: Sequence[Difference] = ()) -> str:
+    """The summary for a terminal; `differences` are those from an earlier sweep."""
     runs, planned = summary["runs"], summary["planned"]
     left = f" of {planned}" if runs < planned else ""
     lines = [f"{runs}{left} run{'s' * (planned != 1)} of {summary['machine']}"]
@@ -38,6 +47,7 @@ def summary_text(summary: Summary) -> str:
         lines += _varied(summary)
         lines += [f"fault {text}: {count}" for text, count in summary["faults"].items()]
         lines += _failures(summary)
+        lines += _differences(differences)
     return "".join(f"{on_one_line(line)}\n" for line in lines)
 
 
@@ -92,7 +102,9 @@ def _states(summary: Summary) -> Iterator[str]:
         unfinished = [f"{each['unfinished']} not ended"] if each["unfinished"] else []
         name = f"{'  ' * each['path'].count('/')}{each['path'].rpartition('/')[2]}"
         mean, longest = seconds(each["mean"]), seconds(each["longest"])
-        rows.append((name, str(each["visits"]), mean, longest, ", ".join([*shares, *unfinished])))
+        rounds = [words] if (words := rounds_in_words(each["rounds"])) else []
+        shares += [*unfinished, *rounds]
+        rows.append((name, str(each["visits"]), mean, longest, ", ".join(shares)))
     yield from table(rows)
 
 
@@ -114,19 +126,37 @@ def _varied(summary: Summary) -> Iterator[str]:
         yield from table(rows)
 
 
-def how_often(count: int) -> str:
-    """A number of times in words."""
-    return "once" if count == 1 else f"{count} times"
+def step_text(step: dict[str, Any]) -> str:
+    """The end of a state in words: `GO_HOME: exhausted (3 tries)`."""
+    name = step["path"].rpartition("/")[2]
+    badge = f" ({step['badge']})" if step["badge"] else ""
+    return f"{name}: {step['outcome']}{badge}" if step["outcome"] else f"{name}: {EXCEPTION}"
+
+
+def end_text(group: dict[str, Any]) -> str:
+    """How the runs of a group of failures ended."""
+    return f"failed run: {group['error']}" if group["outcome"] is None else group["outcome"]
+
+
+def first_text(group: dict[str, Any]) -> str:
+    """What failed first in a group of failures."""
+    return step_text(group["steps"][group["first"]]) if group["steps"] else end_text(group)
+
+
+def count_text(part: dict[str, Any]) -> str:
+    """A number of runs and its share, with the interval."""
+    count = part["count"]
+    return f"{count} run{'s' * (count != 1)}, {_share(part)}"
 
 
 def _failures(summary: Summary) -> Iterator[str]:
     groups = summary["failures"]
     if groups:
-        yield "failures, by the last states before them:"
+        yield "failures, by the state that failed first:"
     for group in groups[:MOST_LINES]:
-        what = group["error"] if group["outcome"] is None else group["outcome"]
-        end = ", ".join(f"{each['path']}: {each['outcome']}" for each in group["end"])
-        yield f"  {how_often(group['count'])} {what}" + (f" after {end}" if end else "")
+        yield f"  {first_text(group)}: {count_text(group)}"
+        steps = [*map(step_text, group["steps"]), *(["..."] if group["left_out"] else [])]
+        yield f"    {' -> '.join([*steps, end_text(group)])}"
         seeds = ", ".join(map(str, group["seeds"][:MOST_SEEDS]))
         more = len(group["seeds"]) - MOST_SEEDS
         word = "seed" if len(group["seeds"]) == 1 else "seeds"
@@ -134,6 +164,20 @@ def _failures(summary: Summary) -> Iterator[str]:
         yield f"    {group['replay']}"
     if (more := len(groups) - MOST_LINES) > 0:
         yield f"  ... and {more} more groups: --format json has all of them"
+
+
+def _differences(differences: Sequence[Difference]) -> Iterator[str]:
+    if not differences:
+        return
+    yield "compared with the earlier sweep:"
+    rows = [("  share of runs", "before", "now", "points", "95 % interval")]
+    for each in differences:
+        low, high = each.interval
+        rows.append(
+            (f"  {each.what or 'success'}", percent(each.before), percent(each.after),
+             points(each.difference), f"{points(low)} to {points(high)}")
+        )  # fmt: skip
+    yield from table(rows)
 
 
 def junit_text(machine: str, runs: Iterable[tuple[Run, bool, str]]) -> str:

@@ -13,6 +13,7 @@ from keyword import iskeyword
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.frontend.loader import Library
 from smachac.ir.nodes import Checked, Machine, StateType
+from smachac.ir.written import Written, generated, written
 from smachac.pysource.user_code import Declared
 from smachac.records import dataclass, field
 from smachac.version import __version__
@@ -72,13 +73,15 @@ class Target:
     the support code that the files need beside them: file name to path under smachac/runtime.
     `has_code(type, library)` is whether the target can emit states of a type.
     `declared(type, library)` is the interface that the user's class for a type declares; None if it
-    cannot be read. `is_picture`: `emit` also accepts a machine with errors, and one that was read
-    from Python.
+    cannot be read. `lacks` are the constructs, in words, that the target cannot express: `emit`
+    reports each at its place. `is_picture`: `emit` also accepts a machine with errors, and one that
+    was read from Python.
     """
 
     name: str
     description: str
     emit: Emit
+    lacks: tuple[str, ...] = ()
     is_picture: bool = False
     options: Mapping[str, str] = field(default_factory=dict)
     file_options: frozenset[str] = frozenset()
@@ -125,15 +128,38 @@ def stem(machine: Machine) -> str:
     return f"_{word}" if word[0].isdigit() or iskeyword(word) else word
 
 
-def levels_open(options: Mapping[str, str]) -> int | None:
-    """The option `depth` of pictures: the number of levels that are drawn open; None for all.
+def levels_open(options: Mapping[str, str], view: Written) -> int:
+    """The option `depth` of pictures: the number of levels that are drawn open; without it, as many
+    as a page has room for.
 
     Raises OptionError if it is not a number.
     """
     depth = options.get("depth")
     if depth is not None and not (depth.isdecimal() and len(depth) < 10 and int(depth) > 0):
         raise OptionError(f"`depth` must be a number of levels, 1 or more, not `{depth}`")
-    return int(depth) if depth else None
+    return int(depth) if depth else view.fitting_depth()
+
+
+def view_of(machine: Machine, options: Mapping[str, str]) -> Written:
+    """The states that a picture shows: those of the script, or with the option `generated` all of
+    the graph.
+
+    Raises OptionError if it is neither `true` nor `false`.
+    """
+    wanted = options.get("generated", "false")
+    if wanted not in ("true", "false"):
+        raise OptionError(f"`generated` must be true or false, not `{wanted}`")
+    return generated(machine) if wanted == "true" else written(machine)
+
+
+GENERATED = "true: also the states that `timeout`, `retry` and `for_each` add"
+"""The description of the option `generated` of pictures."""
+
+DEPTH = (
+    "levels of containers that are drawn open; deeper ones are closed boxes (default: as many as"
+    " show at most 40 states)"
+)
+"""The description of the option `depth` of pictures."""
 
 
 def target_names() -> list[str]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from pathlib import PurePosixPath
+from unicodedata import normalize
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.ir.nodes import Machine
@@ -44,10 +46,17 @@ def _hidden_module(path: PurePosixPath, text: str, files: Mapping[str, str]) -> 
         if path.name != "__init__.py":
             return ""
         path = path.parent
-    else:
+    elif _can_import(text, path.stem):
         known += _imported(text)
     modules = {each.casefold(): each for each in known}
     return modules.get(path.stem.casefold(), "")
+
+
+def _can_import(text: str, name: str) -> bool:
+    """Whether a line with an import has a word: to read a long program takes a second."""
+    word = re.compile(rf"\b{re.escape(name.casefold())}\b")
+    lines = normalize("NFKC", text).casefold().replace("\\\n", " ").split("\n")
+    return any("import" in line and word.search(line) is not None for line in lines)
 
 
 def _imported(text: str) -> Iterator[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import resources
 
 
 def runtime_files(paths: Mapping[str, str]) -> dict[str, str]:
@@ -11,6 +10,8 @@ def runtime_files(paths: Mapping[str, str]) -> dict[str, str]:
 
     `paths` maps each name to the path of its file below `runtime/`.
     """
+    from importlib import resources
+
     return {
         name: resources.files("smachac.runtime").joinpath(path).read_text("utf-8")
         for name, path in paths.items()

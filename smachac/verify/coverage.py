@@ -3,6 +3,7 @@ covered."""
 
 from __future__ import annotations
 
+from collections.abc import Container as Holder
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple
 
@@ -12,6 +13,8 @@ from smachac.ir import nodes
 from smachac.ir.concurrence_rules import matching_rule
 from smachac.ir.nodes import Concurrence, Container, Leaf, Machine
 from smachac.ir.traversal import containers, leads_to_child, outcome_names
+from smachac.ir.written import Written
+from smachac.records import dataclass
 from smachac.runtime.tracing.writer import shown_path
 from smachac.verify.guidance import Planner, item_count, possible_leaf_outcomes
 
@@ -141,6 +144,44 @@ class Coverage:
     def missing(self) -> list[CoverageItem]:
         """The items that no run has covered, in the order of the script."""
         return [item for item in self.items if item not in self.covered]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptCoverage:
+    """The items of a machine as it was written, with their spans, and those that runs covered. For
+    a state with tries or items, one item is that the next one begins after an outcome."""
+
+    items: Mapping[CoverageItem, Span]
+    covered: frozenset[CoverageItem]
+
+    def missing(self) -> list[CoverageItem]:
+        """The items that no run has covered, in the order of the script."""
+        return [item for item in self.items if item not in self.covered]
+
+
+def script_coverage(
+    items: Mapping[CoverageItem, Span], covered: Holder[CoverageItem], view: Written
+) -> ScriptCoverage:
+    """The coverage of the states of a view, from that of the graph."""
+    found = {item: item_in_script(item, view) for item in items}
+    return ScriptCoverage(
+        items={mine: items[item] for item, mine in found.items() if mine is not None},
+        covered=frozenset(
+            mine for item, mine in found.items() if mine is not None and item in covered
+        ),
+    )
+
+
+def item_in_script(item: CoverageItem, view: Written) -> CoverageItem | None:
+    """An item of the graph as one of the states of a view; None if it is inside one state."""
+    part = view.parts[item.path]
+    if item.kind == "rule":
+        is_written = part.role == "state"
+    else:
+        is_written = view.is_whole(item.path) or (item.kind == "loop" and part.begins is not None)
+    if not is_written:
+        return None
+    return item._replace(path=part.state, target=view.state(item.target))
 
 
 class Reason(NamedTuple):

@@ -8,13 +8,17 @@ from typing import Any
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.ir.nodes import Machine
 from smachac.ir.outcome_names import fails
-from smachac.ir.script_paths import script_paths
-from smachac.ir.traversal import walk
+from smachac.ir.traversal import outcome_names
+from smachac.ir.written import WrittenState, written
 from smachac.targets.html.model import machine_model
 from smachac.targets.html.page import render_page
-from smachac.verify.coverage import Coverage
+from smachac.verify.coverage import Coverage, script_coverage
 from smachac.verify.result import item_text
-from smachac.verify.trace_statistics import TraceStatistics
+from smachac.verify.trace_statistics import (
+    TraceStatistics,
+    rounds_in_words,
+    written_statistics,
+)
 
 
 def statistics_html(
@@ -29,28 +33,34 @@ def statistics_html(
 
 
 def _data(machine: Machine, statistics: TraceStatistics, taken: Coverage) -> dict[str, Any]:
-    """The field `statistics` of the viewer's model; states have their full paths."""
-    shown = script_paths(machine.root)
-    nodes = dict(walk(machine.root))
-    missing = taken.missing()
+    """The field `statistics` of the viewer's model."""
+    view = written(machine)
+    covered = script_coverage(taken.items, taken.covered, view)
+    states = written_statistics(statistics.states, view)
     return {
         "states": {
             path: {
-                "visits": state.visits,
-                "unfinished": state.unfinished,
-                "mean": state.mean,
-                "longest": state.longest,
-                "outcomes": dict(state.outcomes),
+                "visits": visits.visits,
+                "unfinished": visits.unfinished,
+                "mean": visits.mean,
+                "longest": visits.longest,
+                "outcomes": dict(visits.outcomes),
+                "rounds": rounds_in_words(rounds),
             }
-            for path, state in statistics.states.items()
+            for path, (visits, rounds) in states.items()
         },
-        "transitions": len(taken.items),
+        "transitions": len(covered.items),
         "never": [
             {
                 "path": each.path,
-                "text": item_text(each.renamed(shown)),
-                "failure": each.kind != "rule" and fails(nodes[each.path], each.outcome),
+                "text": item_text(each),
+                "failure": each.kind != "rule" and _fails(view.states[each.path], each.outcome),
             }
-            for each in missing
+            for each in covered.missing()
         ],
     }
+
+
+def _fails(state: WrittenState, outcome: str) -> bool:
+    own = outcome_names(state.outer)
+    return fails(state.outer if outcome in own else state.node, outcome)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from smachac.analysis.absorbing_chain import EndlessChainError
@@ -13,20 +14,26 @@ from smachac.analysis.markov_prediction import (
     Sensitivity,
 )
 from smachac.ir.nodes import Machine
-from smachac.ir.script_paths import script_paths
-from smachac.ir.traversal import walk
+from smachac.ir.written import written
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
 from smachac.targets.dot.graph import Notes, picture
 from smachac.verify.trace_report import UntakenTransition
-from smachac.verify.trace_statistics import StateStatistics, TraceStatistics, wilson_interval
+from smachac.verify.trace_statistics import (
+    StateStatistics,
+    TraceStatistics,
+    rounds_in_words,
+    wilson_interval,
+    written_statistics,
+)
 
 MOST_GAINS = 10
 """Limit on the failures in the text; JSON contains all of them."""
 
 
 class Forecast(NamedTuple):
-    """The prediction of a machine from its traces, and the failures that cost successes."""
+    """The prediction of a machine from its traces, and the failures that cost successes; paths are
+    those of the states as they were written."""
 
     prediction: Prediction
     sensitivities: Sequence[Sensitivity]
@@ -37,28 +44,37 @@ def forecast(
     machine: Machine, statistics: TraceStatistics, successes: Collection[str]
 ) -> Forecast | str:
     """The prediction, or the reason why there is none."""
-    shown = script_paths(machine.root)
+    view = written(machine)
     try:
         model = MarkovModel(machine, statistics.measured())
         found = model.sensitivities(successes)
     except NoMeasurementError as error:
-        return f"no run has ended `{shown.get(error.path, error.path)}`"
+        return f"no run has ended `{view.state(error.path)}`"
     except EndlessChainError as error:
         return f"in these runs {error}"
-    return Forecast(model.prediction, found, model.as_measured)
+    return Forecast(
+        replace(
+            model.prediction,
+            visits={
+                view.state(path): number
+                for path, number in model.prediction.visits.items()
+                if view.is_whole(path)
+            },
+        ),
+        [replace(each, path=view.state(each.path)) for each in found],
+        list(dict.fromkeys(map(view.state, model.as_measured))),
+    )
 
 
 def statistics_text(
     machine: Machine, statistics: TraceStatistics, untaken: Sequence[UntakenTransition]
 ) -> str:
     """A line for each state, in the order of the script, then the failures that no run had."""
-    shown = script_paths(machine.root)
     rows = [("state", "visits", "mean", "longest", "outcomes")]
-    for path, state in _in_order(machine, statistics):
-        name = f"{'  ' * path.count('/')}{shown.get(path, path).rpartition('/')[2]}"
-        rows.append(
-            (name, str(state.visits), seconds(state.mean), seconds(state.longest), _shares(state))
-        )
+    for path, (state, rounds) in written_statistics(statistics.states, written(machine)).items():
+        name = f"{'  ' * path.count('/')}{path.rpartition('/')[2]}"
+        shares = ", ".join(filter(None, [_shares(state), rounds_in_words(rounds)]))
+        rows.append((name, str(state.visits), seconds(state.mean), seconds(state.longest), shares))
     lines = list(table(rows))
     lines += [f"never taken: {item.path}: {item.outcome} -> {item.target}" for item, _ in untaken]
     return "".join(f"{on_one_line(line)}\n" for line in lines)
@@ -68,11 +84,12 @@ def statistics_json(
     machine: Machine, statistics: TraceStatistics, untaken: Sequence[UntakenTransition]
 ) -> str:
     """One JSON object: the statistics of each state, and the transitions that no trace takes."""
-    shown = script_paths(machine.root)
+    found = written_statistics(statistics.states, written(machine))
     states = [
-        {"path": shown.get(path, path), "visits": state.visits, "unfinished": state.unfinished,
-         "mean": state.mean, "longest": state.longest, "outcomes": dict(state.outcomes)}
-        for path, state in _in_order(machine, statistics)
+        {"path": path, "visits": state.visits, "unfinished": state.unfinished,
+         "mean": state.mean, "longest": state.longest, "outcomes": dict(state.outcomes),
+         "rounds": dict(rounds)}
+        for path, (state, rounds) in found.items()
     ]  # fmt: skip
     never = [{"path": item.path, "outcome": item.outcome, "to": item.target} for item, _ in untaken]
     return json_text({"states": states, "never_taken": never})
@@ -87,7 +104,6 @@ def forecast_text(machine: Machine, statistics: TraceStatistics, found: Forecast
     ]
     if isinstance(found, str):
         return "\n".join([*lines, f"no prediction: {found}"]) + "\n"
-    shown = script_paths(machine.root)
     rows = [("outcome", "measured", "95 % interval", "predicted")]
     for name in dict.fromkeys([*root.outcomes, *found.prediction.outcomes]):
         low, high = wilson_interval(root.outcomes[name], root.ended)
@@ -97,13 +113,15 @@ def forecast_text(machine: Machine, statistics: TraceStatistics, found: Forecast
         rows.append((name, percent(measured), interval, predicted))
     rows.append(("mean duration", seconds(root.mean), "", seconds(found.prediction.seconds)))
     lines += table(rows)
-    lines += [f"as measured, not computed: {shown.get(path, path)}" for path in found.as_measured]
+    lines += [f"as measured, not computed: {path}" for path in found.as_measured]
     if found.sensitivities:
         lines.append("failures, by the successes that the machine would gain without them:")
+    states = written(machine).states
+    words = {None: "visits", "try": "tries", "item": "items"}
     for each in found.sensitivities[:MOST_GAINS]:
-        path = shown.get(each.path, each.path)
+        visits = words[states[each.path].next_round(each.outcome)]
         lines.append(
-            f"  {path}: {each.outcome} ({percent(each.probability)} of its visits):"
+            f"  {each.path}: {each.outcome} ({percent(each.probability)} of its {visits}):"
             f" +{percent(each.gain)}"
         )
     return "".join(f"{on_one_line(line)}\n" for line in lines)
@@ -116,21 +134,20 @@ def forecast_dot(machine: Machine, statistics: TraceStatistics, found: Forecast 
     if not isinstance(found, str):
         for each in found.sensitivities:
             gains[each.path] = max(each.gain, gains.get(each.path, 0.0))
-    states = {}
-    for path, state in statistics.states.items():
+    view = written(machine)
+    states, outcomes = {}, {}
+    for path, (state, rounds) in written_statistics(statistics.states, view).items():
         gain = f", without failure +{percent(gains[path])}" if gains.get(path, 0.0) > 0 else ""
-        states[path] = f"{state.visits} visits, {seconds(state.mean)}{gain}"
-    outcomes = {
-        path: {name: percent(share) for name, share in state.probabilities().items()}
-        for path, state in statistics.states.items()
-        if state.ended
-    }
-    return "\n".join([*picture(machine, notes=Notes(states, outcomes)), ""])
+        more = f", {rounds_in_words(rounds)}" if rounds else ""
+        states[path] = f"{state.visits} visits{more}, {seconds(state.mean)}{gain}"
+        if state.ended:
+            outcomes[path] = {name: percent(p) for name, p in state.probabilities().items()}
+    notes = Notes(states, outcomes)
+    return "\n".join([*picture(machine, view, depth=view.fitting_depth(), notes=notes), ""])
 
 
 def forecast_json(machine: Machine, statistics: TraceStatistics, found: Forecast | str) -> str:
     """One JSON object: what was measured, the prediction or null, and every failure."""
-    shown = script_paths(machine.root)
     root = statistics.states[machine.root.name]
     data: dict[str, Any] = {
         "runs": root.visits,
@@ -147,24 +164,15 @@ def forecast_json(machine: Machine, statistics: TraceStatistics, found: Forecast
     data["prediction"] = {
         "outcomes": dict(prediction.outcomes),
         "seconds": prediction.seconds,
-        "visits": {shown.get(path, path): n for path, n in prediction.visits.items()},
+        "visits": dict(prediction.visits),
     }
-    data["as_measured"] = [shown.get(path, path) for path in found.as_measured]
+    data["as_measured"] = list(found.as_measured)
     data["failures"] = [
-        {"path": shown.get(each.path, each.path), "outcome": each.outcome,
+        {"path": each.path, "outcome": each.outcome,
          "probability": each.probability, "gain": each.gain}
         for each in found.sensitivities
     ]  # fmt: skip
     return json_text(data)
-
-
-def _in_order(
-    machine: Machine, statistics: TraceStatistics
-) -> Iterator[tuple[str, StateStatistics]]:
-    """The states that were visited, in the order of the script."""
-    for path, _ in walk(machine.root):
-        if path in statistics.states:
-            yield path, statistics.states[path]
 
 
 def _shares(state: StateStatistics) -> str:

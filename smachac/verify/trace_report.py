@@ -10,12 +10,11 @@ from smachac.diagnostics.source import Span
 from smachac.diagnostics.wording import quote
 from smachac.interpreter.result import Event
 from smachac.ir.nodes import Machine
-from smachac.ir.script_paths import script_paths
 from smachac.records import dataclass
 from smachac.report.json import json_text
 from smachac.report.terminal import on_one_line
 from smachac.runtime.tracing.writer import LONGEST_LINE, LONGEST_NAME
-from smachac.verify.coverage import Coverage, CoverageItem
+from smachac.verify.coverage import CoverageItem, ScriptCoverage
 from smachac.verify.result import MOST_MISSING, item_text, place
 from smachac.verify.trace_conformance import Acceptor
 
@@ -112,10 +111,9 @@ class UntakenTransition(NamedTuple):
     span: Span
 
 
-def untaken(machine: Machine, taken: Coverage) -> list[UntakenTransition]:
+def untaken(taken: ScriptCoverage) -> list[UntakenTransition]:
     """The transitions that no trace takes, in the order of the script."""
-    shown = script_paths(machine.root)
-    return [UntakenTransition(each.renamed(shown), taken.items[each]) for each in taken.missing()]
+    return [UntakenTransition(each, taken.items[each]) for each in taken.missing()]
 
 
 def trace_text(

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from math import sqrt
+from typing import NamedTuple
 
 from smachac.analysis.markov_prediction import Measured
 from smachac.interpreter.result import Event
+from smachac.ir.written import Round, Written
 from smachac.records import dataclass, field
 
 
@@ -46,6 +49,38 @@ def wilson_interval(count: int, total: int) -> tuple[float, float]:
     middle = (share + spread / 2) / (1 + spread)
     half = z / (1 + spread) * sqrt(share * (1 - share) / total + spread / (4 * total))
     return max(0.0, middle - half), min(1.0, middle + half)
+
+
+class WrittenStatistics(NamedTuple):
+    """The visits of a state as it was written, and the numbers of its tries and items."""
+
+    visits: StateStatistics
+    rounds: Mapping[Round, int]
+
+
+def written_statistics(
+    states: Mapping[str, StateStatistics], view: Written
+) -> dict[str, WrittenStatistics]:
+    """The statistics of the states of a view by path, in the order of the script, from those of
+    the graph by full path."""
+    return {
+        state.path: WrittenStatistics(
+            states[state.outer_full],
+            {
+                part.begins: states[part.full].visits
+                for part in state.parts
+                if part.begins is not None and part.full in states
+            },
+        )
+        for state in view.states.values()
+        if state.outer_full in states
+    }
+
+
+def rounds_in_words(rounds: Mapping[Round, int]) -> str:
+    """The numbers of tries and items: `303 tries`."""
+    words = {"try": ("try", "tries"), "item": ("item", "items")}
+    return ", ".join(f"{n} {words[what][n != 1]}" for what, n in rounds.items())
 
 
 OPENING = {"start": "finish", "enter": "exit"}

@@ -12,13 +12,13 @@ from typing import Any
 from smachac.diagnostics.diagnostic import Severity
 from smachac.diagnostics.source import Source
 from smachac.frontend.files import disk_library
-from smachac.frontend.types.state_types import find_state_type
 from smachac.ir.recursion import deep_recursion
 from smachac.refactor.autofix import differences
 from smachac.refactor.edit import BadEditError, Edit, EditResult, Operation, edit_of, perform
 from smachac.refactor.edited_script import EditedScript, HasErrorsError
 from smachac.refactor.editor import RefusedError
 from smachac.refactor.locate import NotFoundError
+from smachac.report.state_types import usable_types
 from smachac.targets.html.model import finding_data
 from smachac.view.server import ActionError
 
@@ -30,6 +30,9 @@ longer has the text of its source."""
 
 MOST_UNDONE = 200
 """The most edits that can be undone."""
+
+PROJECT, BUILT_IN = "of this project", "built-in"
+"""The groups of state types."""
 
 PROOFS: Mapping[Operation, str] = {
     "rename": "Proven: apart from the name, the machine is the same.",
@@ -103,9 +106,17 @@ class Edits:
     def types(self, body: Mapping[str, Any]) -> object:
         """The state types that a new state can have."""
         library = disk_library(self._script, [], scripts=self._scripts, templates=self._templates)
-        known = (find_state_type(name, library, []) for name in sorted(library.template_names()))
-        states = (each for each in known if each is not None and each.kind == "state")
-        return {"types": [{"name": each.name, "doc": each.doc} for each in states]}
+        return {
+            "types": [
+                {
+                    "name": type_.name,
+                    "doc": type_.doc,
+                    "group": PROJECT if own else BUILT_IN,
+                }
+                for type_, own in usable_types(library)
+                if type_.kind == "state"
+            ]
+        }
 
     def _performed(self, body: Mapping[str, Any]) -> tuple[Edit, EditResult]:
         """The edit of a request and its result. Raises ActionError."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from smachac.diagnostics.diagnostic import Report, Severity
 from smachac.diagnostics.source import Source, Span
 from smachac.ir.nodes import Machine, StateMachine
+from smachac.ir.written import Written, written
 from smachac.targets.html.model import finding_data, machine_model
 from smachac.targets.html.page import render_page
 from smachac.view.feed import Feed
@@ -20,7 +21,7 @@ class Picture:
 
     As long as there was no such machine, the picture is that of the machine as far as it can be
     read, or an empty one with the name `name`. `editable`: the page can edit the script. `data` is
-    more data for the page, by element id.
+    more data for the page, by element id; `view` are the states of a machine that are drawn.
 
     Each model has a `revision`, greater than that of every model before it, also of one that
     another process has made before: a page gets models from the stream and from answers to edits,
@@ -34,9 +35,11 @@ class Picture:
         *,
         editable: bool = False,
         data: Mapping[str, object] | None = None,
+        view: Callable[[Machine], Written] = written,
     ) -> None:
         self.name = name
         self._data = data
+        self._view = view
         self._editable = editable
         self._feed = feed
         self._lock = threading.Lock()
@@ -61,7 +64,7 @@ class Picture:
                 "kind": "report",
                 "broken": broken,
                 "outdated": machine is None or (broken and self._is_good),
-                "findings": [finding_data(item) for item in report],
+                "findings": [finding_data(item, self._view(self._machine)) for item in report],
             }
         )
 
@@ -74,7 +77,10 @@ class Picture:
     def _show(self, machine: Machine, report: Report) -> bool:
         """Make the model of a machine; whether it differs from the last one."""
         self._machine = machine
-        model = {**machine_model(machine, report, live=True), "revision": self._revision}
+        model = {
+            **machine_model(machine, report, live=True, view=self._view(machine)),
+            "revision": self._revision,
+        }
         if self._editable:
             model["editable"] = True
         if model == self._model:

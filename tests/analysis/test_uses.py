@@ -122,11 +122,11 @@ def test_an_iterator_reads_its_list_and_sets_its_item() -> None:
 def test_the_uses_of_an_unchanged_container_are_kept() -> None:
     inner = machine("C", "ok", leaf("R", {"ok": "=ok"}), to={"ok": "ok"})
     before = Context(Machine(root=machine("sm", "ok", inner)))
-    kept = before.corrected_flow.scopes["sm/C"].uses
+    kept = before.absorbed_flow.scopes["sm/C"].uses
     other = machine("sm", "ok", inner, leaf("NEW", {"ok": "=ok"}))
     after = Context(Machine(root=other), before)
-    assert after.corrected_flow.scopes["sm/C"].uses is kept
-    assert after.corrected_flow.scopes["sm"].uses.container is other
+    assert after.absorbed_flow.scopes["sm/C"].uses is kept
+    assert after.absorbed_flow.scopes["sm"].uses.container is other
 
 
 def test_the_place_of_a_key_is_its_list_or_its_remap_or_its_state() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -131,4 +132,47 @@ def test_rules_are_bars(browser: Browser, tmp_path: Path) -> None:
     lines = page.locator(".line.removed")
     assert lines.count() == 4, "three conditions and the outcome of the former rule"
     assert page.locator(".line.added").count() == 3
+    assert list(messages) == []
+
+
+BOXED = """\
+name: m
+outcomes: [done]
+states:
+- BOX:
+    template: StateMachine
+    outcomes: [done]
+    transitions: {done: done}
+    states:
+    - A: {template: CallbacksState, transitions: {succeeded: B}}
+    - B: {template: CallbacksState, transitions: {succeeded: done}}
+"""
+FLAT = """\
+name: m
+outcomes: [done]
+states:
+- A: {template: CallbacksState, transitions: {succeeded: B}}
+- B: {template: CallbacksState, transitions: {succeeded: done}}
+"""
+
+
+@pytest.mark.parametrize(("before", "after"), [(FLAT, BOXED), (BOXED, FLAT)])
+def test_states_that_moved_between_levels(
+    browser: Browser, tmp_path: Path, before: str, after: str
+) -> None:
+    """The lines of the other version cross the border of the container: they are drawn straight."""
+    page, messages = browser.new_page(viewport={"width": 1440, "height": 900}), Messages()
+    messages.watch(page)
+    page.goto(difference_page(tmp_path, before, after).as_uri())
+    page.wait_for_selector("html[data-ready]")
+    page.get_by_role("button", name="Open all").click()
+    page.wait_for_selector("svg.picture:not([aria-busy])")
+    assert page.locator("g.state").count() == 4
+    drawn = page.locator("g.line path.stroke").evaluate_all(
+        "all => all.map(each => each.getAttribute('d')).filter(d => d.includes('L')).length"
+    )
+    model = json.loads(page.locator("#smachac-model").text_content() or "")
+    assert drawn == len(model["edges"])
+    page.get_by_role("button", name="Close all").click()
+    page.wait_for_selector("svg.picture:not([aria-busy])")
     assert list(messages) == []

@@ -144,7 +144,12 @@ def test_a_state_is_added_from_the_library(page: Page, script: Path) -> None:
     form = choose(page, "sm/A", "Add a state behind it")
     form.get_by_label("Name of the new state").fill("PAUSE")
     form.get_by_label("State type").select_option("SleepState")
+    form.get_by_label("Outcome that leads to it").select_option("(none yet)")
     assert form.locator("p.help").inner_text() != ""
+    offered = form.get_by_label("State type").locator("option").all_text_contents()
+    assert "GripperState" in offered
+    assert not {"Utils", "Program", "MsgPublisher"} & set(offered)
+    assert form.get_by_label("State type").locator("optgroup").count() >= 1
     lines = """\
 
   - PAUSE:
@@ -167,6 +172,30 @@ def test_an_outcome_leads_to_the_added_state(page: Page, script: Path) -> None:
     assert "transitions: {ok: PAUSE, bad: failed}  # and then" in after
     assert "time: 0.0\n      transitions: {succeeded: B}" in after
     undo(page, script)
+
+
+def test_a_state_is_added_on_a_transition_that_is_clicked(page: Page, script: Path) -> None:
+    page.locator('.label text[data-from="sm/A"][data-outcome="ok"]').click()
+    form = page.locator("form.edit")
+    assert form.get_by_label("Operation", exact=True).input_value() == "Add a state behind it"
+    assert form.get_by_label("Outcome that leads to it").input_value() == "ok"
+    page.keyboard.type("PAUSE")
+    form.get_by_label("State type").select_option("SleepState")
+    press(page, "Preview")
+    page.get_by_label("Change of the script").wait_for()
+    assert "PAUSE" in page.locator(".diff mark").all_text_contents()
+    shoot(page, "edit_insert")
+    assert "transitions: {ok: PAUSE, bad: failed}  # and then" in apply(page, script)
+    undo(page, script)
+
+
+def test_the_operation_follows_the_selection(page: Page, script: Path) -> None:
+    form = choose(page, "sm/A", "Remove")
+    page.locator('.state[data-path="sm/B"] > .body').click()
+    page.locator('.state.selected[data-path="sm/B"]').wait_for()
+    assert form.get_by_label("Operation", exact=True).input_value() == "Change a transition"
+    operations = form.get_by_label("Operation", exact=True).locator("option").all_text_contents()
+    assert "Add a state inside" not in operations
 
 
 def handle(page: Page, path: str, outcome: str) -> Locator:
@@ -300,6 +329,7 @@ def test_a_machine_that_arrives_late_is_not_shown(
         "help": "",
         "file": "",
         "line": 0,
+        "related": [],
     }
     late = {"kind": "report", "broken": True, "outdated": False, "findings": [finding]}
     held: list[Route] = []

@@ -136,6 +136,42 @@ def test_a_run_is_watched_step_by_step(
     shoot(page, "live_end")
 
 
+TRIES = """\
+name: sm
+outcomes: [done, failed]
+states:
+  - DRIVE:
+      template: ScriptedState
+      outcomes: [ok, bad]
+      steps: [{outcome: bad}, {outcome: bad}, {outcome: ok}]
+      timeout: 5 min
+      retry: {on: [bad], max: 4}
+      transitions: {ok: done, timeout: failed, exhausted: failed, preempted: failed}
+"""
+
+
+def test_a_state_with_tries_is_one_box_that_waits_before_each_try(
+    script: Path, start: Callable[..., Viewed], opened: Callable[[str], Page]
+) -> None:
+    script.write_text(TRIES)
+    page = opened(start("run", script, "--view", "--view-paused", "-q").url)
+    page.wait_for_selector(state("sm/DRIVE", "waiting"))
+    assert page.locator("g.state").count() == 2
+    page.locator('[data-path="sm/DRIVE"] > .body').click()
+    page.get_by_label("Pause before each try").check()
+    press(page, "Run this state")
+    page.wait_for_selector("text=paused before a try of DRIVE")
+    press(page, "Run this state")
+    page.wait_for_selector("text=DRIVE: try 1 ends with bad")
+    page.wait_for_selector("text=paused before a try of DRIVE")
+    assert page.locator('[data-path="sm/DRIVE"] > .visits').text_content() == "try 1 of 4"
+    shoot(page, "live_tries")
+    press(page, "End with timeout")
+    page.wait_for_selector("text=ended with failed")
+    log = page.locator(".log li").all_inner_texts()
+    assert not any("TIMER" in line or "(retry)" in line for line in log)
+
+
 def test_pick_and_place_shows_its_active_state_and_stops_at_a_breakpoint(
     start: Callable[..., Viewed], opened: Callable[[str], Page]
 ) -> None:
@@ -208,7 +244,15 @@ def test_the_picture_changes_with_the_script(
     script.write_text(LINE.replace("ok: done, bad: failed}", "ok: nowhere, bad: failed}"))
     page.wait_for_selector("text=SM101")
     assert page.locator('[data-path="sm/C"]').count() == 1
+    notice = page.locator(".notice").first
+    assert not notice.locator(".help").first.is_visible()
+    notice.locator("summary").click()
+    assert "help: " in notice.locator(".help").first.inner_text()
     shoot(page, "live_broken")
+    below, picture = notice.bounding_box(), page.locator("svg.picture").bounding_box()
+    assert below is not None
+    assert picture is not None
+    assert below["y"] >= picture["y"] + picture["height"] - 1
     script.write_text(LINE.replace("- C:", "- LAST:").replace("done: C,", "done: LAST,"))
     page.wait_for_selector('[data-path="sm/LAST"]')
     page.wait_for_selector("text=SM101", state="detached")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.checks.test_first_scripts import reported
+from tests.trust.judged_repairs import printed
 
 LOOK = """\
 name: sm
@@ -43,8 +44,7 @@ def look(outcomes: str, transitions: str) -> list[tuple[str, str, str | None]]:
          [("preempted", "did you mean `canceled`?")]),
         # the only outcome without a transition
         (ENDS, "succeeded: SAY, aborted: aborted, rejected: preempted",
-         [("rejected", "write `preempted: preempted`: `preempted` is its only outcome without a"
-           " transition")]),
+         [("rejected", "did you mean `preempted`?")]),
         # no outcome is left
         ("[found, lost]", "found: SAY, lost: aborted, preempted: preempted",
          [("preempted", "remove this transition: its outcomes `found` and `lost` have one")]),
@@ -159,8 +159,9 @@ states:
 @pytest.mark.parametrize("word", ["succeeded", "done", "continue"])
 def test_the_outcome_that_continues_an_iterator(word: str) -> None:
     text = ITERATOR.replace("loop_outcomes: [next]", f"loop_outcomes: [{word}]")
-    help = f"write `next` in place of `{word}`"
-    assert reported({"main.yml": text}) == [("SM102", word, help)]
+    ((code, place, help),) = printed({"main.yml": text})
+    assert (code, place) == ("SM102", word)
+    assert help.startswith("did you mean `next`?")
 
 
 MAP = """\
@@ -227,18 +228,14 @@ states:
       outcomes: [done]
       transitions: {done: docked}
 """
-CUT_OFF = RACK.index("  - COUNT"), RACK.index("  - CLEAR")
 
 
-@pytest.mark.parametrize(
-    "text", [RACK, RACK[: CUT_OFF[0]] + RACK[CUT_OFF[1] :] + RACK[CUT_OFF[0] : CUT_OFF[1]]]
-)
-def test_states_that_a_failure_leads_past(text: str) -> None:
+def test_states_that_a_failure_leads_past() -> None:
     help = (
         "write `aborted: COUNT` in `TO_RACK`, or remove `COUNT` and `ENOUGH` if their work is not"
         " needed"
     )
-    assert reported({"main.yml": text}) == [("SM201", "COUNT", help)]
+    assert reported({"main.yml": RACK}) == [("SM201", "COUNT", help)]
 
 
 LAMP = """\
@@ -279,9 +276,7 @@ class Lamp(smach.State):
     [
         ("done: LIGHT_OFF_GOOD", "done: succeeded", "SM701", "succeeded",
          "write `done: LIGHT_OFF_GOOD` in `SHOW`, or correct the property if this path is right"),
-        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LAMP_DARK]", "SM703", "LAMP_DARK",
-         "write `LIGHT_OFF_GOOD`: it does the same as `LIGHT_OFF`"),
-        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LIGHT_OFF_OK]", "SM703", "LIGHT_OFF_OK",
+        ("[LIGHT_OFF, LIGHT_OFF_GOOD]", "[LIGHT_OFF, LIGHT_OF_GOOD]", "SM703", "LIGHT_OF_GOOD",
          "did you mean `LIGHT_OFF_GOOD`?"),
     ],
 )  # fmt: skip

@@ -30,22 +30,6 @@ states:
 - LET_GO: {template: ScriptedState, outcomes: [done], transitions: {done: aborted}}
 """
 
-PLATES = """name: plates
-template: Base
-outcomes: [succeeded, aborted]
-states:
-- FETCH: {template: ScriptedState, outcomes: [held], transitions: {held: READ}}
-- READ:
-    template: ScriptedState
-    outcomes: {read: {}, lid_open: {failure: true}}
-    transitions: {read: AGAIN, lid_open: aborted}
-- AGAIN:
-    template: ScriptedState
-    outcomes: {read: {}, lid_open: {failure: true}}
-    transitions: {read: REPORT, lid_open: aborted}
-- REPORT: {template: ScriptedState, outcomes: [succeeded], transitions: {succeeded: succeeded}}
-"""
-
 BOTH = """name: watch
 template: Base
 outcomes: [done, stopped, failed]
@@ -83,8 +67,6 @@ states:
          "LIFT, missed: COUNT, timeout: COUNT, preempted: HOME",
          "LIFT, missed: HOME, timeout: HOME",
          "add `preempted: HOME` to the transitions of `GRASP`"),
-        (PLATES, "read: REPORT", "read: FETCH",
-         "write `read: REPORT` in `AGAIN`, or remove `REPORT` if its work is not needed"),
         (BOTH, "BATTERY: invalid", "BATTERY: aborted",
          "write `BATTERY: invalid`, as in the rule for `BUTTON`"),
     ],

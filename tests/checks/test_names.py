@@ -9,6 +9,7 @@ import pytest
 
 from smachac.diagnostics.diagnostic import Severity
 from smachac.diagnostics.source import Source, Span
+from smachac.driver import analyse_script
 from tests.support.ir_machines import concurrence, iterator, leaf, machine, sequence
 from tests.support.rule_findings import found, one, report
 
@@ -56,10 +57,10 @@ def test_a_missing_state_may_lead_anywhere() -> None:
     assert str(one(root, "SM101").finding.help).startswith("add the state `XYZ`, or use ")
 
 
-def test_what_no_target_means_is_unreachable() -> None:
+def test_an_unknown_target_can_mean_each_state() -> None:
     others = [leaf("B", {"ok": "done"}), leaf("C", {"ok": "done"})]
     root = machine("sm", "done", leaf("A", {"ok": "xyz"}), *others)
-    assert found(root) == ["SM101 sm/A", "SM201 sm/B", "SM201 sm/C"]
+    assert found(root) == ["SM101 sm/A"]
 
 
 def test_children_that_run_together_have_no_transitions() -> None:
@@ -257,3 +258,33 @@ def test_calls_are_shown_only_for_what_stands_inside_the_called_script() -> None
 
     assert seen(Span(sub, 3, 4)) == ["main.yml:1:2"]
     assert seen(Span(main, 3, 4)) == []
+
+
+@pytest.mark.parametrize(
+    ("fields", "name"),
+    [
+        ("retry: {on: [aborted], max: 2}", "A (retry)"),
+        ("retry: {on: [aborted], max: 2, delay: 1 s}", "A (try)"),
+        ("timeout: 2 s", "A (timeout)"),
+        ("for_each: {item: x, in: [1, 2]}", "A (for_each)"),
+    ],
+)
+def test_a_state_has_no_name_that_traces_have_for_another_one(fields: str, name: str) -> None:
+    text = """
+name: sm
+template: Base
+outcomes: [done]
+states:
+  - A: {template: ScriptedState, outcomes: [succeeded, aborted], FIELDS,
+        transitions: {succeeded: NAME, aborted: done, exhausted: done, timeout: done,
+                      preempted: done}}
+  - NAME: {template: ScriptedState, outcomes: [succeeded], transitions: {succeeded: done}}
+"""
+
+    def clashes(fields: str) -> list[str]:
+        source = Source("m.yml", text.replace("NAME", name).replace("FIELDS", fields))
+        return [item.finding.node or "" for item in analyse_script(source).report
+                if item.code == "SM107"]  # fmt: skip
+
+    assert clashes(fields) == [f"sm/{name}"]
+    assert clashes("doc: no field") == []

@@ -259,7 +259,7 @@ def test_a_state_of_flexbe_waits_in_execute() -> None:
 def test_an_unknown_outcome_that_continues_a_loop() -> None:
     loop = LOOP.replace("pose: poses", "pose: current").replace("[current, poses]", "[current]")
     found = findings(loop.replace("loop_outcomes: [succeeded]", "loop_outcomes: [continue]"))
-    assert found == [("SM102", "15 continue", "write `succeeded` in place of `continue`")]
+    assert found == [("SM102", "15 continue", "use one of `aborted`, `succeeded`")]
     found = findings(loop.replace("[succeeded]\n      ex", "[succeeded, continue]\n      ex"))
     assert ("SM102", "15 continue", "use one of `aborted`, `succeeded`") in found
 

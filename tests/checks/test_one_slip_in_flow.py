@@ -210,17 +210,6 @@ states:
 """
 
 
-def test_two_outcomes_that_lead_to_one_state() -> None:
-    files = {"main.yml": BINS.replace("HEAVY", "LEFT").replace("userdata: {weight: 1.0}\n", "")}
-    files["main.yml"] = files["main.yml"].replace("lost", "aborted").replace("jammed", "failed")
-    (item,) = [each for each in analysed(files).report if each.code == "SM201"]
-    words = "lead `heavy` or `light` of `WHICH` to `RIGHT`, or remove `RIGHT`"
-    assert item.finding.help == words
-    assert [each.span.text for each in item.related] == ["LEFT", "LEFT"]
-    right = files["main.yml"].replace("heavy: LEFT", "heavy: RIGHT")
-    assert [each for each in reported({"main.yml": right}) if each[0] == "SM201"] == []
-
-
 SAFELY = """\
 name: shots
 outcomes: [done, failed, unsafe]

@@ -264,48 +264,6 @@ def test_a_time_as_the_limit_of_states(limit: str, help: str | None) -> None:
     assert not [each for each in report if each.code == "SM701"]
 
 
-DOCKING = """\
-name: docking
-template: Base
-outcomes: [docked, aborted]
-properties:
-  - before: {DOCK: APPROACH}
-  - never: {after: DOCK, until: GONE, enter: APPROACH}
-states:
-  - APPROACH: {template: ScriptedState, outcomes: [there], transitions: {there: ALIGN}}
-  - ALIGN: {template: ScriptedState, outcomes: [done], transitions: {done: DOCK}}
-  - DOCK:
-      template: ScriptedState
-      outcomes: [contact, failed]
-      transitions: {contact: MEASURE, failed: UNDOCK}
-  - MEASURE: {template: ScriptedState, outcomes: [done], transitions: {done: docked}}
-  - UNDOCK: {template: ScriptedState, outcomes: [done], transitions: {done: aborted}}
-"""
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "expected"),
-    [
-        ("", "", "did you mean `UNDOCK`, to which `DOCK` leads?"),
-        (
-            "failed: UNDOCK}",
-            "failed: UNDOCK}\n      timeout: 3s",
-            "did you mean `UNDOCK`, to which",
-        ),
-        ("until: GONE", "until: UNDOCK, enter: GONE", "did you mean `MEASURE`, to which `DOCK`"),
-        ("contact, failed", "contact, seen", "use one of "),
-    ],
-)
-def test_the_guess_for_a_state_to_which_others_lead(old: str, new: str, expected: str) -> None:
-    text = DOCKING.replace(old, new) if old else DOCKING
-    text = text.replace("failed: UNDOCK", "seen: UNDOCK") if "seen" in new else text
-    text = text.replace("enter: GONE, enter: APPROACH", "enter: GONE")
-    text = text.replace("failed: UNDOCK}\n", "failed: UNDOCK, timeout: UNDOCK}\n", "timeout" in new)
-    (help,) = [str(each.help) for each in analysed({"main.yml": text}).report
-               if each.code == "SM703"]  # fmt: skip
-    assert help.startswith(expected)
-
-
 def test_the_guess_for_a_state_by_its_first_words() -> None:
     for name, guess in (("LIFT_ARM", True), ("RAISE_ARM", False)):
         text = TURN.replace("after: {LIFT: STOP}", f"before: {{HOME: {name}}}")

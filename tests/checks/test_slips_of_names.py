@@ -130,7 +130,7 @@ states:
   - A: {script: pick, params: {grip_force: 2.0}, transitions: {succeeded: succeeded}}
 """
     found = reported({"main.yml": main, "pick.yml": pick})
-    assert ("SM306", "grip_force", "did you mean `force`?") in found
+    assert ("SM306", "grip_force", "write `force`, the param that is used here") in found
 
 
 def test_an_input_that_nothing_reads_is_meant() -> None:

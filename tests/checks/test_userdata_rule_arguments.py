@@ -57,13 +57,17 @@ PART = """
     states:
       - READ:
           template: PrintUserdataState
-          input_keys: [goal, never]
+          input_keys: [goal]
           remapping: {gaol: place}
           transitions: {succeeded: COUNT}
       - COUNT:
           template: CallbacksState
           input_keys: [word]
           callbacks: {tries: 'lambda ud: ud.word + 1', more: 'lambda ud: ud.unknown'}
+          transitions: {succeeded: LAST}
+      - LAST:
+          template: PrintUserdataState
+          input_keys: [never]
           transitions: {succeeded: done}
 """
 CALLS = """

@@ -61,7 +61,7 @@ def test_progress_shows_attempts_items_and_time_limits(
         "DRIVE: attempt 3 of 3",
         "DRIVE succeeded 0.00 s",
         "REST preempted 0.01 s",
-        "REST timeout 0.01 s (time limit of 0.01 s)",
+        "REST timeout 0.01 s (time limit of 10 ms)",
         "sm done 0.04 s",
         "outcome: done",
     ]

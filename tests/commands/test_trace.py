@@ -39,12 +39,11 @@ def test_a_run_is_allowed(recorded: Path, capsys: pytest.CaptureFixture[str]) ->
     count = len(recorded.read_text("utf-8").splitlines())
     line = f"run.jsonl: {count} events, ended with `done`\n"
     assert capsys.readouterr().out == line * 2 + (
-        "2 traces, all allowed\n3 of 8 transitions taken (37 %)\n"
+        "2 traces, all allowed\n2 of 6 transitions taken (33 %)\n"
         "  not taken: sm/A: bad -> sm:lost  (main.yml:4)\n"
-        "  not taken: sm/B (retry): exhausted -> sm:lost  (main.yml:9)\n"
-        "  not taken: sm/B (retry): preempted -> sm:lost  (main.yml:9)\n"
+        "  not taken: sm/B: exhausted -> sm:lost  (main.yml:9)\n"
+        "  not taken: sm/B: preempted -> sm:lost  (main.yml:9)\n"
         "  not taken: sm/B: bad -> sm/B (loop)  (main.yml:5)\n"
-        "  not taken: sm/B: bad -> sm/B (retry):exhausted (exhausted)  (main.yml:5)\n"
     )
 
 
@@ -101,11 +100,11 @@ def test_files_that_cannot_be_read(
 def test_statistics_of_states(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["trace", "stats", "main.yml", "run.jsonl", "run.jsonl", "--format", "json"]) == 0
     data = json.loads(capsys.readouterr().out)
-    assert [(state["path"], state["visits"], state["outcomes"]) for state in data["states"]] == [
-        ("sm", 2, {"done": 2}),
-        ("sm/A", 2, {"ok": 2}),
-        ("sm/B (retry)", 2, {"ok": 2}),
-        ("sm/B", 2, {"ok": 2}),
+    fields = ("path", "visits", "outcomes", "rounds")
+    assert [tuple(state[name] for name in fields) for state in data["states"]] == [
+        ("sm", 2, {"done": 2}, {}),
+        ("sm/A", 2, {"ok": 2}, {}),
+        ("sm/B", 2, {"ok": 2}, {"try": 2}),
     ]
     assert {"path": "sm/A", "outcome": "bad", "to": "sm:lost"} in data["never_taken"]
     assert main(["trace", "stats", "main.yml", "run.jsonl"]) == 0
@@ -113,7 +112,8 @@ def test_statistics_of_states(recorded: Path, capsys: pytest.CaptureFixture[str]
     assert shown[0].split() == ["state", "visits", "mean", "longest", "outcomes"]
     assert shown[2].startswith("  A ")
     assert shown[2].endswith("ok 100.0 %")
-    assert shown[5] == "never taken: sm/A: bad -> sm:lost"
+    assert shown[3].endswith("ok 100.0 %, 1 try")
+    assert shown[4] == "never taken: sm/A: bad -> sm:lost"
 
 
 def test_the_page_of_statistics(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -124,13 +124,13 @@ def test_the_page_of_statistics(recorded: Path, capsys: pytest.CaptureFixture[st
     found = model["statistics"]
     assert set(found["states"]) <= {node["path"] for node in model["nodes"]}
     assert found["states"]["sm/A"]["outcomes"] == {"ok": 2}
-    assert found["transitions"] == 8
+    assert found["transitions"] == 6
     assert found["never"][0] == {
         "path": "sm/A",
         "text": "sm/A: bad -> sm:lost",
         "failure": False,
     }
-    assert len(found["never"]) == 5
+    assert len(found["never"]) == 4
     assert main(["stats", "main.yml", "run.jsonl", "--format", "html", "--success", "done"]) == 2
     assert "--success has no effect" in capsys.readouterr().err
 

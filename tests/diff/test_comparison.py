@@ -279,7 +279,7 @@ def test_sugar_is_a_fact_of_its_state() -> None:
     text = text.replace("lost}", "lost, timeout: lost}")
     assert brief(compare(of_text(SCRIPT), of_text(text)).changes) == [
         ("added", "outcome", "sm/WAIT", "timeout", "", ""),
-        ("added", "field", "sm/WAIT", "timeout", "", "2.0"),
+        ("added", "field", "sm/WAIT", "timeout", "", "2 s"),
         ("added", "transition", "sm/WAIT", "timeout", "", "outcome lost"),
     ]
 

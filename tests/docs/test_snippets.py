@@ -40,7 +40,7 @@ FRAGMENTS = {
 }
 """Pages whose YAML is completed and checked here, with the number of its blocks."""
 
-OWN_TESTS = {"README", "ci", "rules"}
+OWN_TESTS = {"README", "ci", "frameworks", "rules"}
 """Pages with YAML for which there are other tests, here or in the files of ELSEWHERE."""
 
 ELSEWHERE = {
@@ -52,6 +52,7 @@ ELSEWHERE = {
     "cpp": "tests/cpp/test_headers.py",
     "editors": "settings of editors",
     "existing": "tests/docs/test_existing.py",
+    "frameworks": "tests/scxml/test_host.py, tests/yasmin/test_programs.py",
     "properties": "tests/docs/test_properties.py",
     "robots": "tests/docs/test_tutorial.py",
     "ros": "tests/ros, tests/targets/test_ros_2.py",

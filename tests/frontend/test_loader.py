@@ -8,6 +8,7 @@ import pytest
 
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse, analyse_script
+from smachac.frontend.files import Disk
 from smachac.frontend.loader import memory_library
 from tests.support.typed_machines import BUILT_IN
 
@@ -56,3 +57,19 @@ def test_scripts_are_searched_in_the_folder_of_the_calling_file(
         )
     ]
     assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("in_pieces", [False, True])
+def test_the_tree_of_a_script_is_released_unless_an_editor_needs_it(
+    in_pieces: bool, tmp_path: Path
+) -> None:
+    path = tmp_path / "main.yml"
+    path.write_text(OPEN, "utf-8")
+    disk = Disk(in_pieces=in_pieces)
+    source = disk.read(path, [])
+    assert source is not None
+    tree = disk.parse(source, [])
+    assert disk.parse(source, []) is tree
+    disk.release(source)
+    assert (disk.parse(source, []) is tree) is in_pieces
+    assert disk.parse(source, []) == tree

@@ -48,4 +48,4 @@ def test_the_help_names_what_fits(state: str, help: str) -> None:
 def test_a_misspelt_script_is_one_finding() -> None:
     state = "PLACE: {sccript: place, transitions: {done: done, bad: bad}}"
     (found,) = analysed({MAIN: SCRIPT % state, "place.yml": PLACE}).report
-    assert (found.code, found.help) == ("SM003", "did you mean `script`?")
+    assert (found.code, found.help) == ("SM005", "write `script:` in place of `sccript:`")

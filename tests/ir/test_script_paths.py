@@ -7,12 +7,7 @@ import pytest
 from smachac.diagnostics.source import Source
 from smachac.driver import analyse_script
 from smachac.ir.nodes import Machine
-from smachac.ir.script_paths import (
-    added_states,
-    script_paths,
-    sugared_containers,
-    walk_script,
-)
+from smachac.ir.script_paths import script_paths, walk_script
 from smachac.runtime.tracing.writer import shown_path
 
 SCRIPT = """\
@@ -89,16 +84,6 @@ def test_names_of_states_do_not_clash_with_those_of_sugar() -> None:
         found = [each.shown for each in walk_script(root)]
         assert len(set(found)) == len(found)
         assert f"sm/{name}" in found
-
-
-def test_limits_in_words() -> None:
-    root = machine(f"{RETRY}; {LIMIT}; {EACH}").root
-    assert {path: tuple(each) for path, each in sugared_containers(root).items()} == {
-        "sm/DRIVE (for_each)": ("sm/DRIVE", "for_each", "2", "sm/DRIVE (retry)"),
-        "sm/DRIVE (retry)": ("sm/DRIVE", "retry", "3", "sm/DRIVE (timeout)"),
-        "sm/DRIVE (timeout)": ("sm/DRIVE", "timeout", "5 s", "sm/DRIVE"),
-    }
-    assert added_states(root) == {"sm/DRIVE (timeout)/TIMER"}
 
 
 def test_the_end_of_a_container_is_in_script_paths_too() -> None:

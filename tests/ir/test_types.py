@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from smachac.ir.types import ANY, Type, parse_type, unknown_words
+from smachac.grammars import load
+from smachac.grammars.standalone.lalr import LarkError
+from smachac.ir.types import ANY, Type, _TypeBuilder, parse_type, unknown_words
 from tests.strategies.machines import types
 from tests.support.examples import examples
 
@@ -97,3 +99,17 @@ def test_plain_words_need_no_parser() -> None:
     code += "; print('smachac.grammars.standalone.lalr' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["pkg/Pose", "False"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["float<m/s>", "int<%>", "float<7>", "float<°C>", "int<rad^2>", "float<'>", "float<int<m>>",
+     "float<>", "float<a b>", "float< m >", "str<m>", "float<m>[7]", "float<m>?", "float<m,s>"],
+)  # fmt: skip
+def test_a_quantity_is_that_of_the_grammar(text: str) -> None:
+    parser = load("type", builder=_TypeBuilder())
+    try:
+        wanted = parser.parse(text)
+    except (LarkError, ValueError):
+        wanted = None
+    assert parse_type(text) == wanted

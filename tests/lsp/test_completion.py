@@ -186,7 +186,9 @@ def test_a_misspelt_field_of_a_similar_state_is_not_offered(tmp_path: Path) -> N
 
 @pytest.mark.slow
 def test_the_word_that_was_deleted_is_first() -> None:
-    chosen = random.Random(0).sample(places(), 100)
+    # Nearly all outcomes of example 14 are names of its own, which stand nowhere else.
+    known = [place for place in places() if place[0].parent.name != "14_delivery_round"]
+    chosen = random.Random(0).sample(known, 100)
     first = 0
     for path, word, _ in chosen:
         whole = path.read_text("utf-8")

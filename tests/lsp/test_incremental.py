@@ -25,10 +25,19 @@ from tests.support.lsp_projects import FAULTY, FILES, project
 def identity_of(item: Diagnostic) -> tuple[Any, ...]:
     """All that a user sees of a finding, with its places."""
     finding = item.finding
-    related = [(each.span.source.name, each.span[1:], each.message) for each in finding.related]
+    related = [
+        (each.span.source.name, (each.span.start, each.span.end), each.message)
+        for each in finding.related
+    ]
     steps = [(step.node, step.label) for step in finding.path]
     return (
-        *(item.code, item.severity.value, item.span.source.name, item.span[1:], item.message),
+        *(
+            item.code,
+            item.severity.value,
+            item.span.source.name,
+            (item.span.start, item.span.end),
+            item.message,
+        ),
         *(finding.help, finding.node, finding.arguments, related, steps),
     )
 
@@ -117,12 +126,12 @@ def test_a_sub_script_that_has_not_changed_keeps_its_nodes_and_scopes(tmp_path: 
     session = Session([folder])
     session.check(main)
     part, grasp = (container(session, main, name) for name in ("FIRST", "LAST"))
-    scopes = session.view(main).context.corrected_flow.scopes  # type: ignore[union-attr]
+    scopes = session.view(main).context.absorbed_flow.scopes  # type: ignore[union-attr]
     session.change(wait, texts[wait].replace("max: 2", "max: 3"))
     session.check(main)
     assert container(session, main, "FIRST") is part
     assert container(session, main, "LAST") is not grasp
-    new = session.view(main).context.corrected_flow.scopes  # type: ignore[union-attr]
+    new = session.view(main).context.absorbed_flow.scopes  # type: ignore[union-attr]
     assert new["sm/FIRST"] is scopes["sm/FIRST"]
     assert new["sm"] is not scopes["sm"]
 
@@ -164,3 +173,97 @@ def test_a_call_that_is_used_twice_by_an_alias_keeps_the_places_of_both(tmp_path
     for _ in range(2):
         session.change(other, session.text(other).replace("1", "2") + "\n")
         assert found(session, main) == fresh(main, {other: session.text(other)})
+
+
+PART = """\
+- {name}:
+    template: StateMachine
+    outcomes: [done, bad]
+    input_keys: [goal]
+    transitions: {{done: {next}, bad: lost}}
+    states:
+    - PLAN:
+        template: PoseToJointPositionsState
+        remapping: {{pose: goal, joints: unread_{name}}}
+        transitions: {{succeeded: WAIT, aborted: bad}}
+    - WAIT: {{template: SleepState, time: 1.0, transitions: {{succeeded: done, preempted: bad}}}}
+"""
+
+ONE_FILE = (
+    "name: sm\ntemplate: Base\noutcomes: [succeeded, lost]\ntypes: {Seconds: float}\n"
+    "params: {seconds: 2.0}\nuserdata: {goal: [[0.5, 0.0, 0.1], [0.0, 0.0, 0.0, 1.0]]}\nstates:\n"
+    + PART.format(name="FIRST", next="SECOND")
+    + PART.format(name="SECOND", next="THIRD")
+    + PART.format(name="THIRD", next="succeeded")
+)
+
+EDITS = [
+    ("name: SECOND", "name: SECOND"),
+    ("- SECOND:\n", "- SECOND:  # the middle one\n"),
+    ("unread_SECOND", "joints_of_the_second"),
+    ("done: THIRD", "done: THRID"),
+    ("done: THRID", "done: [THIRD"),
+    ("done: [THIRD", "done: THIRD"),
+    ("outcomes: [succeeded, lost]\n", "outcomes: [succeeded, lost]\n# a note\n"),
+    ("time: 1.0, transitions: {succeeded: done, preempted: bad}}\n- T", "time: [[seconds]]}\n- T"),
+    ("{seconds: 2.0}", "{seconds: -2.0}"),
+    ("{Seconds: float}", "{Seconds: int}"),
+    ("- THIRD:", "- SECOND:"),
+]
+
+
+def test_edits_of_one_file_have_the_findings_of_a_fresh_check(tmp_path: Path) -> None:
+    main = os.path.realpath(tmp_path / "main.yml")
+    session, text = Session([tmp_path]), ONE_FILE
+    for old, new in EDITS:
+        text = text.replace(old, new, 1)
+        session.change(main, text)
+        assert found(session, main) == fresh(main, {main: text})
+
+
+def test_a_state_of_an_edited_file_that_has_not_changed_keeps_its_node(tmp_path: Path) -> None:
+    main = os.path.realpath(tmp_path / "main.yml")
+    session = Session([tmp_path])
+    session.change(main, ONE_FILE)
+    session.check(main)
+    first, second, third = (container(session, main, name) for name in ("FIRST", "SECOND", "THIRD"))
+    place = third.children[0].span.start
+    text = ONE_FILE.replace("unread_SECOND", "joints_of_the_second")
+    session.change(main, text)
+    assert found(session, main) == fresh(main, {main: text})
+    assert container(session, main, "FIRST") is first
+    assert container(session, main, "SECOND") is not second
+    assert container(session, main, "THIRD") is third
+    assert third.children[0].span.start == place + len("joints_of_the_second") - len(
+        "unread_SECOND"
+    )
+    assert third.children[0].span.source is session.source(main)
+
+
+NODE = """\
+name: node
+template: ROSBase
+outcomes: [done, late]
+params: {limit: 5.0}
+states:
+- A:
+    template: SleepState
+    time: 1.0
+    timeout: [params, limit]
+    transitions: {succeeded: B, preempted: late, timeout: late}
+- B: {template: SleepState, time: 1.0, transitions: {succeeded: done, preempted: late}}
+"""
+
+
+def test_a_param_that_is_fixed_in_a_state_that_has_not_changed_is_found_again(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "smachac.toml").write_text("ros = 2\n", "utf-8")
+    main = os.path.realpath(tmp_path / "main.yml")
+    session = Session([tmp_path])
+    for time in ("1.0", "2.0", "3"):
+        text = NODE.replace("time: 1.0, ", f"time: {time}, ")
+        session.change(main, text)
+        assert found(session, main) == fresh(main, {main: text})
+        codes = [item.code for each in session.check(main).values() for item in each]
+        assert "SM610" in codes, codes

@@ -262,8 +262,9 @@ def transition(target: str, more: str = "") -> str:
     """A script that is not formatted, with one transition."""
     return (
         "name:   sm\ntemplate: Base\noutcomes: [ placed,aborted ]\nstates:\n\n\n"
-        "  - PICK_BLOCK: {transitions: {picked:  " + target + "}, outcomes: [picked],"
-        " template: ScriptedState}\n  - PLACE_BLOCK:\n      template: ScriptedState\n"
+        "  - PICK_BLOCK: {transitions: {picked:  " + target + ", left: PLACE_BLOCK},"
+        " outcomes: [picked, left], template: ScriptedState}\n"
+        "  - PLACE_BLOCK:\n      template: ScriptedState\n"
         "      outcomes: [there]\n      transitions: {there: placed}\n" + more
     )
 

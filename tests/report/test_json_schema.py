@@ -49,7 +49,10 @@ def kind(path: Path) -> str:
     """The schema of a file of the repository."""
     if path.parent.name == "robots":
         return "robot"
-    for line in path.read_text("utf-8").splitlines():
+    lines = path.read_text("utf-8").splitlines()
+    if next((line for line in lines if not line.startswith("#")), "") == "states:":
+        return "scenario"
+    for line in lines:
         for word, name in DATA.items():
             if line.startswith(word):
                 return name

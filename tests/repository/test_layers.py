@@ -19,7 +19,7 @@ LAYERS = (
     ("targets", "checks"),
     ("driver", "report"),
     ("python_cache",),
-    ("python_machines",),
+    ("python_machines", "parallel"),
     ("__init__", "batch"),
     ("repair",),
     ("diff",),

@@ -31,6 +31,7 @@ TOUCHES = {
     "smachac/runtime/tracing/writer.py": "reports that a trace broke off",
     "smachac/runtime/smach/log.py": "prints what SMACH prints",
     "smachac/runtime/smach_ros2/program.py": "prints why ROS refuses to start",
+    "smachac/runtime/yasmin/smachac_yasmin.py": "prints the outcome of a program",
     "smachac/__main__.py": "reports Ctrl-C before the command line is imported",
     "smachac/robots/files.py": "reads descriptions of robots and scenes",
     "smachac/robots/xacro_process.py": "reads macro files of robots, as a program of its own",

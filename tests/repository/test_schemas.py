@@ -12,7 +12,7 @@ from smachac.commands.schema import schema_text
 from tests.report.test_json_schema import YAML_FILES, kind
 
 
-@pytest.mark.parametrize("name", ["script", "interface", "robot", "scene", "faults"])
+@pytest.mark.parametrize("name", ["script", "interface", "robot", "scene", "faults", "scenario"])
 def test_the_validator_of_editors_accepts_the_files(name: str, tmp_path: Path) -> None:
     """check-jsonschema, an independent validator, on the printed schema."""
     file = tmp_path / f"{name}.json"

@@ -12,6 +12,7 @@ PACKAGE = Path(smachac.__file__).parent
 ALLOWED = {
     "interpreter/behaviours.py": "their behaviour in the interpreter",
     "targets/cpp/builtin_states.py": "their code in C++",
+    "targets/scxml/leaves.py": "their states in SCXML",
     "frontend/resolved_script.py": "the timer, which sugar adds to a machine",
     "pysource/machines/smach_library.py": "the classes of SMACH of the same names",
     "refactor/smacha/template_differences.py": "the templates that templates of SMACHA extend",

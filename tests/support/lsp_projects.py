@@ -104,12 +104,18 @@ states:
         input_keys: [level]
         output_keys: [sum, unset]
         callbacks: {sum: 'lambda ud: ud.lvl + factor', more: 'lambda ud: ud.level'}
-        transitions: {succeeded: nowhere}
+        transitions: {succeeded: SLIP}
     - SLIP:
         template: CallbacksState
         output_keys: [sum]
         callbacks: {sum: 'lambda ud: ('}
-        transitions: {succeeded: LAST}
+        transitions: {succeeded: AWAY}
+    - AWAY:
+        template: StateMachine
+        outcomes: [back]
+        states:
+        - LEAVE: {template: SleepState, time: 1, transitions: {succeeded: nowhere}}
+        transitions: {back: LAST}
     - LAST:
         template: ScriptedState
         outcomes: [ended, left]

@@ -267,7 +267,8 @@ def test_options_that_make_no_sense(options: dict[str, str]) -> None:
     ],
 )
 def test_tones(outcome: str, expected: str) -> None:
-    assert tone(outcome) == expected
+    state = leaf("A", outcome)
+    assert tone(outcome, state) == expected
     assert expected in TONES
 
 
@@ -370,4 +371,6 @@ def test_nesting_has_no_limit() -> None:
     inner: Node = leaf("L", "aborted")
     for _ in range(500):
         inner = machine_of("M", ("aborted",), inner)
-    assert drawn(machine_of("sm", ("aborted",), inner)).count("subgraph") == 500
+    root = machine_of("sm", ("aborted",), inner)
+    assert drawn(root, depth="600").count("subgraph") == 500
+    assert drawn(root).count("subgraph") == 39

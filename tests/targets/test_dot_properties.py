@@ -7,6 +7,7 @@ import pytest
 from smachac.diagnostics.source import NOWHERE
 from smachac.ir.nodes import Machine, Outcome, StateMachine
 from smachac.ir.properties import Atom, Before, Property
+from smachac.ir.written import written
 from smachac.targets.dot.graph import picture
 from tests.support.ir_machines import leaf
 
@@ -26,7 +27,8 @@ def test_marks(earlier: str, marked: list[str], highlighted: list[str]) -> None:
     )
     later, first = (Atom(subject="path", name=name, span=NOWHERE) for name in ("B", earlier))
     given = Property(name="p", form=Before(later=(later,), earlier=(first,)), span=NOWHERE)
-    lines = list(picture(Machine(root=root, properties=(given,)), depth=None, rankdir="TB"))
+    machine = Machine(root=root, properties=(given,))
+    lines = list(picture(machine, written(machine)))
     boxes = {line.split('"')[1]: line for line in lines if "<TABLE" in line and '"sm/' in line}
     assert [name for name in "ABC" if "&#9670;" in boxes[f"sm/{name}"]] == marked
     assert [name for name in "ABC" if "penwidth" in boxes[f"sm/{name}"]] == highlighted

@@ -9,6 +9,10 @@ from pathlib import Path
 import pytest
 
 from smachac.commands.cli import main
+from smachac.diagnostics.source import Source
+from smachac.driver import read_machine
+from smachac.frontend.loader import Library
+from smachac.targets.hiding_files import hiding_files
 
 SCRIPT = """\
 name: NAME
@@ -107,3 +111,32 @@ def test_a_program_with_the_name_in_the_help_runs(tmp_path: Path) -> None:
     assert build(tmp_path, "threading_task", "python") == 0
     program = tmp_path / "out" / "threading_task.py"
     subprocess.run([sys.executable, str(program)], check=True, capture_output=True)
+
+
+@pytest.mark.parametrize(
+    ("program", "hides"),
+    [
+        ("import os, grasping", True),
+        ("import os as grasping", False),
+        ("import os, \\\n    grasping as g", True),
+        ("x = 1; import grasping.arm", True),
+        ("def run():\n    from grasping import (\n        arm,\n    )", True),
+        ("from GRASPING import arm", True),
+        ("import \uff47rasping", True),
+        ("from .grasping import arm", False),
+        ("from os import grasping", False),
+        ("import grasping_task", False),
+        ("# import grasping", False),
+        ("text = 'import grasping'", False),
+        ("import grasping\nx = (", False),
+        ("x = 1", False),
+    ],
+)
+def test_a_file_hides_what_its_program_imports(program: str, hides: bool) -> None:
+    machine = read_machine(Source("main.yml", SCRIPT), Library(
+        script=lambda name, caller: None, template=lambda name: None,
+        own_template=lambda name: None, code=lambda name: None,
+        code_names=lambda folder: ()), [])  # fmt: skip
+    assert machine is not None
+    found = list(hiding_files({"grasping.py": f"{program}\n"}, machine))
+    assert [item.code for item in found] == ["SM611"] * hides

@@ -21,6 +21,7 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import Interpreter
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.traversal import outcome_names, walk
+from smachac.ir.written import generated, written
 from smachac.targets.html import TARGET
 from smachac.targets.html.model import SNIPPET_LINES, machine_model
 from smachac.targets.html.page import LAYOUT_ID, MODEL_ID, render_page
@@ -114,13 +115,18 @@ def transitions_of_runs(machine: Machine, runs: int) -> Iterator[tuple[str, str,
 
 
 def undrawn(machine: Machine, runs: int = 12) -> set[tuple[str, str, str]]:
-    """The transitions of runs that the picture lacks. After an error, `to` may name no outcome."""
-    drawn = drawn_transitions(machine_model(machine))
-    return {
-        step
-        for step in transitions_of_runs(machine, runs)
-        if step not in drawn and not step[2].endswith(":None")
+    """The transitions of runs that one of both pictures lacks, that of the states as they were
+    written or that of the generated ones. After an error, `to` may name no outcome."""
+    view = written(machine)
+    steps = {step for step in transitions_of_runs(machine, runs) if not step[2].endswith(":None")}
+    whole = {
+        (view.state(path), outcome, view.state(to))
+        for path, outcome, to in steps
+        if view.is_whole(path)
     }
+    return (steps - drawn_transitions(machine_model(machine, view=generated(machine)))) | (
+        whole - drawn_transitions(machine_model(machine))
+    )
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.parent.name)
@@ -183,9 +189,13 @@ def test_model_of_an_example() -> None:
     analysis = analyse_script(ROOT / "examples/13_recovery/main.yml")
     assert analysis.machine is not None
     model = machine_model(analysis.machine, analysis.report)
-    node = next(each for each in model["nodes"] if each["role"])
-    assert node["shown"].endswith("(retry)")
-    assert node["role"] == "at most 3 tries"
+    node = next(each for each in model["nodes"] if each["badges"])
+    assert [part[:3] for part in node["parts"]] == [
+        [f"{node['path']} (retry)", "retry", None],
+        [node["path"], "state", "try"],
+    ]
+    (badge,) = node["badges"]
+    assert badge["text"] == "3 tries"
     leaf = next(each for each in model["nodes"] if each["kind"] == "leaf" and each["inputs"])
     assert leaf["snippet"].lstrip("- ").startswith(leaf["name"])
     assert {"name", "key", "type", "doc"} == set(leaf["inputs"][0])

@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, given, seed, settings
 from smachac.ir.nodes import Leaf, Machine
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import walk
+from smachac.ir.written import written
 from smachac.targets.mermaid.diagram import diagram
 from tests.strategies.machines import valid_machines
 from tests.support.examples import examples
@@ -54,7 +55,7 @@ def parsed(texts: list[str]) -> list[dict[str, Any]]:
 
 
 def text_of(machine: Machine) -> str:
-    return "\n".join([*diagram(machine, depth=None, direction="TB"), ""])
+    return "\n".join([*diagram(machine, written(machine), depth=None, direction="TB"), ""])
 
 
 def shown(name: str) -> str:

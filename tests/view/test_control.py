@@ -4,7 +4,8 @@ threads, and of the interpreter."""
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import pytest
@@ -13,8 +14,12 @@ from smachac.interpreter.behaviours import builtin_behaviour
 from smachac.interpreter.interpreter import run as interpret
 from smachac.interpreter.scenario import Scenario, ScenarioStep, scenario_behaviour
 from smachac.ir.nodes import Machine, StateMachine
+from smachac.ir.traversal import outcome_names
+from smachac.ir.written import written
 from smachac.runtime.tracing.trace import attach, script
 from smachac.view.control import Control, ControlError
+from tests.ir.test_script_paths import EACH, LIMIT, RETRY
+from tests.ir.test_script_paths import machine as scripted
 from tests.support.ir_machines import concurrence, iterator, leaf, machine
 from tests.support.smach_machines import built
 
@@ -73,9 +78,11 @@ class Run:
         engine: Engine,
         *,
         paused: bool = True,
-        shown: Mapping[str, str] = {},
+        ends: Mapping[str, Sequence[str]] = {},
     ) -> None:
-        self.control = Control(shown, paused=paused)
+        view = written(Machine(root=root))
+        self.control = Control(view, paused=paused)
+        self._ends = ends
         self.events: list[Mapping[str, Any]] = []
         self.outcome: str | None = None
         self.machine = built(Machine(root=root)) if engine == "runtime" else None
@@ -85,16 +92,27 @@ class Run:
     def _go(self) -> None:
         root, leaves = self._root, paths_of_leaves(self._root, self._root.name)
         if self.machine is not None:
-            script(self.machine, root.name, {path: [("ok", {})] for path in leaves})
+            script(
+                self.machine,
+                root.name,
+                {path: [(end, {}) for end in self._of(path)] for path in leaves},
+            )
             attach(self.machine, root.name, self.events.append, gate=self.control)
             self.outcome = self.machine.execute()
         else:
             whole = Machine(root=root)
-            rows = {path: (ScenarioStep(outcome="ok", writes=()),) for path in leaves}
+            rows = {
+                path: tuple(ScenarioStep(outcome=end, writes=()) for end in self._of(path))
+                for path in leaves
+            }
             behaviour = scenario_behaviour(Scenario(steps=rows), whole, builtin_behaviour())
             result = interpret(whole, behaviour, self.events.append, gate=self.control)
             self.outcome = result.outcome
         self.control.ended()
+
+    def _of(self, path: str) -> Sequence[str]:
+        """The outcomes of the visits of a leaf; the last one repeats."""
+        return self._ends.get(path, ["ok"])
 
     def __enter__(self) -> Run:
         self._thread.start()
@@ -157,7 +175,9 @@ def test_a_breakpoint_stops_before_its_state(engine: Engine) -> None:
     with Run(line(), engine) as run:
         run.waits_at("sm/A")
         run.control.act("break", "sm/B/B2")
-        assert run.control.status()["breakpoints"] == [{"path": "sm/B/B2", "outcome": None}]
+        assert run.control.status()["breakpoints"] == [
+            {"path": "sm/B/B2", "outcome": None, "round": None}
+        ]
         run.control.act("resume")
         assert run.waits_at("sm/B/B2")["paused"]
         assert run.entered() == ["sm/A", "sm/B", "sm/B/B1"]
@@ -185,7 +205,8 @@ def test_a_breakpoint_on_an_outcome_stops_after_the_state(engine: Engine) -> Non
         run.control.act("resume")
         (at,) = run.waits_at("sm/B/B1")["at"]
         assert at == {
-            "path": "sm/B/B1", "outcome": "ok", "outcomes": ("ok", "bad", "preempted")
+            "path": "sm/B/B1", "outcome": "ok", "round": None,
+            "outcomes": ("ok", "bad", "preempted"),
         }  # fmt: skip
         assert run.entered()[-1] == "sm/B/B1"
         assert "sm/B/B1" not in run.exits()
@@ -346,13 +367,114 @@ def test_a_run_that_is_not_paused_meets_no_gate(engine: Engine) -> None:
         assert not run.control.armed
 
 
+def drive(sugar: str) -> StateMachine:
+    """DRIVE with fields that make containers; it leads to the end of the machine."""
+    root = scripted(sugar).root
+    assert isinstance(root, StateMachine)
+    (state,) = root.children
+    own = outcome_names(state)
+    kept = tuple(step for step in state.transitions if step.outcome in own)
+    return replace(root, children=(replace(state, transitions=kept),))
+
+
+LIMITED_TRIES = f"{RETRY}; {LIMIT}"
+INNERMOST = "sm/DRIVE/TIMED/DRIVE"
+
+
+def tries(engine: Engine, *ends: str) -> Run:
+    return Run(
+        drive(LIMITED_TRIES), engine, ends={INNERMOST: ends, "sm/DRIVE/TIMED/TIMER": ["preempted"]}
+    )
+
+
 @engines
-def test_paths_are_those_of_the_script(engine: Engine) -> None:
-    with Run(line(), engine, shown={"sm/A": "sm/A (retry)"}) as run:
-        run.waits_at("sm/A (retry)")
-        run.control.act("step", "sm/A (retry)")
-        run.waits_at("sm/B")
+def test_a_state_with_tries_waits_once_for_each_visit(engine: Engine) -> None:
+    with tries(engine, "aborted", "succeeded") as run:
+        (at,) = run.waits_at("sm/DRIVE")["at"]
+        assert at["outcomes"] == ("succeeded", "timeout", "preempted", "exhausted", "aborted")
+        run.control.act("step")
+        assert run.ends() == "done"
+    assert run.entered().count(INNERMOST) == 2
+
+
+@engines
+def test_each_try_is_a_breakpoint_of_its_own(engine: Engine) -> None:
+    with tries(engine, "aborted", "aborted", "succeeded") as run:
+        run.waits_at("sm/DRIVE")
+        run.control.act("break", "sm/DRIVE", None, "try")
         run.control.act("resume")
+        for number in range(3):
+            (at,) = run.waits_at("sm/DRIVE")["at"]
+            assert at["round"] == "try"
+            assert run.entered().count(INNERMOST) == number
+            run.control.act("resume")
+        assert run.ends() == "done"
+
+
+@engines
+def test_a_forced_timeout_acts_on_the_time_limit(engine: Engine) -> None:
+    with tries(engine, "succeeded") as run:
+        run.waits_at("sm/DRIVE")
+        run.control.act("outcome", "sm/DRIVE", "timeout")
+        assert run.ends() == "failed"
+    assert run.exits() == {"sm/DRIVE/TIMED": "timeout", "sm/DRIVE": "timeout"}
+    assert not run.control.armed
+
+
+@engines
+def test_forced_used_up_tries_act_on_the_tries(engine: Engine) -> None:
+    with tries(engine, "succeeded") as run:
+        run.waits_at("sm/DRIVE")
+        run.control.act("outcome", "sm/DRIVE", "exhausted")
+        assert run.ends() == "failed"
+    assert run.exits() == {"sm/DRIVE": "exhausted"}
+
+
+@engines
+def test_a_forced_outcome_of_one_try_leads_to_the_next_one(engine: Engine) -> None:
+    with tries(engine, "succeeded") as run:
+        run.waits_at("sm/DRIVE")
+        run.control.act("outcome", "sm/DRIVE", "aborted")
+        assert run.ends() == "done"
+    forced = [event["path"] for event in run.events if event.get("forced")]
+    assert forced == [INNERMOST]
+    assert run.entered().count(INNERMOST) == 2
+
+
+@engines
+def test_the_end_of_a_try_can_be_a_breakpoint(engine: Engine) -> None:
+    with tries(engine, "aborted", "succeeded") as run:
+        run.waits_at("sm/DRIVE")
+        run.control.act("break", "sm/DRIVE", "aborted")
+        run.control.act("break", "sm/DRIVE", "succeeded")
+        run.control.act("resume")
+        (at,) = run.waits_at("sm/DRIVE")["at"]
+        assert at["outcome"] == "aborted"
+        run.control.act("resume")
+        (at,) = run.waits_at("sm/DRIVE")["at"]
+        assert at["outcome"] == "succeeded"
+        run.control.act("resume")
+        assert run.ends() == "done"
+
+
+def test_a_forced_outcome_of_a_loop_ends_the_loop() -> None:
+    with Run(drive(EACH), "interpreter", ends={"sm/DRIVE/DRIVE": ["succeeded"]}) as run:
+        run.waits_at("sm/DRIVE")
+        run.control.act("outcome", "sm/DRIVE", "succeeded")
+        assert run.ends() == "done"
+    assert run.exits() == {"sm/DRIVE": "succeeded"}
+
+
+def test_each_item_is_a_breakpoint_of_its_own() -> None:
+    with Run(drive(EACH), "interpreter", ends={"sm/DRIVE/DRIVE": ["succeeded"]}) as run:
+        run.waits_at("sm/DRIVE")
+        run.control.act("break", "sm/DRIVE", None, "item")
+        run.control.act("step")
+        for number in range(2):
+            (at,) = run.waits_at("sm/DRIVE")["at"]
+            assert at["round"] == "item"
+            assert run.entered().count("sm/DRIVE/DRIVE") == number
+            run.control.act("step")
         assert run.ends() == "done"
 
 
@@ -362,7 +484,7 @@ def test_an_unknown_action_is_an_error() -> None:
     with pytest.raises(ControlError, match="there is no action `break`"):
         Control().act("break")
     with pytest.raises(ControlError, match="there is no state `sm/X`"):
-        Control(places={"sm/A"}).act("break", "sm/X")
+        Control(written(Machine(root=line()))).act("break", "sm/X")
     control = Control()
     control.ended()
     with pytest.raises(ControlError, match="the run has ended"):

@@ -1,11 +1,13 @@
 // The stream of messages from `smachac view` and `smachac run --view`, and the actions sent back.
 
-import type { Finding, Model } from "./model";
+import type { Finding, Model, Round } from "./model";
 import type { TraceEvent } from "./run_state";
 
 export interface Place {
   path: string;
   outcome: string | null;
+  /** Each of the tries or items of the state. */
+  round: Round | null;
 }
 
 /** A state that waits: before its start, or after its end with `outcome`. */

@@ -4,7 +4,7 @@ import { html, svg } from "./dom";
 import type { Area, Box, PlacedLine, PlacedPiece, Point, Scene } from "./layout";
 import type { Graph, Model, Path, StateNode } from "./model";
 import { isContainer, kindInWords, nearest } from "./model";
-import { LINE_HEIGHT, TITLE_HEIGHT, boxDetail, exitId, exitsInWords } from "./pieces";
+import { CHIP_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxDetail, chipsOf, exitId, exitsInWords } from "./pieces";
 import { fitting, width } from "./text";
 
 /** What a run of the machine marks in the picture. `taken` are ids of edges (see `edgeId`), `times` the mean times
@@ -13,6 +13,8 @@ export interface Highlight {
   active: Iterable<Path>;
   taken?: Iterable<string>;
   visits?: ReadonlyMap<Path, number>;
+  /** The try or item that runs, in words. */
+  rounds?: ReadonlyMap<Path, string>;
   times?: ReadonlyMap<Path, string>;
   waiting?: Iterable<Path>;
   breakpoints?: Iterable<Path>;
@@ -23,6 +25,12 @@ export interface Picture {
   root: SVGGElement;
   states: Map<Path, SVGGElement>;
   lines: { line: PlacedLine; element: SVGGElement }[];
+  /** The lines that start or end at each state. */
+  linesAt: Map<string, SVGGElement[]>;
+  /** What is marked now: the selected state, the one that the keyboard reaches, and the run. */
+  selected: Path | null;
+  focusable: Path | null;
+  run: Highlight | null;
 }
 
 export function draw(graph: Graph, scene: Scene): Picture {
@@ -41,7 +49,16 @@ export function draw(graph: Graph, scene: Scene): Picture {
   const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) =>
     drawLabel(line, label, grounds.get(container) ?? "")));
   const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
-  return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
+  const linesAt = new Map<string, SVGGElement[]>();
+  for (const { line, element } of lines) {
+    for (const end of new Set([line.line.from, line.line.to])) {
+      const known = linesAt.get(end);
+      if (known) known.push(element);
+      else linesAt.set(end, [element]);
+    }
+  }
+  const root = svg("g", {}, tree, edges, marks, labels);
+  return { root, states, lines, linesAt, selected: null, focusable: null, run: null };
 }
 
 function drawState(graph: Graph, node: StateNode, box: Box): SVGGElement {
@@ -87,7 +104,7 @@ export function changeSign(change: "added" | "removed" | "changed"): SVGElement 
 
 /** The class with the colour of a container. */
 function ground(node: StateNode | undefined, box: Box): string {
-  if (node?.role || node?.kind === "iterator") return "looping";
+  if (node?.kind === "iterator") return "looping";
   if (node?.kind === "concurrence") return "parallel";
   return box.level % 2 ? "odd" : "even";
 }
@@ -95,14 +112,15 @@ function ground(node: StateNode | undefined, box: Box): string {
 /** Give a state its tooltip, once: a tooltip is no part of its name for screen readers. */
 export function addTooltip(element: Element, node: StateNode): void {
   if (element.querySelector(":scope > title")) return;
-  const text = [node.shown ?? node.path, node.doc, node.unknown].filter(Boolean).join("\n");
+  const text = [node.path, node.doc, node.unknown].filter(Boolean).join("\n");
   element.prepend(svg("title", {}, text));
 }
 
 /** The name of a state for screen readers in parts: the words of its box, then what only signs show. */
 function spoken(node: StateNode, box: Box): string[] {
   const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
-  const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
+  const badges = node.badges.map((badge) => badge.text).join(", ");
+  const parts = [[node.name, words, badges, exitsInWords(box.written)].filter(Boolean).join(" ")];
   if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
   if (node.change && node.change !== "same") parts.push(node.change);
   if (node.unknown) parts.push(`not known exactly: ${node.unknown}`);
@@ -119,6 +137,7 @@ function drawTitle(graph: Graph, group: SVGGElement, node: StateNode, box: Box):
     " ",
     svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail),
   );
+  if (node.badges.length) group.append(" ", chipRow(node, 32 + width(name, "title") + width(detail, "detail") + 20, 10));
   if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
 }
 
@@ -131,14 +150,27 @@ function drawText(graph: Graph, group: SVGGElement, node: StateNode, box: Box): 
   if (detail) {
     group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
   }
+  const below = y + (detail ? 16 : 0);
+  if (node.badges.length) {
+    group.append(" ", chipRow(node, middle - chipsOf(node).width / 2, below + 6));
+  }
   if (box.written.length) {
     const exits = fitting(exitsInWords(box.written), "detail");
     const failure = box.written.every((edge) => edge.failure);
     const look = failure ? "detail written failure" : "detail written";
-    group.append(" ", svg("text", { class: look, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
+    group.append(" ", svg("text", { class: look, x: middle, y: below + (node.badges.length ? CHIP_HEIGHT + 5 : 0) + 16, "text-anchor": "middle" }, exits));
   }
   if (isContainer(node)) group.append(chevron(14, y - 4, false));
   if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
+}
+
+/** The badges of a state. */
+function chipRow(node: StateNode, x: number, y: number): SVGElement {
+  const chips = chipsOf(node).chips.map((chip) =>
+    svg("g", { class: `chip ${chip.badge.field}`, transform: `translate(${chip.x} 0)` },
+      svg("rect", { width: chip.width, height: CHIP_HEIGHT, rx: CHIP_HEIGHT / 2 }),
+      svg("text", { x: chip.width / 2, y: 11.5, "text-anchor": "middle" }, chip.text)));
+  return svg("g", { class: "badges", transform: `translate(${x} ${y})` }, ...chips.flatMap((chip, index) => index ? [" ", chip] : [chip]));
 }
 
 /** The mark of a container: points down where it is open. */
@@ -241,7 +273,7 @@ function drawLine({ line, points }: PlacedLine): SVGGElement {
     const transform = `translate(${end.x} ${end.y}) rotate(${turn})`;
     group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
     const [only, ...others] = line.edges;
-    if (only !== undefined && !others.length) group.append(svg("circle", { class: "grip", cx: end.x, cy: end.y, r: 7, ...origin(only) }));
+    if (only !== undefined && !others.length) group.append(svg("path", { class: "hit", d, ...origin(only) }), svg("circle", { class: "grip", cx: end.x, cy: end.y, r: 7, ...origin(only) }));
   }
   return group;
 }
@@ -270,21 +302,26 @@ function background({ x, y, width, height }: Area): SVGElement {
   return svg("rect", { x, y, width, height, rx: 4 });
 }
 
-/** Mark the selected state and the lines that start or end at it. */
-export function markSelection(picture: Picture, path: Path | null): void {
-  for (const [each, element] of picture.states) {
-    const chosen = each === path;
-    element.classList.toggle("selected", chosen);
-    element.setAttribute("aria-selected", String(chosen));
-    element.setAttribute("tabindex", chosen ? "0" : "-1");
+/** Mark the selected state and the lines that start or end at it. `focusable` is the state that the keyboard
+ * reaches. Only what changes is touched: a machine may have thousands of states. */
+export function markSelection(picture: Picture, path: Path | null, focusable: Path): void {
+  for (const [each, chosen] of [[picture.selected, false], [path, true]] as const) {
+    if (each === null) continue;
+    const element = picture.states.get(each);
+    element?.classList.toggle("selected", chosen);
+    element?.setAttribute("aria-selected", String(chosen));
+    for (const line of picture.linesAt.get(each) ?? []) line.classList.toggle("near", chosen);
   }
-  for (const { line, element } of picture.lines) {
-    element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
-  }
+  if (picture.focusable !== null) picture.states.get(picture.focusable)?.setAttribute("tabindex", "-1");
+  picture.states.get(focusable)?.setAttribute("tabindex", "0");
+  picture.selected = path;
+  picture.focusable = focusable;
 }
 
 /** Mark what a run does. A state inside a closed container marks that container. */
 export function markRun(graph: Graph, picture: Picture, run: Highlight | null): void {
+  if (picture.run === run) return;
+  picture.run = run;
   const active = drawnStates(graph, picture, run?.active);
   const waiting = drawnStates(graph, picture, run?.waiting);
   const breakpoints = drawnStates(graph, picture, run?.breakpoints);
@@ -293,7 +330,7 @@ export function markRun(graph: Graph, picture: Picture, run: Highlight | null): 
     element.classList.toggle("active", active.has(path));
     element.classList.toggle("waiting", waiting.has(path));
     setBreakpoint(element, breakpoints.has(path));
-    setVisits(element, run?.visits?.get(path) ?? 0, run?.times?.get(path) ?? "");
+    setVisits(element, run?.visits?.get(path) ?? 0, [run?.rounds?.get(path), run?.times?.get(path)]);
   }
   for (const { line, element } of picture.lines) {
     element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
@@ -318,10 +355,10 @@ function setBreakpoint(element: SVGGElement, is: boolean): void {
   else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
 }
 
-function setVisits(element: SVGGElement, count: number, time: string): void {
+function setVisits(element: SVGGElement, count: number, words: (string | undefined)[]): void {
   element.classList.toggle("visited", count > 0);
   let mark = element.querySelector<SVGTextElement>(":scope > .visits");
-  const text = [count < 2 ? "" : `×${count}`, time].filter(Boolean).join(" · ");
+  const text = [count < 2 ? "" : `×${count}`, ...words].filter(Boolean).join(" · ");
   speakVisits(element, text && ` ${text}`);
   if (!text) {
     mark?.remove();

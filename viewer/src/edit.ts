@@ -3,7 +3,7 @@
 import { post, takeToken } from "./connection";
 import { button, html } from "./dom";
 import type { EditForm, Planned, StateType } from "./edit_fields";
-import { TRANSITION, formsOf, labelled } from "./edit_fields";
+import { BEHIND, TRANSITION, formsOf, labelled } from "./edit_fields";
 import type { Finding, Graph, Model, Path, StateNode } from "./model";
 import { findings } from "./panel";
 import { drawTransitions } from "./transition_drag";
@@ -62,7 +62,11 @@ class Editor {
     this.forget();
     viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
     document.addEventListener("keydown", (event) => this.key(event));
-    drawTransitions(viewer, (path, outcome, target) => void this.propose(path, outcome, target));
+    drawTransitions(
+      viewer,
+      (path, outcome, target) => void this.propose(path, outcome, target),
+      (path, outcome) => void this.insert(path, outcome),
+    );
   }
 
   /** Show what a transition that was drawn changes. */
@@ -74,15 +78,23 @@ class Editor {
     await this.look();
   }
 
+  /** Offer a new state on a transition. */
+  private async insert(path: Path, outcome: string): Promise<void> {
+    await this.viewer.select(path);
+    this.kinds.value = BEHIND;
+    this.showFields();
+    this.chosen()?.fill?.(outcome, "");
+  }
+
   /** The form of the selected state; what is typed in stays while the state and the machine stay. */
   private fill(node: StateNode | null): HTMLElement {
     const { graph } = this.viewer;
     const path = node?.path ?? null;
     if (this.filledFor?.graph === graph && this.filledFor.path === path) return this.form;
     if (this.filledFor?.path !== path && !this.said.classList.contains("done")) this.say("");
+    const before = this.filledFor?.path === path ? this.kinds.value : "";
     this.filledFor = { graph, path };
     this.forms = formsOf(graph, node, this.types);
-    const before = this.kinds.value;
     this.kinds.replaceChildren(...this.forms.map(({ title }) => html("option", { value: title }, title)));
     if (this.forms.some(({ title }) => title === before)) this.kinds.value = before;
     this.showFields();
@@ -179,12 +191,37 @@ async function stateTypes(token: string): Promise<StateType[]> {
 }
 
 function described(preview: Preview): HTMLElement[] {
-  const lines = preview.diff.replace(/\n$/, "").split("\n").map((line) =>
-    html("span", { class: line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null }, line));
+  const texts = preview.diff.replace(/\n$/, "").split("\n");
+  const lines = texts.map((line, index) => {
+    const look = line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null;
+    return html("span", { class: look }, ...markedWords(line, otherLine(texts, index)));
+  });
   const parts: HTMLElement[] = [
     html("pre", { class: "diff", tabindex: "0", role: "region", "aria-label": "Change of the script" }, html("code", {}, ...lines)),
   ];
   if (preview.added.length) parts.push(html("h4", {}, "New findings"), findings(preview.added));
   if (preview.removed.length) parts.push(html("h4", {}, "Findings that disappear"), findings(preview.removed));
   return parts;
+}
+
+/** The line before or behind a changed line of a patch, if it is the same line in the other version; else null. */
+function otherLine(lines: string[], index: number): string | null {
+  const line = lines[index]!;
+  const [sign, step] = line.startsWith("-") ? ["+", 1] : ["-", -1];
+  const other = lines[index + Number(step)];
+  const isChange = (text: string): boolean => /^[+-](?![+-]{2} )/.test(text);
+  return other?.startsWith(String(sign)) && isChange(line) && isChange(other) ? other : null;
+}
+
+/** A line with marks on the words that the other version of it does not have. */
+export function markedWords(line: string, other: string | null): (string | HTMLElement)[] {
+  if (other === null) return [line];
+  const [words, others] = [line, other].map((text) => text.slice(1).split(/(\s+|[[\]{},:])/)) as [string[], string[]];
+  let start = 0;
+  while (start < words.length && words[start] === others[start]) start += 1;
+  let end = 0;
+  while (end < Math.min(words.length, others.length) - start && words.at(-1 - end) === others.at(-1 - end)) end += 1;
+  const middle = words.slice(start, words.length - end).join("");
+  if (!middle) return [line];
+  return [line[0]! + words.slice(0, start).join(""), html("mark", {}, middle), words.slice(words.length - end).join("")];
 }

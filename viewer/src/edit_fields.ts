@@ -24,6 +24,8 @@ export interface Planned {
 export interface StateType {
   name: string;
   doc: string;
+  /** Where it comes from, as the heading of its group. */
+  group: string;
 }
 
 /** One kind of edit: its name in the list, its labelled fields, and what they describe now. */
@@ -31,7 +33,7 @@ export interface EditForm {
   title: string;
   fields: HTMLElement[];
   planned(): Planned;
-  /** Set the fields of a transition. */
+  /** Set the fields: of a transition, or of a state on it. */
   fill?(outcome: string, target: string): void;
 }
 
@@ -39,6 +41,9 @@ const NOWHERE = "";
 
 /** The name of the form of a transition. */
 export const TRANSITION = "Change a transition";
+
+/** The name of the form of a state on a transition. */
+export const BEHIND = "Add a state behind it";
 
 /** A control with its label. */
 export function labelled(text: string, control: HTMLElement): HTMLElement {
@@ -68,8 +73,9 @@ export function formsOf(graph: Graph, node: StateNode | null, types: Promise<Sta
     if (hasTransitions(graph, state)) forms.push(transition(graph, state, parent));
     forms.push(rename(state));
   }
-  if (parent) forms.push(add("Add a state behind it", parent, types, state));
-  if (isContainer(state) && state.children.length) forms.push(add("Add a state inside", state, types));
+  if (parent) forms.push(add(BEHIND, graph, parent, types, state));
+  const last = graph.nodes.get(state.children.at(-1) ?? "");
+  if (isContainer(state) && last && state.kind !== "iterator") forms.push(add("Add a state inside", graph, state, types, last));
   if (parent) {
     forms.push(remove(graph, state, parent), contain(graph, state, parent));
   }
@@ -128,30 +134,45 @@ function transition(graph: Graph, state: StateNode, parent: StateNode): EditForm
   };
 }
 
-function add(title: string, parent: StateNode, types: Promise<StateType[]>, after?: StateNode): EditForm {
+function add(title: string, graph: Graph, parent: StateNode, types: Promise<StateType[]>, after: StateNode): EditForm {
   const [nameLabel, name] = textField("Name of the new state");
   const [typeLabel, type] = choice("State type", []);
   const doc = html("p", { class: "help" });
-  const outcomes = after && parent.kind === "machine" ? after.outcomes.map(({ name }): [string, string] => [name, name]) : [];
-  const [onLabel, on] = choice("Outcome that leads to it", [[NOWHERE, "(none yet)"], ...outcomes]);
+  const outcomes = parent.kind === "machine" ? after.outcomes.map(({ name }): [string, string] => [name, name]) : [];
+  const label = title === BEHIND ? "Outcome that leads to it" : `Outcome of ${after.name} that leads to it`;
+  const [onLabel, on] = choice(label, [...outcomes, [NOWHERE, "(none yet)"]]);
+  on.value = outcomes.length ? entrance(graph, after) : NOWHERE;
   void types.then((known) => {
     const describe = (): void => {
       doc.textContent = known.find((each) => each.name === type.value)?.doc ?? "";
     };
-    type.replaceChildren(...known.map((each) => html("option", { value: each.name }, each.name)));
+    const groups = new Map<string, StateType[]>();
+    for (const each of known) groups.set(each.group, [...(groups.get(each.group) ?? []), each]);
+    type.replaceChildren(...[...groups].map(([group, some]) =>
+      html("optgroup", { label: group }, ...some.map((each) => html("option", { value: each.name, title: each.doc }, each.name)))));
     type.addEventListener("change", describe);
     describe();
   });
   return {
     title,
     fields: [nameLabel, typeLabel, doc, ...(outcomes.length ? [onLabel] : [])],
+    fill(outcome) {
+      on.value = outcome;
+      name.focus();
+    },
     planned() {
       const given: Arguments = { name: name.value.trim(), type: type.value };
-      if (after) given["after"] = lastName(after.path);
+      given["after"] = lastName(after.path);
       if (on.value !== NOWHERE) given["on"] = on.value;
       return { edit: { operation: "add", path: parent.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
     },
   };
+}
+
+/** The outcome that leads to a new state behind another one at first: one without a transition, else the first one. */
+function entrance(graph: Graph, state: StateNode): string {
+  const led = new Set((graph.leaving.get(state.path) ?? []).map(({ outcome }) => outcome));
+  return (state.outcomes.find(({ name }) => !led.has(name)) ?? state.outcomes.find(({ success }) => success) ?? state.outcomes[0])?.name ?? NOWHERE;
 }
 
 function remove(graph: Graph, state: StateNode, parent: StateNode): EditForm {

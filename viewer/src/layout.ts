@@ -4,7 +4,7 @@
 import type { ElkExtendedEdge, ElkNode, ElkPort } from "elkjs/lib/elk-api";
 import type { Graph, ModelEdge, Path } from "./model";
 import type { Content, Line, Piece } from "./pieces";
-import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, contentOf, exitId, writtenExits } from "./pieces";
+import { EXIT_HEIGHT, LINE_HEIGHT, TITLE_HEIGHT, boxSize, chipsOf, contentOf, exitId, writtenExits } from "./pieces";
 import { fitting, width } from "./text";
 import { kindInWords } from "./model";
 import { inRows } from "./rows";
@@ -60,6 +60,7 @@ interface Placed {
   entry: number;
   pieces: PlacedPiece[];
   lines: PlacedLine[];
+  far: Line[];
   written: Map<Path, ModelEdge[]>;
 }
 
@@ -139,6 +140,9 @@ export class Layouts {
       return { ...scene, ...size };
     }
     this.compose(root, { x: 0, y: 0 }, 0, placed, scene);
+    for (const [container, { far }] of placed) {
+      scene.lines.push(...far.flatMap((line) => this.straight(container, line, scene)));
+    }
     const { full } = placed.get(root)!;
     return { ...scene, ...full };
   }
@@ -182,18 +186,45 @@ export class Layouts {
     const title =
       width(fitting(node.name, "title"), "title") +
       width(fitting(kindInWords(node), "detail"), "detail") +
-      96;
-    return { ...readLayout(content, done, title, this.direction), written };
+      chipsOf(node).width +
+      106;
+    return { ...readLayout(content, done, title, this.direction), far: content.far, written };
   }
 
   private async computed(content: Content, placed: Map<Path, Placed>): Promise<ElkNode> {
     const graph = (fast: boolean): ElkNode => elkGraph(content, placed, this.direction, fast, Boolean(this.graph.model.statistics));
-    if (content.lines.length > VERY_MANY || reach(content) > FAR) {
-      return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+    const rows = (): ElkNode => inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+    if (content.lines.length > VERY_MANY || reach(content) > FAR) return rows();
+    // ELK fails on a few graphs; it does so less often with fewer options. What it refuses is drawn in rows.
+    const simple = (): Promise<ElkNode> => this.compute(graph(true)).catch(rows);
+    return content.lines.length > MANY ? simple() : this.compute(graph(false)).catch(simple);
+  }
+
+  /** A line from one part of the scene to another one; none where both are in one closed container. */
+  private straight(container: Path, line: Line, scene: Scene): PlacedLine[] {
+    const from = this.placeOf(container, line.from, scene);
+    const to = this.placeOf(container, line.to, scene);
+    if (!from || !to || from === to) return [];
+    const points = straightLine(from, to);
+    const [start, end] = [points[0]!, points[1]!];
+    const widest = Math.max(0, ...line.labels.map((text) => width(fitting(text, "label"), "label")));
+    const size = { width: widest + 10, height: LINE_HEIGHT * line.labels.length + 4 };
+    const label = line.labels.length
+      ? { x: (start.x + end.x - size.width) / 2, y: (start.y + end.y - size.height) / 2, ...size }
+      : null;
+    return [{ container, line, points, label }];
+  }
+
+  /** Where an end of a line is: a state, the closed container that hides it, or a mark of the container. */
+  private placeOf(container: Path, id: string, scene: Scene): Area | undefined {
+    const mark = scene.pieces.find((each) => each.container === container && each.piece.id === id);
+    if (mark) return mark;
+    for (let node = this.graph.nodes.get(id); node; node = node.parent === null ? undefined : this.graph.nodes.get(node.parent)) {
+      const { path } = node;
+      const box = scene.boxes.find((each) => each.path === path);
+      if (box) return box;
     }
-    if (content.lines.length > MANY) return this.compute(graph(true));
-    // ELK fails on a few graphs; it does so less often with fewer options.
-    return this.compute(graph(false)).catch(() => this.compute(graph(true)));
+    return undefined;
   }
 
   private size(path: Path, written: readonly ModelEdge[] = []): { width: number; height: number } {
@@ -224,6 +255,18 @@ export class Layouts {
       }
     }
   }
+}
+
+/** The line between two areas, from border to border, along the line of their centres. */
+export function straightLine(from: Area, to: Area): [Point, Point] {
+  const centre = ({ x, y, width, height }: Area): Point => ({ x: x + width / 2, y: y + height / 2 });
+  const border = (area: Area, other: Point): Point => {
+    const { x, y } = centre(area);
+    const [dx, dy] = [other.x - x, other.y - y];
+    const scale = Math.min(1, ...[dx ? area.width / 2 / Math.abs(dx) : 1, dy ? area.height / 2 / Math.abs(dy) : 1]);
+    return { x: x + dx * scale, y: y + dy * scale };
+  };
+  return [border(from, centre(to)), border(to, centre(from))];
 }
 
 function moved<P extends Point>(point: P, by: Point): P {
@@ -413,7 +456,7 @@ function portsOfOpen(piece: Piece, ports: ElkPort[], inner: Placed): ElkPort[] {
 }
 
 /** The layout of a container from the answer of ELK. `title` is the width that its title needs. */
-function readLayout(content: Content, done: ElkNode, title: number, direction: Direction): Omit<Placed, "written"> {
+function readLayout(content: Content, done: ElkNode, title: number, direction: Direction): Omit<Placed, "far" | "written"> {
   const places = new Map((done.children ?? []).map((each) => [each.id, each]));
   const down = direction === "DOWN";
   const least = Math.max(title, 120);
@@ -425,7 +468,11 @@ function readLayout(content: Content, done: ElkNode, title: number, direction: D
   });
   const lines = (done.edges ?? []).map((edge, index) => {
     const section = edge.sections?.[0];
-    const points = section ? [section.startPoint, ...(section.bendPoints ?? []), section.endPoint] : [];
+    const { from, to } = content.lines[index]!;
+    // An edge that the library leaves without a route is drawn straight.
+    const points = section
+      ? [section.startPoint, ...(section.bendPoints ?? []), section.endPoint]
+      : straightLine(areaOf(places.get(from)), areaOf(places.get(to)));
     const box = edge.labels?.[0];
     const label = box && { x: box.x ?? 0, y: box.y ?? 0, width: box.width ?? 0, height: box.height ?? 0 };
     return {
@@ -438,6 +485,10 @@ function readLayout(content: Content, done: ElkNode, title: number, direction: D
   const start = pieces[0]!;
   const entry = down ? start.x + start.width / 2 : start.y + start.height / 2;
   return { direction, ...frames(pieces, done, least, down), entry, pieces, lines };
+}
+
+function areaOf({ x = 0, y = 0, width = 0, height = 0 }: Partial<Area> = {}): Area {
+  return { x, y, width, height };
 }
 
 /** The frame of a container, and its size with the outcomes that stand out. */

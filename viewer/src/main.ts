@@ -8,7 +8,7 @@ import { showStatistics } from "./statistics";
 import { createViewer } from "./viewer";
 import { startLayout } from "./worker";
 
-const VERSION = 1;
+const VERSION = 2;
 
 async function main(): Promise<void> {
   const model = JSON.parse(textOf("smachac-model")) as Model;

@@ -2,11 +2,27 @@
 
 export type Path = string;
 
+export type Round = "try" | "item";
+
+export type BadgeField = "timeout" | "retry" | "for_each" | "catches";
+
+/** What a field of the script adds to a state: an outcome, or after the outcomes `again` the next of
+ * `count` tries or items. */
+export interface Badge {
+  field: BadgeField;
+  text: string;
+  outcome: string | null;
+  again: string[];
+  count: number | null;
+}
+
 export interface Outcome {
   name: string;
   failure: boolean;
   success: boolean;
   doc: string;
+  /** The field that adds it. */
+  field?: BadgeField;
 }
 
 export interface Key {
@@ -37,14 +53,18 @@ export interface Rule {
 
 export interface StateNode {
   path: Path;
-  shown?: string;
   name: string;
   kind: "leaf" | "machine" | "sequence" | "concurrence" | "iterator";
   parent: Path | null;
   children: Path[];
   initial: Path | null;
   type: string | null;
-  role: string | null;
+  badges: Badge[];
+  /** The nodes of the graph that are this state, outermost first: their paths in traces, their roles, what
+   * begins with each of their starts, and their paths in old traces. */
+  parts?: [shown: string, role: string, begins: Round | null, full: string][];
+  /** The outcomes of one try or item after which the next one begins. */
+  repeated?: { name: string; failure: boolean }[];
   doc: string;
   file: string | null;
   line: number | null;
@@ -100,6 +120,8 @@ export interface StateStatistics {
   mean: number;
   longest: number;
   outcomes: Record<string, number>;
+  /** The numbers of tries and items, in words. */
+  rounds: string;
 }
 
 /** Statistics of many runs, by the path of a state. `never` are the transitions that no run took. */
@@ -149,11 +171,46 @@ export function shareOf(state: StateStatistics, outcome: string): string {
   return `${ended ? Number(((100 * countOf(state, outcome)) / ended).toFixed(1)) : 0} %`;
 }
 
-/** A model with its look-ups. `byShown` finds a state by the path that scripts and traces show. */
+/** A part of a written state in traces. `begins`: each of its starts is a try or an item. `added`: a timer or a
+ * pause. `outer`: it starts and ends with the state. */
+export interface Part {
+  path: Path;
+  outer: boolean;
+  added: boolean;
+  begins: Round | null;
+  count: number | null;
+}
+
+/** The parts of written states by their paths in traces. */
+export class Parts {
+  private readonly known = new Map<string, Part>();
+
+  constructor(nodes: readonly StateNode[]) {
+    const old: [string, Part][] = [];
+    for (const node of nodes) {
+      const parts = node.parts ?? [[node.path, "state", null, node.path] as const];
+      parts.forEach(([shown, role, begins, full], index) => {
+        const field = begins === "try" ? "retry" : "for_each";
+        const count = node.badges.find((badge) => badge.field === field)?.count ?? null;
+        const added = role === "timer" || role === "pause";
+        const part = { path: node.path, outer: index === 0, added, begins, count };
+        this.known.set(shown, part);
+        old.push([full, part]);
+      });
+    }
+    for (const [full, part] of old) if (!this.known.has(full)) this.known.set(full, part);
+  }
+
+  of(path: string): Part | undefined {
+    return this.known.get(path);
+  }
+}
+
+/** A model with its look-ups. */
 export interface Graph {
   model: Model;
   nodes: Map<Path, StateNode>;
-  byShown: Map<string, StateNode>;
+  parts: Parts;
   inside: Map<Path, ModelEdge[]>;
   leaving: Map<Path, ModelEdge[]>;
 }
@@ -162,7 +219,7 @@ export function indexed(model: Model): Graph {
   const graph: Graph = {
     model,
     nodes: new Map(model.nodes.map((node) => [node.path, node])),
-    byShown: new Map(model.nodes.map((node) => [node.shown ?? node.path, node])),
+    parts: new Parts(model.nodes),
     inside: new Map(),
     leaving: new Map(),
   };
@@ -211,9 +268,8 @@ export function nearest(graph: Graph, path: Path): StateNode | undefined {
   return undefined;
 }
 
-/** What a state is, in words: its role, kind or type. */
+/** What a state is, in words: its kind or type. */
 export function kindInWords(node: StateNode): string {
-  if (node.role) return node.role;
   if (node.kind === "concurrence") return node.join === "any" ? "in parallel, first to end" : "in parallel";
   if (node.kind === "iterator" && node.items) return `for each ${node.items}`;
   if (node.kind === "sequence") return "sequence";
@@ -233,7 +289,7 @@ export function firstOpen(graph: Graph, depth: number, limit: number): Set<Path>
     const next: Path[] = [];
     for (const path of level) {
       const node = graph.nodes.get(path);
-      if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
+      if (!node || !isContainer(node)) continue;
       if (count + node.children.length > limit && at > 0) continue;
       open.add(path);
       count += node.children.length;
@@ -244,11 +300,13 @@ export function firstOpen(graph: Graph, depth: number, limit: number): Set<Path>
   return open;
 }
 
-/** Whether a container was made by a field of one leaf (`retry`, ...): it is drawn closed at first. */
-function isWrapped(graph: Graph, node: StateNode): boolean {
-  if (!node.role) return false;
-  return node.children.every((path) => {
-    const child = graph.nodes.get(path);
-    return child !== undefined && (!isContainer(child) || isWrapped(graph, child));
-  });
+/** Whether the items of a container are tries of a state: in the picture of the generated states. */
+export function isRetry(node: StateNode): boolean {
+  return node.kind === "iterator" && node.badges.some(({ field }) => field === "retry");
+}
+
+/** What begins after an outcome of one try or item of a state. */
+export function nextRound(node: StateNode, outcome: string): string {
+  const badge = node.badges.find(({ again }) => again.includes(outcome));
+  return badge?.field === "for_each" ? "next item" : "next try";
 }

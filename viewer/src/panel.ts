@@ -2,8 +2,8 @@
 
 import { html } from "./dom";
 import { legend } from "./draw";
-import type { Finding, Graph, Key, ModelEdge, Path, StateNode } from "./model";
-import { isContainer, kindInWords } from "./model";
+import type { Badge, Finding, Graph, Key, ModelEdge, Path, StateNode } from "./model";
+import { isContainer, kindInWords, nextRound } from "./model";
 
 /** A section of the panel that another module adds. It is filled again for each selection. */
 export interface Section {
@@ -71,16 +71,34 @@ function stateSections(graph: Graph, node: StateNode, actions: PanelActions): (H
 function heading(graph: Graph, node: StateNode, actions: PanelActions): HTMLElement {
   const around = node.parent === null ? null : graph.nodes.get(node.parent);
   const made = html("section", { "data-section": "state" },
-    html("p", { class: "path" }, around ? link(around.shown ?? around.path, around.path, actions) : "machine"),
+    html("p", { class: "path" }, around ? link(around.path, around.path, actions) : "machine"),
     html("h2", {}, node.name),
-    html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) && !node.role ? ` (${node.type})` : ""),
+    html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) ? ` (${node.type})` : ""),
   );
+  if (node.badges.length) {
+    made.append(html("ul", { class: "badges" }, ...node.badges.map((badge) => html("li", {}, badgeInWords(badge, node)))));
+  }
   if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
   if (node.unknown) made.append(html("p", { class: "doc" }, `Not known exactly: ${node.unknown}.`));
   if (node.tags.length) {
     made.append(html("p", { class: "tags" }, ...node.tags.map((tag) => html("span", { class: "tag" }, tag))));
   }
   return made;
+}
+
+/** What a badge does, in a sentence. */
+function badgeInWords(badge: Badge, node: StateNode): string {
+  const again = badge.again.join(" or ");
+  switch (badge.field) {
+    case "timeout":
+      return `${badge.text}: then ${node.outcomes.some(({ name }) => name === badge.outcome) ? "it" : "a try"} ends with ${badge.outcome}`;
+    case "retry":
+      return `${badge.text}: the next one after ${again}; after the last one it ends with ${badge.outcome}`;
+    case "for_each":
+      return again ? `${badge.text}: the next one after ${again}` : badge.text;
+    case "catches":
+      return `an exception in it ends it with ${badge.outcome}`;
+  }
 }
 
 export function findings(found: Finding[]): HTMLElement {
@@ -101,7 +119,11 @@ function outcomes(graph: Graph, node: StateNode, actions: PanelActions): HTMLEle
     const targets = html("span", { class: "targets" }, ...edges.map((edge) => target(graph, edge, actions)));
     return html("li", {}, name, targets);
   });
-  return html("ul", { class: "rows" }, ...rows);
+  const repeated = (node.repeated ?? []).map((outcome) => {
+    const name = html("span", { class: `outcome${outcome.failure ? " failure" : ""}` }, outcome.name);
+    return html("li", {}, name, html("span", { class: "targets" }, html("span", { class: "target" }, nextRound(node, outcome.name))));
+  });
+  return html("ul", { class: "rows" }, ...rows, ...repeated);
 }
 
 function target(graph: Graph, edge: ModelEdge, actions: PanelActions): HTMLElement {
@@ -177,7 +199,7 @@ function machineSections(graph: Graph, actions: PanelActions): (HTMLElement | nu
   const heading = html("section", { "data-section": "machine" },
     html("p", { class: "path" }, model.source),
     html("h2", {}, model.name),
-    html("p", { class: "kind" }, `${model.nodes.length} states, ${model.edges.length} transitions`),
+    html("p", { class: "kind" }, `${counted(model.nodes.length - 1, "state")}, ${counted(model.edges.length, "transition")}`),
     root?.doc ? html("p", { class: "doc" }, root.doc) : null,
   );
   return [
@@ -187,6 +209,10 @@ function machineSections(graph: Graph, actions: PanelActions): (HTMLElement | nu
     section("Legend", legend(model)),
     section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)]))),
   ];
+}
+
+function counted(count: number, noun: string): string {
+  return `${count} ${noun}${count === 1 ? "" : "s"}`;
 }
 
 function machineFindings(graph: Graph, actions: PanelActions): HTMLElement {

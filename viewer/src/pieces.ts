@@ -1,7 +1,7 @@
 // The content of an open container as a graph for the layout: nodes with sizes, lines with labels.
 
-import type { Change, Graph, ModelEdge, Path, StateNode } from "./model";
-import { SIGNS, edgeId, isContainer, kindInWords, shareOf } from "./model";
+import type { Badge, Change, Graph, ModelEdge, Path, StateNode } from "./model";
+import { SIGNS, edgeId, isContainer, isRetry, kindInWords, nextRound, shareOf } from "./model";
 import { fitting, width } from "./text";
 
 /** A drawn node: a state, an outcome of the container, its start, or the join of a rule. */
@@ -37,6 +37,8 @@ export interface Content {
   path: Path;
   pieces: Piece[];
   lines: Line[];
+  /** The lines that start or end outside of the container, as in the picture of a comparison: they are drawn straight. */
+  far: Line[];
 }
 
 export const EXIT_HEIGHT = 22;
@@ -93,18 +95,40 @@ export function boxSize(
   const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
   const detail = boxDetail(node, count);
   const chevron = isContainer(node) ? 22 : 0;
+  const chips = node.badges.length ? chipsOf(node).width : 0;
   const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
   return {
-    width: Math.max(96, name + chevron + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
-    height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0),
+    width: Math.max(96, name + chevron + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24, chips + 20),
+    height: (detail ? 48 : 36) + (chips ? CHIP_HEIGHT + 5 : 0) + (written.length ? WRITTEN_HEIGHT : 0),
   };
+}
+
+export const CHIP_HEIGHT = 16;
+const CHIP_GAP = 4;
+
+export interface Chip {
+  badge: Badge;
+  text: string;
+  x: number;
+  width: number;
+}
+
+/** The badges of a state in a row, and the width of the row. */
+export function chipsOf(node: StateNode): { chips: Chip[]; width: number } {
+  let at = 0;
+  const chips = node.badges.map((badge) => {
+    const text = fitting(badge.text, "chip", 170);
+    const chip = { badge, text, x: at, width: width(text, "chip") + 12 };
+    at += chip.width + CHIP_GAP;
+    return chip;
+  });
+  return { chips, width: Math.max(0, at - CHIP_GAP) };
 }
 
 /** The second line of a box. */
 export function boxDetail(node: StateNode, count: number): string {
   if (!isContainer(node)) return node.type ?? "";
-  const words = kindInWords(node);
-  return node.role ? words : `${words}, ${count} ${count === 1 ? "state" : "states"}`;
+  return `${kindInWords(node)}, ${count} ${count === 1 ? "state" : "states"}`;
 }
 
 /** The content of a container. `sizes` are the sizes of its children, `open` those that are open. */
@@ -120,8 +144,8 @@ export function contentOf(
     const node = graph.nodes.get(child);
     if (node) pieces.push({ id: child, what: "state", label: node.name, path: child, ...sizes.get(child)! });
   }
-  for (const outcome of container.outcomes) {
-    const label = fitting(outcome.name, "exit");
+  for (const outcome of exitsOf(container)) {
+    const label = fitting(outcome.label, "exit");
     pieces.push({
       id: exitId(outcome.name),
       what: "exit",
@@ -151,7 +175,28 @@ export function contentOf(
       add(line, edgeId(edge), withFigures(graph, edge, line, labelOf(container, edge, line)));
     }
   }
-  return { path, pieces, lines: [...lines.values()] };
+  const ids = new Set(pieces.map(({ id }) => id));
+  const isInside = ({ from, to }: Line): boolean => ids.has(from) && ids.has(to);
+  const all = [...lines.values()];
+  return { path, pieces, lines: all.filter(isInside), far: all.filter((line) => !isInside(line)) };
+}
+
+interface Exit {
+  name: string;
+  label: string;
+  failure: boolean;
+  success: boolean;
+}
+
+/** The ends of an open container: its outcomes, and those after which the next try or item begins. */
+function exitsOf(container: StateNode): Exit[] {
+  const repeated = container.repeated ?? [];
+  const label = (name: string): string =>
+    repeated.some((each) => each.name === name) ? `${name} \u2192 ${nextRound(container, name)}` : name;
+  const own = container.outcomes.map((each) => ({ ...each, label: label(each.name) }));
+  const names = new Set(own.map(({ name }) => name));
+  const others = repeated.filter(({ name }) => !names.has(name));
+  return [...own, ...others.map((each) => ({ ...each, success: false, label: label(each.name) }))];
 }
 
 /** A label with the sign of the change of its line, or the frequency of its outcome, where there is one. */
@@ -168,7 +213,7 @@ function startPiece(container: StateNode): Piece {
     return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
   }
   if (container.kind === "iterator") {
-    const label = container.role ? "next try" : "next item";
+    const label = isRetry(container) ? "next try" : "next item";
     return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
   }
   return { id: START, what: "start", label: "start", width: 12, height: 12 };
@@ -235,6 +280,6 @@ function linesOf(
 function labelOf(container: StateNode, edge: ModelEdge, line: { from: string; to: string }): string {
   if (edge.kind === "default") return "otherwise";
   if (edge.kind === "caught") return "exception";
-  if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
+  if (edge.kind === "exhausted") return edge.source === null ? "" : isRetry(container) ? "no tries left" : "no more items";
   return line.to === exitId(edge.outcome) ? "" : edge.outcome;
 }

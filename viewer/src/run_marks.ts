@@ -5,11 +5,11 @@ import type { ControlStatus } from "./connection";
 import type { Graph, Path, StateNode } from "./model";
 import { edgeId, isContainer } from "./model";
 import type { RunState, TraceEvent, Written } from "./run_state";
-import { activeLeaves } from "./run_state";
+import { activeLeaves, roundInWords } from "./run_state";
 
-/** The state at a path as traces show it. */
-export function nodeAt(graph: Graph, shown: string): StateNode | undefined {
-  return graph.byShown.get(shown) ?? graph.nodes.get(shown);
+/** The state at a path. */
+export function nodeAt(graph: Graph, path: string): StateNode | undefined {
+  return graph.nodes.get(path);
 }
 
 export function highlightOf(graph: Graph, state: RunState, control: ControlStatus | null): Highlight {
@@ -22,6 +22,7 @@ export function highlightOf(graph: Graph, state: RunState, control: ControlStatu
     active: known(graph, activeLeaves(state)).filter((path) => !isContainer(graph.nodes.get(path)!)),
     taken: takenEdges(graph, state),
     visits,
+    rounds: new Map([...state.rounds.keys()].map((path) => [path, roundInWords(state, path)])),
     waiting: known(graph, control?.at.map((each) => each.path) ?? []),
     breakpoints: known(graph, control?.breakpoints.map((each) => each.path) ?? []),
   };
@@ -47,10 +48,7 @@ function takenEdges(graph: Graph, state: RunState): Set<string> {
   const found = new Set<string>();
   for (const key of state.taken.keys()) {
     const [path = "", outcome = "", to = ""] = key.split("\n");
-    const source = nodeAt(graph, path);
-    if (!source) continue;
-    const target = nodeAt(graph, to)?.path ?? exitOf(graph, source, to);
-    found.add(`${source.path}\n${outcome}\n${target}`);
+    if (nodeAt(graph, path)) found.add(`${path}\n${outcome}\n${to}`);
   }
   for (const [path, visited] of state.visited) {
     const node = nodeAt(graph, path);
@@ -58,25 +56,15 @@ function takenEdges(graph: Graph, state: RunState): Set<string> {
     for (const edge of graph.inside.get(node.path) ?? []) {
       const end = typeof edge.target === "string" ? edge.target : null;
       if (edge.source === null) {
-        if (end !== null && state.visited.has(shownPath(graph, end))) found.add(edgeId(edge));
+        if (end !== null && state.visited.has(end)) found.add(edgeId(edge));
       } else if (node.kind === "concurrence" && end === null) {
-        const branch = state.visited.get(shownPath(graph, edge.source));
+        const branch = state.visited.get(edge.source);
         const outcome = (edge.target as { outcome: string }).outcome;
         if (branch?.lastOutcome === edge.outcome && visited.lastOutcome === outcome) found.add(edgeId(edge));
       }
     }
   }
   return found;
-}
-
-function exitOf(graph: Graph, source: StateNode, to: string): string {
-  const container = source.parent ?? source.path;
-  const shown = shownPath(graph, container);
-  return to.startsWith(`${shown}:`) ? `${container}:${to.slice(shown.length + 1)}` : to;
-}
-
-export function shownPath(graph: Graph, path: Path): string {
-  return graph.nodes.get(path)?.shown ?? path;
 }
 
 /** A key in the userdata of a container, with its last value. `scope` is the container. */
@@ -135,7 +123,8 @@ export function inline(value: unknown, most = SHORT): string {
 export function inWords(graph: Graph, event: TraceEvent): { text: string; tone: "" | "good" | "bad" } | null {
   const node = nodeAt(graph, event.path);
   const name = node?.name ?? event.path;
-  const failure = node?.outcomes.find((each) => each.name === event.outcome)?.failure ?? false;
+  const outcomes = [...(node?.outcomes ?? []), ...(node?.repeated ?? [])];
+  const failure = outcomes.find((each) => each.name === event.outcome)?.failure ?? false;
   const tone = failure ? "bad" : "good";
   switch (event.event) {
     case "start":
@@ -154,6 +143,14 @@ export function inWords(graph: Graph, event: TraceEvent): { text: string; tone: 
     }
     case "write":
       return { text: `${name} writes ${event.key} = ${inline(event.value)}`, tone: "" };
+    case "try":
+    case "item":
+      return { text: `${name}: ${event.event} ${event.number}${event.of === undefined ? "" : ` of ${event.of}`}`, tone: "" };
+    case "try ended":
+    case "item ended": {
+      const [what] = event.event.split(" ");
+      return { text: `${name}: ${what} ${event.number} ends${withOutcome(event)}`, tone };
+    }
     case "preempt":
       return { text: `${name} is requested to stop`, tone: "" };
     case "error":

@@ -1,9 +1,14 @@
 // A run, from the events of its trace (docs/semantics.md, Traces). No part of this file touches the page.
 
-/** An event of a trace; `path` and `to` are those that the script shows. */
+import type { Round } from "./model";
+
+/** An event of a trace of written states (written_events.ts). */
 export interface TraceEvent {
   event: string;
   path: string;
+  /** The number of a try or an item, and the number of all of them. */
+  number?: number;
+  of?: number;
   t?: number;
   seq?: number;
   outcome?: string;
@@ -43,6 +48,8 @@ export interface RunState {
   /** The states that run now, containers too, with the time of their start. */
   active: Map<string, number>;
   visited: Map<string, Visited>;
+  /** The last try or item of each state that runs: its number, and that of all. */
+  rounds: Map<string, { what: Round; number: number; of: number | undefined }[]>;
   /** How often each transition was taken, by `transitionKey`. */
   taken: Map<string, number>;
   /** The last write of each key by each state, by path and key. */
@@ -63,6 +70,7 @@ export function emptyState(): RunState {
   return {
     active: new Map(),
     visited: new Map(),
+    rounds: new Map(),
     taken: new Map(),
     written: new Map(),
     error: null,
@@ -82,6 +90,7 @@ export function copyState(state: RunState): RunState {
     ...state,
     active: new Map(state.active),
     visited,
+    rounds: new Map(state.rounds),
     taken: new Map(state.taken),
     written: new Map(state.written),
   };
@@ -104,6 +113,12 @@ export function advance(state: RunState, event: TraceEvent): RunState {
     case "enter":
       enter(state, path);
       break;
+    case "try":
+    case "item": {
+      const others = (state.rounds.get(path) ?? []).filter(({ what }) => what === "item" && event.event === "try");
+      state.rounds.set(path, [...others, { what: event.event, number: event.number ?? 1, of: event.of }]);
+      break;
+    }
     case "exit":
     case "finish":
       leave(state, path, event.outcome ?? null);
@@ -136,6 +151,7 @@ function enter(state: RunState, path: string): void {
 function leave(state: RunState, path: string, outcome: string | null): void {
   const since = state.active.get(path);
   state.active.delete(path);
+  state.rounds.delete(path);
   const visited = state.visited.get(path);
   if (!visited) return;
   if (since !== undefined) visited.seconds += state.t - since;
@@ -147,10 +163,17 @@ function end(state: RunState, outcome: string | null): void {
   state.ended = true;
   state.outcome = outcome;
   state.active.clear();
+  state.rounds.clear();
 }
 
 function count(counts: Map<string, number>, key: string): void {
   counts.set(key, (counts.get(key) ?? 0) + 1);
+}
+
+/** The tries and items that run, in words: `item 2 of 5, try 1 of 3`. */
+export function roundInWords(state: RunState, path: string): string {
+  const rounds = state.rounds.get(path) ?? [];
+  return rounds.map(({ what, number, of }) => `${what} ${number}${of === undefined ? "" : ` of ${of}`}`).join(", ");
 }
 
 /** The states that run now and have no state that runs inside, in the order of their starts. */

@@ -10,9 +10,10 @@ import { Film } from "./film";
 import { Recording } from "./recording";
 import { foreignPlace, highlightOf, inWords, inline, keyValues, nodeAt, placeOf, seconds } from "./run_marks";
 import type { RunState, TraceEvent } from "./run_state";
-import { activeLeaves } from "./run_state";
+import { activeLeaves, roundInWords } from "./run_state";
 import { Timeline } from "./timeline";
 import type { Viewer } from "./viewer";
+import { WrittenEvents } from "./written_events";
 
 /** The least time between two drawings, and between two states that are followed, in milliseconds; the
  * most lines of the log and keys on the page. */
@@ -35,6 +36,7 @@ export function showRuns(viewer: Viewer, trace: string, film: string): void {
 
 class RunView {
   private readonly recording = new Recording();
+  private readonly written: WrittenEvents;
   private readonly timeline: Timeline;
   private readonly control: Control;
   private readonly status = html("p", { class: "run-status", role: "status" });
@@ -48,6 +50,7 @@ class RunView {
   private follows = false;
   private followed = 0;
   private shownNode: StateNode | null = null;
+  private filledFor = "";
   private errors: Finding[] = [];
   private link = "";
   private arrived = performance.now();
@@ -56,6 +59,7 @@ class RunView {
   private loggedTo = -1;
 
   constructor(private readonly viewer: Viewer, token: string | null, private readonly live: boolean) {
+    this.written = new WrittenEvents(() => viewer.graph.parts);
     this.timeline = new Timeline(this.recording, () => this.draw());
     this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
     this.bar = html("div", { class: "run-bar" },
@@ -70,7 +74,7 @@ class RunView {
   }
 
   replay(events: TraceEvent[]): void {
-    this.recording.add(events);
+    this.recording.add(this.written.all(events));
     this.timeline.update();
     this.draw();
   }
@@ -87,6 +91,7 @@ class RunView {
       opened: () => {
         this.link = "";
         this.recording.clear();
+        this.written.clear();
         this.loggedTo = -1;
         this.timeline.follows = true;
         this.changed();
@@ -112,7 +117,7 @@ class RunView {
         this.report(message.broken, message.outdated, message.findings);
         break;
       case "trace":
-        this.recording.add(message.events);
+        this.recording.add(this.written.all(message.events));
         this.arrived = performance.now();
         this.timeline.update();
         this.changed();
@@ -140,9 +145,8 @@ class RunView {
     const [first] = this.errors;
     const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
     const picture = outdated ? ". The picture is that of the last version without errors." : "";
-    this.viewer.notice(first
-      ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}`
-      : "");
+    const text = first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "";
+    this.viewer.notice(text, this.errorList());
     this.viewer.refresh();
   }
 
@@ -152,6 +156,7 @@ class RunView {
       html("li", { class: "error" },
         html("p", {}, html("strong", {}, `error ${each.code}`), " ", each.message),
         each.help ? html("p", { class: "help" }, `help: ${each.help}`) : null,
+        ...each.related.map(({ file, line, message }) => html("p", { class: "help" }, `${file}:${line}: ${message}`)),
         each.file ? html("p", { class: "place" }, `${each.file}:${each.line}`) : null)));
   }
 
@@ -226,9 +231,10 @@ class RunView {
     if (state.error && !state.active.size) return `failed in ${name(state.error.path)}`;
     const status = this.timeline.follows ? this.control.status : null;
     if (status?.ended) return state.error ? `failed in ${name(state.error.path)}: ${state.error.message}` : "ended";
-    const running = activeLeaves(state).map((path) => `${name(path)} ${this.since(state, path)}`);
-    const waits = (status?.at ?? []).map(({ path, outcome }) =>
-      outcome === null ? `paused before ${name(path)}` : `paused after ${name(path)}: ${outcome}`);
+    const round = (path: string): string => (state.rounds.has(path) ? ` (${roundInWords(state, path)})` : "");
+    const running = activeLeaves(state).map((path) => `${name(path)}${round(path)} ${this.since(state, path)}`);
+    const waits = (status?.at ?? []).map(({ path, outcome, round }) =>
+      outcome === null ? `paused before ${round === null ? "" : `${round === "try" ? "a try" : "an item"} of `}${name(path)}` : `paused after ${name(path)}: ${outcome}`);
     if (waits.length) return waits.join(", ");
     if (status?.stopping) return `stopping: ${running.join(", ")}`;
     if (status?.paused) return `pauses before the next state: ${running.join(", ")}`;
@@ -282,7 +288,8 @@ class RunView {
   /** The section of the selected state; it is filled again as the run goes on. */
   private fillPart(node: StateNode | null): void {
     if (!node) return;
-    const focused = this.part.contains(document.activeElement);
+    const focused = this.filledFor === node.path && this.part.contains(document.activeElement);
+    this.filledFor = node.path;
     const control = this.control.partFor(node);
     if (!focused || !control) this.part.replaceChildren(...(control ? [control] : []));
     else this.part.querySelector(".facts")?.remove();
@@ -292,7 +299,7 @@ class RunView {
   private facts(node: StateNode): HTMLElement {
     const { graph } = this.viewer;
     const state = this.recording.at(this.timeline.position);
-    const path = node.shown ?? node.path;
+    const { path } = node;
     const visited = state.visited.get(path);
     const rows: HTMLElement[] = [];
     const row = (name: string, value: string): void => {
@@ -319,8 +326,7 @@ class RunView {
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if ((event.target as Element).closest("input, select, textarea")) return;
-    const { selected, graph } = this.viewer;
-    const path = selected === null ? null : (graph.nodes.get(selected)?.shown ?? selected);
+    const path = this.viewer.selected;
     const actions: Record<string, () => void> = {
       ",": () => this.timeline.step(-1),
       ".": () => this.timeline.step(1),
@@ -328,7 +334,7 @@ class RunView {
       s: () => this.control.do({ action: "step" }),
       o: () => this.toggleFollow(),
       r: () => this.control.pauseOrResume(),
-      b: () => path !== null && this.control.toggleBreakpoint(path, null),
+      b: () => path !== null && this.control.toggleBreakpoint({ path, outcome: null, round: null }),
     };
     actions[event.key]?.();
   }

@@ -36,9 +36,11 @@ function match(node: StateNode, wanted: string): { rank: number; reason: string 
   }
   const outcome = node.outcomes.find((each) => has(each.name));
   if (outcome) return { rank: 5, reason: `outcome ${outcome.name}` };
+  const badge = node.badges.find((each) => has(each.text) || has(each.field));
+  if (badge) return { rank: 5, reason: badge.text };
   const tag = node.tags.find(has);
   if (tag) return { rank: 5, reason: `tag ${tag}` };
-  if (has(node.shown ?? node.path)) return { rank: 6, reason: "path" };
+  if (has(node.path)) return { rank: 6, reason: "path" };
   return has(node.doc) ? { rank: 7, reason: "doc" } : null;
 }
 
@@ -76,7 +78,7 @@ export function searchField(graph: () => Graph, select: (path: Path) => void, le
     show();
   };
   const row = ({ node, reason }: Hit, index: number): HTMLElement => {
-    const around = node.parent === null ? "" : (graph().nodes.get(node.parent)?.shown ?? node.parent);
+    const around = node.parent === null ? "" : node.parent;
     const item = html("li", { id: `hit-${index}`, role: "option", "aria-selected": String(index === chosen) },
       html("strong", {}, node.name), " ", html("span", {}, [reason, around].filter(Boolean).join(", ")));
     item.addEventListener("pointerdown", (event) => {

@@ -16,8 +16,9 @@ export function showStatistics(viewer: Viewer): void {
   visits.delete(graph.model.root);
   const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
   const times = new Map([...visits.keys()].flatMap((path) => {
-    const { mean } = statistics.states[path]!;
-    return mean ? [[path, seconds(mean)] as const] : [];
+    const { mean, rounds } = statistics.states[path]!;
+    const words = [rounds, mean ? seconds(mean) : ""].filter(Boolean).join(" · ");
+    return words ? [[path, words] as const] : [];
   }));
   viewer.highlight({ active: [], taken, visits, times });
   viewer.onMark((picture) => markNever(graph, statistics, picture));
@@ -64,6 +65,7 @@ function figures(statistics: Statistics, path: Path): HTMLElement {
   const unfinished = found.unfinished ? [row("not ended", String(found.unfinished))] : [];
   return html("ul", { class: "rows" },
     row("visits", String(found.visits)),
+    ...(found.rounds ? [row("tries and items", found.rounds)] : []),
     row("mean time", seconds(found.mean)),
     row("longest", seconds(found.longest)),
     ...outcomes, ...unfinished);

@@ -7,6 +7,7 @@ export const FONTS = {
   name: `600 13px ${FAMILY}`,
   detail: `11px ${FAMILY}`,
   label: `11px ${FAMILY}`,
+  chip: `10px ${FAMILY}`,
   exit: `600 11px ${FAMILY}`,
 } as const;
 

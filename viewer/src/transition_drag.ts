@@ -24,10 +24,11 @@ const FAR_ENOUGH = 4;
 
 const HANDLE_RADIUS = 6;
 
-/** Let transitions be drawn; `drawn` is called with each one at its end. */
+/** Let transitions be drawn; `drawn` is called with each one at its end, `clicked` with one that is not moved. */
 export function drawTransitions(
   viewer: Viewer,
   drawn: (path: Path, outcome: string, target: string) => void,
+  clicked: (path: Path, outcome: string) => void,
 ): void {
   const { frame, world } = viewer;
   frame.classList.add("editable");
@@ -40,7 +41,7 @@ export function drawTransitions(
     event.preventDefault();
     drag(viewer.graph, frame, world, event, origin, {
       dropped: (target) => drawn(origin.path, origin.outcome, target),
-      clicked: () => void viewer.select(origin.path),
+      clicked: () => clicked(origin.path, origin.outcome),
     });
   }, { capture: true });
 }

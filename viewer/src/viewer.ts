@@ -41,8 +41,8 @@ export interface Viewer {
   expect(path: Path, old?: Path): Promise<void>;
   /** Zoom so that the whole machine is seen. */
   fit(): void;
-  /** A message in the line below the picture; empty removes it. */
-  notice(text: string): void;
+  /** A message in the line below the picture, with more that is shown on a click; empty removes it. */
+  notice(text: string, more?: Node | null): void;
   /** Call a function after each selection. */
   onSelect(listener: (path: Path | null) => void): void;
   /** Call a function now, and after the picture was drawn or another state was selected. */
@@ -80,7 +80,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
   const world = svg("g", {});
   const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
   const panel = html("aside", { "aria-label": "Details" });
-  const notice = html("p", { class: "notice", role: "status" });
+  const notice = html("div", { class: "notice", role: "status" });
   const progressText = html("span", { role: "status" });
   const progress = html("p", { class: "notice progress", hidden: true }, progressText, " ",
     button("Cancel the layout", "Cancel", () => cancel(), "Keep the picture as it is (Escape)"));
@@ -186,8 +186,7 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
 
   function mark(): void {
     if (!picture) return;
-    markSelection(picture, selected);
-    if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
+    markSelection(picture, selected, selected ?? graph.model.root);
     markRun(graph, picture, run);
     for (const each of markers) each(picture);
   }
@@ -379,8 +378,9 @@ export async function createViewer(page: HTMLElement, model: Model, compute: Com
     setModel,
     expect,
     fit: whole,
-    notice(text) {
-      notice.textContent = text;
+    notice(text, more = null) {
+      if (text && more) notice.replaceChildren(html("details", {}, html("summary", {}, text), more));
+      else notice.textContent = text;
     },
     onSelect(listener) {
       listeners.push(listener);

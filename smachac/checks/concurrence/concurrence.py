@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from smachac.analysis.context import Context
-from smachac.analysis.control_flow import is_open, outcome_of_one_meaning
+from smachac.analysis.control_flow import is_open
 from smachac.analysis.outcome_rules import (
     Combination,
     SoundConcurrence,
@@ -28,7 +28,7 @@ from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Leaf, Node, OutcomeRule
-from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.ir.outcome_names import PREEMPTED, fails, of_one_meaning
 from smachac.ir.traversal import ends_preempted, leads_to_child, outcome_names
 
 UNKNOWN_BRANCH = "SMACH refuses a rule with an unknown state or outcome: the program does not start"
@@ -179,7 +179,7 @@ def _other_outcome(container: Concurrence, child: Node, outcome: str) -> str:
     """The help for an outcome in a rule that its state does not have."""
     names = outcome_names(child)
     known = f"use one of its outcomes: {listed(names)}" if names else "it has no outcomes"
-    meant = guesser(names).sure(outcome) or outcome_of_one_meaning(child, outcome)
+    meant = guesser(names).sure(outcome) or of_one_meaning(child, outcome, names)
     alike = [each.name for each in container.children
              if each is not child and each.type == child.type]  # fmt: skip
     is_searched = meant is None and len(container.rules) <= MOST_COMPARED_RULES

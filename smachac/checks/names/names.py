@@ -2,44 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from functools import cached_property
-from itertools import count
+from itertools import count, islice
 from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
     Linear,
-    MeantTarget,
     children_names,
-    correction,
-    is_catch_all,
     is_open,
-    missing_default,
     places_of,
     strays,
     unknown_outcomes,
 )
 from smachac.checks import notation
-from smachac.checks.edits import adding_outcome
+from smachac.checks.edits import adding_outcome, likely
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
-from smachac.checks.names.other_outcomes import continuing_outcome, other_outcome
+from smachac.checks.names.other_outcomes import (
+    missing_default,
+    other_outcome,
+    suggested_outcomes,
+)
 from smachac.checks.outcomes.condition_outcomes import unknown_endings
 from smachac.checks.rule import rule
-from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.repair import Repair
+from smachac.diagnostics.diagnostic import Finding, Severity
+from smachac.diagnostics.repair import Certainty, Repair
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt, words_of
+from smachac.diagnostics.spelling import MOST_EXPLAINED, Guesser, guesser, respelt
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Concurrence, Container, Leaf, Node, Transition
 from smachac.ir.outcome_names import OF_SMACH
+from smachac.ir.script_paths import role, sugared_child
 from smachac.ir.traversal import outcome_names, written_children
 
 EXCEPTIONS = "error"
 """The name by which a script refers to the exceptions of a state (docs/language.md)."""
+
+
+MOST_PROPOSED = 3
+"""The most names that are proposed in place of a word."""
 
 
 class _Targets:
@@ -58,6 +63,11 @@ class _Targets:
         return frozenset([child.name for child in written_children(self.container)])
 
     @cached_property
+    def guess(self) -> Guesser:
+        """The guesser for targets."""
+        return places_of(self.container)
+
+    @cached_property
     def all_upper(self) -> bool:
         """Whether all names of states are in upper case."""
         return all(name.isupper() for name in self.states)
@@ -72,6 +82,12 @@ class _Targets:
         return found
 
     @cached_property
+    def unused(self) -> tuple[str, ...]:
+        """Some states and outcomes to which no transition leads."""
+        ends = (name for name in outcome_names(self.container) if name not in self.places)
+        return tuple(islice(dict.fromkeys((*self.unentered, *ends)), MOST_PROPOSED))
+
+    @cached_property
     def places(self) -> Mapping[str, set[Span]]:
         """The places where each target is written."""
         found: dict[str, set[Span]] = {}
@@ -82,17 +98,18 @@ class _Targets:
 
 
 class _Lost(NamedTuple):
-    """A transition with an unknown target. `meant` is the known name that is meant; `sure`, the
-    only known name one slip away; `paired`: nothing else leads to the name that is meant."""
+    """A transition with an unknown target."""
 
     path: str
     container: Linear
     targets: _Targets
     child: Node
     step: Transition
-    meant: str | None
-    sure: str | None
-    paired: bool
+
+    @property
+    def sure(self) -> str | None:
+        """The only known name one slip away."""
+        return self.targets.guess.sure(self.step.target)
 
 
 @rule("SM101", "unknown-target", Severity.ERROR, firm=True)
@@ -133,11 +150,7 @@ def unknown_target(context: Context) -> Iterator[Finding]:
               outcomes: [done]
               transitions: {done: stacked}
     """
-    lost = [
-        fault
-        for path, container in context.misnamed
-        for fault in _lost(path, container, context.of_container(correction, path, container).meant)
-    ]
+    lost = [fault for path, container in context.misnamed for fault in _lost(path, container)]
     paths: dict[str, str] = {}
     for path, node in context.states if lost else ():
         paths.setdefault(node.name, context.plain_paths.get(path, path))
@@ -152,16 +165,14 @@ def unknown_target(context: Context) -> Iterator[Finding]:
             yield from _idle_transitions(context, path, container)
 
 
-def _lost(path: str, container: Linear, near: Mapping[str, MeantTarget]) -> Iterator[_Lost]:
+def _lost(path: str, container: Linear) -> Iterator[_Lost]:
     targets = _Targets(container)
     copied = copied_name(container)
     names, exits = children_names(container), frozenset(outcome_names(container))
     lost = ((child, step) for child in container.children for step in strays([child], names, exits))
     for child, step in lost:
         if not _was_reported(step) and step.target != copied:  # SM106
-            meant = near.get(step.target)
-            name, paired, sure = meant if meant is not None else (None, False, None)
-            yield _Lost(path, container, targets, child, step, name, sure, paired)
+            yield _Lost(path, container, targets, child, step)
 
 
 def copied_name(container: Container) -> str | None:
@@ -202,34 +213,30 @@ def _with_others(found: Finding, others: list[_Lost]) -> Finding:
 
 
 def _add_or_use(fault: _Lost) -> str:
-    """The help for an unknown target of a state that no name resembles: a state that is missing, if
-    it is written like one, or the only other state."""
+    """The help for an unknown target that no name resembles: a state that is missing, if it is
+    written like one, or the only state to which no transition leads."""
     container, target = fault.container, fault.step.target
     known = f"use a state or an outcome of `{container.name}`: {fault.targets.listed}"
     if not target.isupper() or not fault.targets.all_upper:
         return known
-    if len(fault.targets.states) == 2:
-        other = next(name for name in fault.targets.states if name != fault.child.name)
-        return f"add the state `{target}`, or write `{other}`"
+    if len(fault.targets.unentered) == 1:
+        (other,) = fault.targets.unentered
+        return f"write `{other}`, to which no transition leads, or add the state `{target}`"
     return f"add the state `{target}`, or {known}"
 
 
 def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
     """SM101 for a transition; `elsewhere` is the path of a state of the name of its target in
     another container."""
-    path, container, targets, child, step, meant, sure, paired = fault
+    path, container, targets, child, step = fault
+    sure = fault.sure
     whole = f"`{step.target}` is neither a state nor an outcome of `{container.name}`"
     if not step.target:
         whole = f"the transition for outcome `{step.outcome}` of `{child.name}` has no target"
     above = elsewhere.rpartition("/")[0] if elsewhere else ""
-    help = did_you_mean(meant)
-    if paired:
-        is_state = meant in targets.states
-        help = f"{help} {'no transition leads to it' if is_state else 'no state ends with it'}"
-        if is_state and words_of(step.target).isdisjoint(words_of(str(meant))):
-            help = f"write `{meant}`, to which no transition leads, or add the state"
-            help += f" `{step.target}`"
-    elif above:
+    near = (sure or targets.guess(step.target)) if step.target else None
+    help = did_you_mean(near)
+    if above:
         help = _through_outcome(fault, above)
         sure = None
     if step.target in OF_SMACH or (sure is not None and not _same_case(step.target, sure)):
@@ -246,11 +253,24 @@ def _nowhere(fault: _Lost, elsewhere: str | None) -> Finding:
         ),
         help=help or _add_or_use(fault),
         effect="SMACH refuses to run such a container: none of its states runs",
-        related=(*_unentered(fault), *calls(child, step.target_span)),
+        related=calls(child, step.target_span),
         node=f"{path}/{child.name}",
         edits=respelt(Word(step.target, step.target_span), sure),
-        repairs=_as_outcome(fault),
+        repairs=(*_as_outcome(fault), *(_unused_targets(fault) if near is None else ())),
     )
+
+
+def _unused_targets(fault: _Lost) -> Iterator[Repair]:
+    """The repairs that lead the transition to a state or an outcome to which nothing leads. Each is
+    only possible: the unknown target can be a state that is missing."""
+    word = Word(fault.step.target, fault.step.target_span)
+    return _other_words(word, fault.targets.unused)
+
+
+def _other_words(word: Word, names: Sequence[str]) -> Iterator[Repair]:
+    """The repairs, only possible, that write one of these names in place of a word."""
+    for edits in filter(None, (respelt(word, name) for name in names[:MOST_PROPOSED])):
+        yield Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="write another name")
 
 
 def _as_outcome(fault: _Lost) -> tuple[Repair, ...]:
@@ -261,16 +281,6 @@ def _as_outcome(fault: _Lost) -> tuple[Repair, ...]:
     if target.isupper() or not (is_used or any(s.outcome == target for s in container.transitions)):
         return ()
     return adding_outcome(container, target)
-
-
-def _unentered(fault: _Lost) -> Iterator[Related]:
-    """The place of a state that no transition leads to, where several have the same unknown target:
-    the name of the state is probably the misspelt one."""
-    targets = fault.targets
-    if fault.sure is None or len(targets.places.get(fault.step.target, ())) < 2:
-        return
-    for span in targets.unentered.get(fault.sure, ()):
-        yield from other_place(span, f"no transition leads to `{fault.sure}`")
 
 
 def _through_outcome(fault: _Lost, above: str) -> str:
@@ -394,24 +404,29 @@ def _unknown_outcomes(
             yield from unknown_endings(f"{path}/{child.name}", child)
 
 
+CATCH_ALL = frozenset(["*", "_", "any", "default", "else", "other", "others", "otherwise"])
+"""Words that other languages use for all cases that are not listed."""
+
+
 def _catch_all(child: Node, step: Transition) -> str | None:
-    """The help for a transition that is meant for all outcomes without one."""
+    """The help for a transition for a word that other languages use for all outcomes without a
+    transition."""
     handled = {each.outcome for each in child.transitions}
     rest = [name for name in outcome_names(child) if name not in handled]
-    if not is_catch_all(step) or not rest:
+    if step.outcome not in CATCH_ALL or not rest:
         return None
     rows = notation.entries(child, ((name, step.target) for name in rest))
     return f"each outcome has its own transition: write `{rows}`"
 
 
-def _unknown_steps(
-    path: str, child: Node, unknown: list[tuple[Transition, str | None]]
-) -> Iterator[Finding]:
+def _unknown_steps(path: str, child: Node, unknown: list[Transition]) -> Iterator[Finding]:
     guess = guesser([*outcome_names(child), EXCEPTIONS])
     default = missing_default(child)
-    for number, (step, known_meant) in enumerate(unknown):
+    suggested = suggested_outcomes(child, [step.outcome for step in unknown[:MOST_EXPLAINED]])
+    for number, step in enumerate(unknown):
         is_searched = number < MOST_EXPLAINED
-        meant = known_meant or guess.sure(step.outcome)
+        sure = guess.sure(step.outcome)
+        meant = suggested.get(step.outcome)
         retried = _retried(child, step.outcome)
         message = f"`{child.name}` has no outcome `{step.outcome}`"
         if retried is not None and isinstance(child, nodes.Iterator):
@@ -426,13 +441,16 @@ def _unknown_steps(
             help=(f"add `default_outcome: {step.outcome}` to `{child.name}`" if default else None)
             or retried
             or (_catch_all(child, step) if is_searched else None)
-            or did_you_mean(meant)
+            or did_you_mean(meant or sure)
             or (other_outcome(child, step) if is_searched else "remove this transition"),
             related=calls(child, step.span),
             node=f"{path}/{child.name}",
             edits=()
             if default is not None or step.outcome in OF_SMACH
-            else respelt(Word(step.outcome, step.span), guess.sure(step.outcome)),
+            else respelt(Word(step.outcome, step.span), sure),
+            repairs=likely(respelt(Word(step.outcome, step.span), meant), "write another outcome")
+            if meant != sure
+            else (),
         )
 
 
@@ -458,8 +476,8 @@ def _retried(child: Node, outcome: str) -> str | None:
 def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
     if any(is_open(child) for child in container.children):
         return
-    known = {name for child in container.children for name in outcome_names(child)}
-    never = known.isdisjoint(container.loop_outcomes)
+    known = sorted({name for child in container.children for name in outcome_names(child)})
+    never = not {*known} & {*container.loop_outcomes}
     for number, name in enumerate(container.loop_outcomes if known else ()):
         if name not in known:
             span = container.loop_spans[number] if container.loop_spans else container.span
@@ -468,23 +486,14 @@ def _unknown_loops(path: str, container: nodes.Iterator) -> Iterator[Finding]:
                 message=f"`loop_outcomes` of `{container.name}` lists `{name}`, which is not an"
                 f" outcome of `{container.children[0].name}`",
                 arguments=(own_name(container, span), name),
-                help=_loop_help(name, container, sorted(known)),
+                help=did_you_mean(guesser(known)(name)) or f"use one of {listed(known)}",
+                repairs=tuple(_other_words(Word(name, span), known)),
                 effect="the loop ends after its first item"
                 if never
                 else "an entry that is no outcome of the child has no effect",
                 related=calls(container, span),
                 node=path,
             )
-
-
-def _loop_help(name: str, container: nodes.Iterator, known: list[str]) -> str:
-    """The help for an entry of `loop_outcomes` that the child does not end with: the outcome that
-    is near it, or the only one that can start the next item."""
-    near = did_you_mean(guesser(known)(name))
-    meant = continuing_outcome(container) if near is None else None
-    if meant is not None:
-        return f"write `{meant}` in place of `{name}`"
-    return near or f"use one of {listed(known)}"
 
 
 @rule(
@@ -550,7 +559,8 @@ def name_clash(context: Context) -> Iterator[Finding]:
     """A state has the name of an outcome of its container, or a name that is not valid in paths.
 
     A transition to a name of both kinds leads to the state: the robot continues where its task
-    should end. With a `/` in a name, two states can have the same path in traces and messages.
+    should end. With a `/` in a name, two states can have the same path in traces and messages;
+    the same happens with the name `MOVE (retry)` beside a state `MOVE` with `retry`.
 
     Wrong:
         name: sm
@@ -597,6 +607,36 @@ def name_clash(context: Context) -> Iterator[Finding]:
                     ),
                     node=f"{path}/{child.name}",
                 )
+    for path, around in context.containers:
+        yield from _trace_clashes(path, around)
+
+
+def _trace_clashes(path: str, container: Container) -> Iterator[Finding]:
+    """The states with a name that traces have for a part of another state: `A (retry)` for the
+    tries of `A`."""
+    parts: dict[str, Node] = {}
+    for child in container.children:
+        node: Node | None = child
+        while node is not None and not isinstance(node, Leaf) and role(node):
+            parts[f"{child.name} ({role(node)})"] = child
+            node = sugared_child(node)
+    for child in container.children:
+        if (other := parts.get(child.name)) is not None:
+            field = child.name[len(other.name) + 2 : -1]
+            field = "retry" if field == "try" else field
+            yield Finding(
+                span=child.span,
+                message=f"`{child.name}` is the name that traces have for `{field}` of"
+                f" `{other.name}`",
+                arguments=(child.name, other.name),
+                help="rename the state, also in the transitions that lead to it",
+                effect="a trace does not show which of the two it is about",
+                related=(
+                    *other_place(other.span, f"the state with `{field}`"),
+                    *calls(child, child.span),
+                ),
+                node=f"{path}/{child.name}",
+            )
 
 
 @rule(

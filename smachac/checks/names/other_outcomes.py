@@ -2,21 +2,50 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from smachac.analysis.control_flow import unknown_outcomes
 from smachac.checks import notation
 from smachac.checks.help_text import ends_of
+from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, listed
 from smachac.ir import nodes
 from smachac.ir.nodes import Leaf, Node, Transition
-from smachac.ir.outcome_names import GOOD, PREEMPTED, STOPS, SUCCESSES, fails, is_failure
+from smachac.ir.outcome_names import (
+    fails,
+    is_failure,
+    meaning,
+    of_one_meaning,
+)
 from smachac.ir.traversal import outcome_names
 
 TIMEOUT = "timeout"
 EXHAUSTED = "exhausted"
 
 
+def suggested_outcomes(child: Node, unknown: Iterable[str]) -> dict[str, str]:
+    """For unknown outcomes of a state the known ones that they can mean: the nearest name; of those
+    without a transition the only one of the same meaning, or the only one, if it has no other
+    meaning."""
+    guess = guesser(outcome_names(child))
+    found = {word: near for word in unknown if (near := guess(word)) is not None}
+    used = {step.outcome for step in child.transitions if step.origin == "written"}
+    used |= {*found.values(), child.catches}
+    left = [name for name in outcome_names(child) if name not in used]
+    only = left[0] if len(left) == 1 else None
+    for word in unknown if left else ():
+        alike = of_one_meaning(child, word, left)
+        if alike is None and only is not None:
+            meanings = {meaning(word, is_failure(word)), meaning(only, fails(child, only))}
+            alike = only if len(meanings) == 1 or "" in meanings else None
+        if alike is not None:
+            found.setdefault(word, alike)
+    return found
+
+
 def other_outcome(child: Node, step: Transition) -> str:
-    """The help for a transition for an unknown outcome that is like none of the state: the field
-    that adds it, the only outcome without a transition, or else all outcomes."""
+    """The help for a transition for an unknown outcome that means none of the state: the field that
+    adds it, or all outcomes."""
     names = outcome_names(child)
     if not names:
         return f"remove the transition: `{child.name}` has no outcomes"
@@ -24,29 +53,24 @@ def other_outcome(child: Node, step: Transition) -> str:
     if field is not None:
         return field
     handled = {each.outcome for each in child.transitions if each.origin == "written"}
-    left = [name for name in names if name not in handled and name != child.catches]
-    if not left:
+    if handled.issuperset(name for name in names if name != child.catches):
         is_one = len(names) == 1
         have = "its outcome" if is_one else "its outcomes"
         return f"remove this transition: {have} {both(names)} {'has' if is_one else 'have'} one"
-    if len(left) == 1 and _can_mean(child, step.outcome, left[0]):
-        right = notation.entry(child, left[0], step.target)
-        return f"write `{right}`: `{left[0]}` is its only outcome without a transition"
     return ends_of(child) or f"use one of its outcomes: {listed(names)}"
 
 
-def _can_mean(child: Node, word: str, outcome: str) -> bool:
-    """Whether an unknown outcome does not clearly mean something else than an outcome."""
-    good = word.lower() in SUCCESSES | GOOD
-    if outcome == PREEMPTED:
-        return not good and not is_failure(word)
-    if word.lower() in STOPS:
-        return False
-    return not (good and fails(child, outcome)) and not (is_failure(word) and _is_good(outcome))
-
-
-def _is_good(outcome: str) -> bool:
-    return outcome.lower() in SUCCESSES | GOOD
+def missing_default(node: Node) -> Transition | None:
+    """The only transition for an unknown outcome of a state that has the default of its interface
+    in place of a `default_outcome`, without a transition: that outcome is the default."""
+    variables = node.variables if isinstance(node, Leaf) else ()
+    left = {*outcome_names(node)}.difference(step.outcome for step in node.transitions)
+    unknown = unknown_outcomes(node)
+    is_default = any(
+        each.name == "default_outcome" and each.span == node.span and each.value.data in left
+        for each in variables
+    )
+    return unknown[0] if is_default and len(unknown) == 1 else None
 
 
 def _missing_field(child: Node, outcome: str) -> str | None:
@@ -74,23 +98,3 @@ def _has_limit(child: Node) -> bool:
     """Whether a variable of the type of a state is a time limit, after which it ends with another
     outcome."""
     return isinstance(child, Leaf) and any(TIMEOUT in each.name for each in child.variables)
-
-
-def continuing_outcome(container: nodes.Iterator) -> str | None:
-    """The only outcome of the child of an iterator that can start the next item: the only one with
-    which the iterator does not end by itself, that is not renamed, that is no failure, or the only
-    one with the name of a success."""
-    names = dict.fromkeys(name for child in container.children for name in outcome_names(child))
-    left = [name for name in names if name not in container.loop_outcomes and name != PREEMPTED]
-    ends = {*outcome_names(container)} - {container.exhausted_outcome}
-    renamed = dict(container.final_map)
-    failing = {name for child in container.children for name in names if fails(child, name)}
-    for choices in (
-        [name for name in left if name not in ends],
-        [name for name in left if name not in ends and name not in renamed],
-        [name for name in left if name not in failing],
-        [name for name in left if _is_good(name)],
-    ):
-        if len(choices) == 1:
-            return choices[0]
-    return None

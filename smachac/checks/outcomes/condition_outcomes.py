@@ -8,7 +8,6 @@ from smachac.checks.edits import adding_outcome
 from smachac.checks.help_text import calls, did_you_mean
 from smachac.checks.types.value_places import place_of_part
 from smachac.diagnostics.diagnostic import Finding
-from smachac.diagnostics.negation import is_negation
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
@@ -24,7 +23,7 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
         return
     for word, what, effect in _endings(leaf):
         if word.text not in outcomes:
-            meant = did_you_mean(guesser(outcomes)(word.text)) or _only_left(leaf, word.text)
+            meant = did_you_mean(guesser(outcomes)(word.text))
             is_used = any(step.outcome == word.text for step in leaf.transitions)
             yield Finding(
                 span=word.span,
@@ -38,19 +37,6 @@ def unknown_endings(path: str, leaf: Leaf) -> Iterator[Finding]:
                 node=path,
                 repairs=adding_outcome(leaf, word.text) if is_used else (),
             )
-
-
-def _only_left(leaf: Leaf, word: str) -> str | None:
-    """The help that names the only outcome of a leaf to which no condition leads, if one condition
-    leads to an unknown one."""
-    conditions = functions(leaf, "conditions") or {}
-    default = variable(leaf, "default_outcome")
-    names = outcome_names(leaf)
-    left = [name for name in names if name not in {*conditions, default, leaf.catches}]
-    unknown = [name for name in conditions if name not in names]
-    if unknown != [word] or len(left) != 1 or is_negation(word, left[0]):
-        return None
-    return f"write `{left[0]}` in place of `{word}`: no condition leads to `{left[0]}`"
 
 
 def _endings(leaf: Leaf) -> Iterator[tuple[Word, str, str]]:

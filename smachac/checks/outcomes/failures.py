@@ -440,21 +440,6 @@ def _propagations(
             yield _Propagation(f"{path}/{child.name}", child, outcome, target, masking, span, then)
 
 
-def _swapped_targets(node: Node, outcome: str, target: str, failed: list[str]) -> str | None:
-    """The help for a state whose failure leads to a success and whose success leads to a failure of
-    the container: the two targets have changed places."""
-    good = [step for step in node.transitions
-            if step.origin == "written" and step.outcome in successes(node)
-            and step.target in failed]  # fmt: skip
-    if len(good) != 1 or not any(step.outcome == outcome for step in node.transitions):
-        return None
-    first = good[0]
-    return (
-        f"write `{first.outcome}: {target}, {outcome}: {first.target}`: the two targets have"
-        " changed places"
-    )
-
-
 def _unmasked(root: StateMachine, masking: _Propagation) -> str:
     """The help for a step that masks a failure: an outcome of its container for the failure."""
     container: Container = root
@@ -464,9 +449,6 @@ def _unmasked(root: StateMachine, masking: _Propagation) -> str:
             break
         container = inner
     names = [name for name in outcome_names(container) if fails(container, name)]
-    swapped = _swapped_targets(masking.node, masking.outcome, masking.target, names)
-    if swapped is not None:
-        return swapped
     step = f"lead `{masking.outcome}` of `{masking.node.name}`"
     if names:
         return f"{step} to a state that recovers, or to `{names[0]}`"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from collections.abc import Set as AbstractSet
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -22,22 +23,21 @@ from smachac.ir.traversal import outcome_names, written_children
 
 class Hidden(NamedTuple):
     """A state that cannot be entered, first in a group of those that are entered by it; and what
-    probably has to lead to it: a transition that leads past it, an outcome without a transition,
-    one of two outcomes."""
+    probably has to lead to it: a transition of the state before it that leads past it, or an
+    outcome of that state without a transition."""
 
     path: str
     container: Linear
     group: list[Node]
     past: LedPast | None
     way_out: tuple[Node, Transition] | None
-    twice: LedTwice | None
 
 
 def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
     """The groups of states that cannot be entered, without those whose cause another rule
     reports; and the finding on a sequence that never continues."""
     missed: set[str] | None = None
-    for (path, container), whole in zip(context.linear, context.corrected, strict=True):
+    for (path, container), whole in zip(context.linear, context.absorbed, strict=True):
         seen = context.of_container(reachable, path, whole)
         hidden = [child for child in written_children(container) if child.name not in seen]
         if not hidden:
@@ -50,7 +50,6 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
         before = _before(whole, frozenset(child.name for child in hidden))
         first = _first_hidden(container, hidden, before, seen)
         previous = {each.name: one for one, each in pairwise(container.children)}
-        led_twice = _led_twice(container, seen)
         order = {child.name: at for at, child in enumerate(hidden)}
         groups = 0
         for child in hidden:
@@ -62,10 +61,8 @@ def hidden_groups(context: Context) -> Iterator[Hidden | Finding]:
             others = first[child.name] - {child.name}
             group = [child, *(hidden[at] for at in sorted(map(order.__getitem__, others)))]
             past = _led_past(container, one, group, seen) if is_searched else None
-            if past is None and led_twice is None and is_searched:
-                past = _led_out(container, one, group, seen)
             way_out = _way_out(container, one, seen) if past is None else None
-            yield Hidden(path, container, group, past, way_out, led_twice if alone else None)
+            yield Hidden(path, container, group, past, way_out)
 
 
 def _first_hidden(
@@ -95,75 +92,30 @@ def _first_hidden(
 
 
 class LedPast(NamedTuple):
-    """A state with a transition that leads past other ones; `next`: it is the state before them in
-    the script."""
+    """A transition of the state before other ones that leads past them."""
 
     child: Node
     step: Transition
-    next: bool
 
 
 def _led_past(
-    container: Linear,
-    before: Node | None,
-    group: list[Node],
-    seen: Collection[str],
+    container: Linear, before: Node | None, group: list[Node], seen: AbstractSet[str]
 ) -> LedPast | None:
     """The transition that leads past a group of states, to a state to which one of them leads as
-    well: the only one of the state before them in the script that is not one of failure; else the
-    only one of failure of that state, or of all states; else the one that leads back."""
-    if isinstance(container, Sequence):
+    well: the only one of the state before them in the script that is not one of failure, else the
+    only one of failure."""
+    if isinstance(container, Sequence) or before is None or before.name not in seen:
         return None
     after = {step.target for step in group[0].transitions if step.target in seen}
     good = {step.target for each in group for step in each.transitions
             if step.target in seen and not fails(each, step.outcome)
             and step.outcome != PREEMPTED}  # fmt: skip
-    if before is not None and before.name in seen:
-        steps = [step for step in before.transitions if step.origin == "written"]
-        for found in (
-            [each for each in steps if each.target in after | good
-             and each.outcome != PREEMPTED and not fails(before, each.outcome)],
-            [each for each in steps if each.target in good and fails(before, each.outcome)],
-        ):  # fmt: skip
-            if found:
-                return LedPast(before, found[0], True) if len(found) == 1 else None
-    others = [
-        LedPast(child, step, False)
-        for child in container.children
-        if child.name in seen
-        for step in child.transitions
-        if step.target in good and step.origin == "written" and fails(child, step.outcome)
-    ]
-    if len(others) == 1:
-        return others[0]
-    return _led_back(container, before) if before is not None and before.name in seen else None
-
-
-def _led_out(
-    container: Linear, before: Node | None, group: list[Node], seen: Collection[str]
-) -> LedPast | None:
-    """The only transition for a success of the state before a group of states that leads to an
-    outcome of the container, no failure, to which one of the group leads as well."""
-    if before is None or before.name not in seen or isinstance(container, Sequence):
-        return None
-    ends = {step.target for each in group for step in each.transitions
-            if step.target in outcome_names(container) and not fails(container, step.target)
-            and step.outcome != PREEMPTED and not fails(each, step.outcome)}  # fmt: skip
-    steps = [step for step in before.transitions
-             if step.origin == "written" and step.target in ends
+    steps = [step for step in before.transitions if step.origin == "written"]
+    found = [step for step in steps if step.target in after | good
              and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
-    return LedPast(before, steps[0], True) if len(steps) == 1 else None
-
-
-def _led_back(container: Linear, before: Node) -> LedPast | None:
-    """The only transition of a state for its successes, if it leads back to an earlier state: it is
-    probably that of a state that was copied."""
-    names = [each.name for each in container.children]
-    earlier = names[: names.index(before.name)]
-    steps = [step for step in before.transitions
-             if step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
-    is_back = len(steps) == 1 and steps[0].origin == "written" and steps[0].target in earlier
-    return LedPast(before, steps[0], True) if is_back else None
+    found = found or [step for step in steps if step.target in good
+                      and fails(before, step.outcome)]  # fmt: skip
+    return LedPast(before, found[0]) if len(found) == 1 else None
 
 
 def _way_out(
@@ -176,32 +128,6 @@ def _way_out(
     steps = [step for step in before.transitions if step.origin == "implicit"
              and step.outcome != PREEMPTED and not fails(before, step.outcome)]  # fmt: skip
     return (before, steps[0]) if len(steps) == 1 else None
-
-
-class LedTwice(NamedTuple):
-    """A state with two outcomes of success that lead to one state."""
-
-    child: Node
-    steps: tuple[Transition, Transition]
-
-
-def _led_twice(container: Linear, seen: Collection[str]) -> LedTwice | None:
-    """The only state of a container that can be entered and has two outcomes, neither of failure,
-    that lead to one state."""
-    names = {child.name for child in container.children}
-    found: list[LedTwice] = []
-    for child in container.children:
-        by_target: dict[str, list[Transition]] = {}
-        plain = {
-            name for name in outcome_names(child) if name != PREEMPTED and not fails(child, name)
-        }
-        for step in child.transitions if child.name in seen else ():
-            is_plain = step.outcome in plain
-            if step.origin == "written" and step.target in names and is_plain:
-                by_target.setdefault(step.target, []).append(step)
-        found += [LedTwice(child, (steps[0], steps[1])) for steps in by_target.values()
-                  if len(steps) == 2]  # fmt: skip
-    return found[0] if len(found) == 1 else None
 
 
 def _never_continues(container: Sequence) -> bool:

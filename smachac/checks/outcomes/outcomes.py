@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from itertools import islice
+from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.analysis.control_flow import (
@@ -216,7 +220,7 @@ def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Ite
     if not lacking:
         return
     free = unentered(container)
-    order = {child.name: at for at, child in enumerate(container.children)}
+    steps = _steps(container)
     for child, outcomes in lacking:
         left = [*outcomes]
         meant = meant_ending(child) if isinstance(child, nodes.Iterator) else None
@@ -225,12 +229,37 @@ def _unhandled_outcomes(path: str, container: Linear, lacking: Unhandled) -> Ite
             yield _misnamed_ending(path, meant)
         if not left:
             continue
-        targets = _targets(container, child, left, free, order)
+        targets = _targets(container, child, left, free, steps)
         if len(left) == 1 or any(_field_that_adds(child, each.name) for each in left):
             for outcome in left:
                 yield _unhandled(path, container, child, outcome, targets[outcome.name])
         else:
             yield _several_unhandled(path, container, child, targets)
+
+
+class _Steps(NamedTuple):
+    """The transitions in a container: `order` are the numbers of its states, `alike` by outcome its
+    targets with their numbers, `used` the names that are targets."""
+
+    names: Sequence[str]
+    order: Mapping[str, int]
+    alike: Mapping[str, Mapping[str, int]]
+    used: AbstractSet[str]
+
+
+def _steps(container: Linear) -> _Steps:
+    names = [child.name for child in written_children(container)]
+    order = {name: at for at, name in enumerate(names)}
+    ends = outcome_names(container)
+    used: set[str] = set()
+    alike: dict[str, dict[str, int]] = {}
+    for child in container.children:
+        for step in child.transitions:
+            used.add(step.target)
+            if step.target in order or step.target in ends:
+                targets = alike.setdefault(step.outcome, {})
+                targets.setdefault(step.target, len(targets))
+    return _Steps(names, order, alike, used)
 
 
 def unentered(container: Linear) -> list[str]:
@@ -246,11 +275,11 @@ def _targets(
     child: Node,
     left: Iterable[Outcome],
     free: list[str],
-    order: Mapping[str, int],
+    steps: _Steps,
 ) -> dict[str, str]:
     """For each outcome without a transition the target that it probably needs. `free` are the
-    states of the container to which nothing leads yet; those that are used are removed. `order` has
-    the numbers of all states."""
+    states of the container to which nothing leads yet, in order; those that are used are
+    removed."""
     found: dict[str, str] = {}
     rest = [each.name for each in left]
     sure, failures = successes(child), failures_of(child)
@@ -259,15 +288,15 @@ def _targets(
     bad = [name for name in rest
            if name != PREEMPTED and name in failures and name not in sure]  # fmt: skip
     for outcome in (*good, *bad) if len(rest) <= MOST_EXPLAINED else ():
-        after = (name for name in free if order[name] > order[child.name])
-        choice = next(after, next((name for name in free if name != child.name), None))
-        if choice is not None:
-            found[outcome] = choice
-            free.remove(choice)
+        at = bisect_right(free, steps.order[child.name], key=steps.order.__getitem__)
+        if at == len(free):
+            at = next((i for i, name in enumerate(free) if name != child.name), at)
+        if at < len(free):
+            found[outcome] = free.pop(at)
     for outcome in rest[:MOST_EXPLAINED]:
         if outcome not in found:
             is_good = outcome in sure or (good == [outcome] and _is_only_good(child, outcome))
-            found[outcome] = _target(container, child, outcome, is_good)
+            found[outcome] = _target(container, child, outcome, is_good, steps)
     last = found[rest[:MOST_EXPLAINED][-1]]
     found |= dict.fromkeys(rest[MOST_EXPLAINED:], last)
     return {name: found[name] for name in rest}
@@ -279,48 +308,34 @@ def _is_only_good(child: Node, outcome: str) -> bool:
     return bool(others) and all(fails(child, name) for name in others)
 
 
-def _before_detour(container: Linear, child: Node, target: str) -> str:
-    """The only state that leads to a state, if another of its outcomes leads to `target`, which is
-    meant for a success of that state: it may have to run again. Empty without one."""
-    before = [
-        state for state in written_children(container)
-        if state is not child and any(step.target == child.name for step in state.transitions)
-    ]  # fmt: skip
-    if len(before) != 1 or all(step.target != target for step in before[0].transitions):
-        return ""
-    return before[0].name
-
-
-def _target(container: Linear, child: Node, outcome: str, succeeds: bool) -> str:
+def _target(container: Linear, child: Node, outcome: str, succeeds: bool, steps: _Steps) -> str:
     """The target that an outcome probably needs: that of the other failures of the state, the state
     after a stop request, that of the same outcome of other states, a failure of the container or
     its stop, or what comes after a success."""
-    ends = outcome_names(container)
+    ends, names = outcome_names(container), steps.names
     failed = [name for name in ends if fails(container, name)]
-    names = [each.name for each in written_children(container)]
-    alike = [step.target for each in container.children if each is not child
-             for step in each.transitions if step.outcome == outcome
-             and step.target in (*names, *ends)]  # fmt: skip
-    others = [name for name in alike if name in ends or outcome == PREEMPTED]
+    alike = steps.alike.get(outcome, {})
+    others = (name for name in alike if name in ends or outcome == PREEMPTED)
+    other = [*islice(others, 1)]
     own = {step.target for step in child.transitions if step.origin == "written"
            and step.outcome != PREEMPTED and fails(child, step.outcome)}  # fmt: skip
     if outcome == PREEMPTED:
-        near = [name for name in others if name in own]
-        targets = [*([PREEMPTED] if PREEMPTED in ends else []), *near, *others, *failed]
+        near = sorted(own & alike.keys(), key=alike.__getitem__)
+        targets = [*([PREEMPTED] if PREEMPTED in ends else []), *near, *other, *failed]
     elif fails(child, outcome):
         stopped = [step.target for step in child.transitions
-                   if step.outcome == PREEMPTED and step.target in names]  # fmt: skip
-        targets = [*(own if len(own) == 1 else ()), *stopped, *others, *failed]
+                   if step.outcome == PREEMPTED and step.target in steps.order]  # fmt: skip
+        targets = [*(own if len(own) == 1 else ()), *stopped, *other, *failed]
     elif succeeds:
-        targets = [*names[names.index(child.name) + 1 :], *successes(container)]
+        after = steps.order[child.name] + 1
+        targets = [*names[after : after + 1], *successes(container)]
     else:
-        used = {step.target for each in container.children for step in each.transitions}
-        unused = [name for name in ends if name not in used and name != PREEMPTED]
-        targets = [*(unused if len(unused) == 1 else ()), *others, *failed]
+        unused = [name for name in ends if name not in steps.used and name != PREEMPTED]
+        targets = [*(unused if len(unused) == 1 else ()), *other, *failed]
         if not targets and len(ends) + len(names) > 2:
             return notation.UNDECIDED
     plain = [name for name in ends if name != PREEMPTED]
-    return next(iter([*targets, *reversed(plain), *ends, *names]))
+    return next(iter([*targets, *reversed(plain), *ends, *names[:1]]))
 
 
 def _several_unhandled(
@@ -382,6 +397,7 @@ def _field_that_adds(node: Node, outcome: str) -> str:
 
 
 def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, target: str) -> Finding:
+    """SM104 for an outcome without a transition."""
     held = child.variables if isinstance(child, Leaf) else ()
     default = next((each for each in held if each.name == "default_outcome"), None)
     meant = meant_default(child) if isinstance(child, Leaf) else None
@@ -397,9 +413,6 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         )
     # The file of an interface may have another place on another machine, so it is not shown.
     inside = outcome.span.source is child.span.source
-    again = _before_detour(container, child, target) if not fails(child, outcome.name) else ""
-    if again:
-        again = f", or `{notation.entry(child, outcome.name, again)}` to run `{again}` again"
     missing = notation.entry(child, outcome.name, target)
     field = _field_that_adds(child, outcome.name)
     origin = f"`{field}` adds the outcome `{outcome.name}`" if field else "declared here"
@@ -413,7 +426,7 @@ def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, targ
         message=f"outcome `{outcome.name}` of `{child.name}` has no transition, and"
         f" `{container.name}` has no outcome of that name",
         arguments=(child.name, outcome.name),
-        help=f"{why}add `{missing}` to the transitions of `{child.name}`{again}",
+        help=f"{why}add `{missing}` to the transitions of `{child.name}`",
         related=(
             *(other_place(outcome.span, origin) if inside and outcome.span != child.span else ()),
             *calls(child, child.span),
@@ -463,21 +476,18 @@ def implicit_exit(context: Context) -> Iterator[Finding]:
     for path, container in context.linear:
         for child in container.children if not container.sugar else ():
             steps = [step for step in child.transitions if step.origin == "implicit"]
-            if steps:
+            if steps and not unknown_outcomes(child):
                 yield from _implicit(path, container, child, steps)
 
 
 def _implicit(
     path: str, container: Linear, child: Node, steps: Iterable[Transition]
 ) -> Iterator[Finding]:
-    misspelt = {meant for _, meant in unknown_outcomes(child)}
     beside = any(
         step.origin == "written" and not fails(child, step.outcome) and step.outcome != PREEMPTED
         for step in child.transitions
     )
     for step in steps:
-        if step.outcome in misspelt:
-            continue
         forgotten = beside and fails(child, step.outcome)
         added = f"`{notation.entry(child, step.outcome, step.target)}`"
         yield Finding(

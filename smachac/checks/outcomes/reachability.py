@@ -10,7 +10,7 @@ from smachac.checks import notation
 from smachac.checks.edits import likely
 from smachac.checks.help_text import calls, did_you_mean, other_place, own_name
 from smachac.checks.outcomes.hidden_conditions import hidden_conditions
-from smachac.checks.outcomes.hidden_states import LedPast, LedTwice, hidden_groups
+from smachac.checks.outcomes.hidden_states import LedPast, hidden_groups
 from smachac.checks.outcomes.iterator_endings import endings
 from smachac.checks.outcomes.needed_variables import outcomes_without_variable
 from smachac.checks.rule import rule
@@ -31,7 +31,7 @@ from smachac.ir.nodes import (
     StateMachine,
     Transition,
 )
-from smachac.ir.outcome_names import PREEMPTED, fails
+from smachac.ir.outcome_names import PREEMPTED
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import ends_preempted, outcome_names
 
@@ -81,7 +81,7 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
             yield each
             continue
         path, container, group = each.path, each.container, each.group
-        child, way_out, twice = group[0], each.way_out, each.twice
+        child, way_out = group[0], each.way_out
         if each.past is not None:
             yield _passed(path, container, group, each.past)
             continue
@@ -89,13 +89,10 @@ def unreachable_state(context: Context) -> Iterator[Finding]:
             span=child.span,
             message=_unreached(container, group),
             arguments=(child.name,),
-            help=_led_help(group, twice)
-            if twice is not None
-            else _out_help(child, *way_out)
+            help=_out_help(child, *way_out)
             if way_out is not None
             else _why_unreachable(container, group),
             related=(
-                *_led_places(twice),
                 *(_out_places(container, *way_out) if way_out is not None else ()),
                 *calls(child, child.span),
             ),
@@ -125,7 +122,6 @@ def _passed(path: str, container: Linear, group: list[Node], past: LedPast) -> F
     child, names = group[0], both(each.name for each in group)
     before, step = past.child, past.step
     several = len(group) > 1
-    where = ", the state before," if past.next else ""
     return Finding(
         span=child.span,
         message=_unreached(container, group),
@@ -135,69 +131,12 @@ def _passed(path: str, container: Linear, group: list[Node], past: LedPast) -> F
         related=(
             *other_place(
                 step.target_span,
-                f"`{before.name}`{where} leads past {'them' if several else 'it'}",
+                f"`{before.name}`, the state before, leads past {'them' if several else 'it'}",
             ),
             *calls(child, child.span),
         ),
         node=f"{path}/{child.name}",
         repairs=likely([Edit(span=step.target_span, text=child.name)], "lead to the state"),
-    )
-
-
-def _led_help(group: list[Node], twice: LedTwice) -> str:
-    first, second = twice.steps
-    return (
-        f"lead `{first.outcome}` or `{second.outcome}` of `{twice.child.name}` to"
-        f" `{group[0].name}`, or remove {both(each.name for each in group)}"
-    )
-
-
-def _led_places(twice: LedTwice | None) -> tuple[Related, ...]:
-    if twice is None:
-        return ()
-    first, second = twice.steps
-    words = f"`{first.outcome}` and `{second.outcome}` of `{twice.child.name}` both lead to"
-    return (
-        *other_place(first.target_span, f"{words} `{first.target}`"),
-        *other_place(second.target_span, "and here"),
-    )
-
-
-MOST_SEARCHED = 200
-"""In a container of more states no copied target is searched: each finding looks at all states."""
-
-
-def _copied_target(container: Linear, wanted: str) -> str | None:
-    """The help that leads to a name to which nothing leads, if one state of the container leads two
-    of its outcomes to one state: one of the two targets may be a copy. It is that of the success if
-    only failures of other states lead there, that of the failure if the name is one."""
-    if len(container.children) > MOST_SEARCHED:
-        return None
-    names = {child.name for child in container.children}
-    found: list[tuple[Node, str, list[str]]] = []
-    leading: dict[str, list[bool]] = {}
-    for child in container.children:
-        ends: dict[str, list[str]] = {}
-        for step in child.transitions if child.name != wanted else ():
-            if step.origin == "written" and step.outcome != PREEMPTED and step.target in names:
-                ends.setdefault(step.target, []).append(step.outcome)
-        for target, outcomes in ends.items():
-            if len(outcomes) == 2:
-                found.append((child, target, outcomes))
-            else:
-                leading.setdefault(target, []).extend(fails(child, name) for name in outcomes)
-    if len(found) != 1:
-        return None
-    ((child, target, outcomes),) = found
-    others = leading.get(target, [])
-    is_failure = fails(container, wanted) if wanted not in names else False
-    fitting = [name for name in outcomes if fails(child, name) == is_failure]
-    if len(fitting) == 1 and (is_failure or (others and all(others))):
-        right = notation.entry(child, fitting[0], wanted)
-        return f"write `{right}` in the transitions of `{child.name}`"
-    return (
-        f"add a transition to `{wanted}`, for example in `{child.name}`, which leads"
-        f" {both(outcomes)} to `{target}`"
     )
 
 
@@ -208,9 +147,6 @@ def _why_unreachable(container: Linear, group: list[Node]) -> str:
             " transition: a sequence continues with that outcome"
         )
     names = both(each.name for each in group)
-    copied = _copied_target(container, group[0].name)
-    if copied is not None:
-        return f"{copied}, or remove {names}"
     return f"add a transition to `{group[0].name}`, or remove {names}"
 
 
@@ -256,7 +192,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
     types = {name: each for name, each in context.machine.state_types.items() if each.needs}
     for path, container in context.containers if types else ():
         yield from outcomes_without_variable(path, container, types)
-    linear = iter(context.corrected)
+    linear = iter(context.absorbed)
     again = {found.stop.path for found in context.stop_paths.again}
     for path, container in context.containers:
         whole = next(linear) if isinstance(container, StateMachine | Sequence) else container
@@ -270,7 +206,7 @@ def impossible_outcome(context: Context) -> Iterator[Finding]:
 
 
 def _possible_outcomes(context: Context, path: str, container: Container) -> frozenset[str] | None:
-    """The outcomes with which a corrected container can end; None where another fault makes that
+    """The outcomes with which an absorbed container can end; None where another fault makes that
     unknown."""
     if not container.children:
         return None
@@ -334,9 +270,6 @@ def _impossible(path: str, container: Container, outcome: Outcome) -> Finding:
     effect = None
     if "/" not in path:
         effect = f"a caller of `{name}` that waits for this outcome never gets it"
-    if isinstance(container, StateMachine):
-        copied = _copied_target(container, outcome.name)
-        help = f"{copied}, or {removed}" if copied is not None else help
     if isinstance(container, Concurrence):
         help = f"add a rule for `{outcome.name}`, or {removed}"
         if outcome.name == PREEMPTED:

@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING
 
 from smachac.analysis.context import Context
 from smachac.analysis.outcome_rules import has_dead_rule
+from smachac.checks.edits import likely
 from smachac.checks.help_text import other_place
-from smachac.checks.properties.event_names import name_fault, own_work, work
+from smachac.checks.properties.event_names import name_fault
 from smachac.checks.properties.failed_properties import failures
 from smachac.checks.properties.property_turns import Turn
 from smachac.checks.rule import rule
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.source import Span, assert_never
-from smachac.diagnostics.spelling import MOST_EXPLAINED, written_name
+from smachac.diagnostics.repair import Edit, Repair
+from smachac.diagnostics.source import assert_never
+from smachac.diagnostics.spelling import written_name
 from smachac.ir.graph import reachable
 from smachac.ir.nodes import Concurrence, Leaf, Node
 from smachac.ir.outcome_names import PREEMPTED
@@ -102,12 +104,9 @@ def property_fails(context: Context) -> Iterator[Finding]:
 
     script = shlex.quote(context.machine.root.span.source.name)
     for number, given, example, shown, turn in failures(context):
-        swapped = _swap_help(context, given)
-        longer = _longer_list(context, given, example) if swapped is None else None
-        first = swapped or f"{longer[1] if longer else ''}{_cure(given.form, example, turn)}\n"
-        span, related = given.span if longer is None else longer[0], _turn_place(turn)
+        span, related = given.span, _turn_place(turn)
         message = f"{_named(given)} does not hold: {_violation(given.form, example)}"
-        if swapped is None and longer is None and turn is not None and _leads_past(given, turn):
+        if turn is not None and _leads_past(given, turn):
             span = turn.step.target_span
             related = other_place(given.span, f"{_named(given)} does not hold")
             message = f"this transition leads past {_named_states(turn.missed)}:"
@@ -116,11 +115,22 @@ def property_fails(context: Context) -> Iterator[Finding]:
             span=span,
             message=message,
             arguments=(given.name, in_words(given.form)),
-            help=f"{first}{_replayed(shown, number, script)}",
+            help=f"{_cure(given.form, example, turn)}\n{_replayed(shown, number, script)}",
             related=related,
             path=witness(example._replace(visits=_shown(context, example))),
             node=example.node or context.machine.root.name,
+            repairs=_exchanged(given.form),
         )
+
+
+def _exchanged(form: Form) -> tuple[Repair, ...]:
+    """The repair that exchanges the two events of a property."""
+    match form:
+        case Before(later=(one,), earlier=(other,)) | Never(after=(one,), until=(other,)):
+            first, second = one.span, other.span
+            edits = (Edit(span=first, text=second.text), Edit(span=second, text=first.text))
+            return likely(edits, "exchange the two events")
+    return ()
 
 
 def _named(given: Property) -> str:
@@ -156,87 +166,6 @@ def _violation(form: Form, example: Counterexample) -> str:
                 return f"`{repeated}` can be repeated without end"
             return "the run waits without end in a state that has no outcome"
     return assert_never(form)
-
-
-def _swap_help(context: Context, given: Property) -> str | None:
-    """The line of help if a property holds with two of its events swapped, and not only because
-    what it forbids never happens after the first event."""
-    form = given.form
-    swapped: Form
-    match form:
-        case Never(after=after, until=until) if after and until:
-            swapped = replace(form, after=until, until=after)
-            words = f"after: {_names(until)}, until: {_names(after)}"
-            if _holds(context, given, replace(swapped, until=())):
-                return None
-        case Before(later=later, earlier=earlier):
-            swapped = Before(later=earlier, earlier=later)
-            words = f"before: {{{_names(earlier)}: {_names(later)}}}"
-        case _:
-            return None
-    if not _holds(context, given, swapped):
-        return None
-    return f"write `{words}`: with it the property holds; are the two names swapped?\n"
-
-
-def _holds(context: Context, given: Property, form: Form) -> bool:
-    """Whether a property would hold in another form."""
-    from smachac.analysis.properties import judge
-
-    found = judge([replace(given, form=form)], context.machine.root, context.claims)
-    return bool(found) and found[0].verdict == "holds"
-
-
-def _longer_list(
-    context: Context, given: Property, example: Counterexample
-) -> tuple[Span, str] | None:
-    """The events of a property that end its requirement, to which a state on the path of its
-    counterexample can be added, so that the property holds, with the line of help: the type and the
-    variables of the state are those of one of them."""
-    match given.form:
-        case After(answer=ends, first=begins) | Never(until=ends, after=begins):
-            pass
-        case Before(earlier=ends, later=begins):
-            pass
-        case _:
-            return None
-    if not ends or any(each.subject != "path" for each in ends):
-        return None
-    nodes = context.routes.nodes
-    names = tuple(f"/{each.name}" for each in ends if each.outcome is None)
-    triggers = tuple(f"/{each.name}" for each in begins)
-    alike = [work(node) for path, node in nodes.items()
-             if isinstance(node, Leaf) and f"/{path}".endswith(names)]  # fmt: skip
-    for visit in example.visits:
-        node = nodes.get(visit.path)
-        if not isinstance(node, Leaf) or not own_work(context, node) or work(node) not in alike:
-            continue
-        if any(f"{trigger}/" in f"/{visit.path}/" for trigger in triggers):
-            continue  # the property would always hold
-        more = (*ends, replace(ends[0], name=node.name, outcome=None))
-        if _holds(context, given, _with_ends(given.form, more)):
-            place = Span(ends[0].span.source, ends[0].span.start, ends[-1].span.end)
-            like = f"`{node.name}`, a `{node.type}` too, has the same variables"
-            return place, f"{like}: write `{_names(more)}`\n"
-    return None
-
-
-def _with_ends(form: Form, ends: Atoms) -> Form:
-    """A form with other events that end its requirement."""
-    match form:
-        case After():
-            return replace(form, answer=ends)
-        case Never():
-            return replace(form, until=ends)
-        case Before():
-            return replace(form, earlier=ends)
-    return form
-
-
-def _names(events: Atoms) -> str:
-    """Events as a script has them."""
-    names = ", ".join(str(each) for each in events)
-    return names if len(events) == 1 else f"[{names}]"
 
 
 def _before(events: Atoms) -> str:
@@ -494,15 +423,13 @@ def unknown_event(context: Context) -> Iterator[Finding]:
           - GRASP: {template: ScriptedState, outcomes: [done], transitions: {done: LIFT}}
           - LIFT: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    faults = [(each.property, fault) for each in _with(context, "unclear") for fault in each.faults]
-    alike: dict[tuple[str, ...], list[tuple[Property, NameFault]]] = {}
-    for given, fault in faults:
+    alike: dict[tuple[str, ...], list[NameFault]] = {}
+    for fault in (fault for each in _with(context, "unclear") for fault in each.faults):
         which = fault.kind, fault.atom.subject, fault.atom.name, fault.atom.outcome or ""
-        alike.setdefault(which, []).append((given, fault))
-    for number, (first, *others) in enumerate(alike.values()):
-        is_searched = number < MOST_EXPLAINED
-        found = name_fault(first[1], first[0], context, is_searched=is_searched)
-        spans = [*dict.fromkeys(fault.atom.span for _, fault in others)][:_MOST_ALIKE]
+        alike.setdefault(which, []).append(fault)
+    for first, *others in alike.values():
+        found = name_fault(first, context)
+        spans = [*dict.fromkeys(fault.atom.span for fault in others)][:_MOST_ALIKE]
         more = [part for span in spans for part in other_place(span, "and here")]
         yield replace(found, related=(*found.related, *more))
 

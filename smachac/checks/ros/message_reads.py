@@ -21,10 +21,10 @@ from smachac.checks.ros.message_values import an_example, constants_for, named_c
 from smachac.diagnostics.diagnostic import Finding, Related
 from smachac.diagnostics.meanings import by_words
 from smachac.diagnostics.repair import Certainty, Edit, Repair
-from smachac.diagnostics.source import Span, Word
+from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
-from smachac.ir.function_facts import Operand, Part
+from smachac.ir.function_facts import Comparison, Operand, Part
 from smachac.ir.message_types import FLOATS, INTEGERS, TEXTS, Definitions, FieldType, Message
 from smachac.ir.nodes import Leaf, Node
 from smachac.ir.python_code import parse_code
@@ -52,11 +52,12 @@ def wrong_comparisons(
 ) -> Iterator[Finding]:
     """Comparisons of a number in a message with a text, or the reverse, and of the order of a list
     and a number."""
-    for part, operator, value, span in code.uses.comparisons:
+    for compared in code.uses.comparisons:
+        part, operator, value, span = compared
         content = content_of(part, code, found)
         lists = [each for each in content if isinstance(each, FieldType) and each.array]
         if lists and len(lists) == len(content) and operator in ORDERS:
-            yield _ordered_list(path, leaf, part, operator, value, span, lists[0], here)
+            yield _ordered_list(path, leaf, compared, lists[0], here)
             continue
         fields = [each for each in content if isinstance(each, FieldType) and not each.array]
         wrong = NUMBERS if isinstance(value, str) else TEXTS
@@ -82,16 +83,10 @@ def wrong_comparisons(
 
 
 def _ordered_list(
-    path: str,
-    leaf: Leaf,
-    part: Part,
-    operator: str,
-    value: str | float,
-    span: Span,
-    type_: FieldType,
-    here: tuple[Related, ...],
+    path: str, leaf: Leaf, compared: Comparison, type_: FieldType, here: tuple[Related, ...]
 ) -> Finding:
     """The finding on a list that is compared with one value, by their order."""
+    part, operator, value, span = compared
     text = span.text.replace(part.text, f"len({part.text})", 1)
     edits = (Edit(span=span, text=text),) if not here and span.text != text else ()
     length = Repair(edits=edits, certainty=Certainty.LIKELY, operator="compare its length")

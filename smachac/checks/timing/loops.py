@@ -79,10 +79,10 @@ def trap(context: Context) -> Iterator[Finding]:
           - APPROACH: {template: ScriptedState, outcomes: [near], transitions: {near: PICK}}
     """
     endless = context.endless
-    for (path, container), corrected in zip(context.linear, context.corrected, strict=True):
+    for (path, container), whole in zip(context.linear, context.absorbed, strict=True):
         if isinstance(container, StateMachine) and container.forever:
             continue
-        flow = outline(path, container, endless, corrected)
+        flow = outline(path, container, endless, whole)
         stuck = context.of_container(stuck_states, path, flow)
         if not stuck:
             continue
@@ -489,7 +489,7 @@ def unchanging_condition(context: Context) -> Iterator[Finding]:
               default_outcome: enough
               transitions: {again: PICK, enough: lost}
     """
-    for (path, container), whole in zip(context.linear, context.corrected, strict=True):
+    for (path, container), whole in zip(context.linear, context.absorbed, strict=True):
         if not context.of_container(_goes_back, path, container):
             continue
         deciding = list(filter(_is_condition, container.children))

@@ -36,7 +36,6 @@ from smachac.checks.types.record_fields import (
     missing_fields,
     misspelt_fields,
     misspelt_help,
-    swapped_fields_help,
     without_fields,
 )
 from smachac.checks.types.type_origins import cell_owner, is_promised, written
@@ -276,7 +275,7 @@ def _help(clash: Clash) -> str:
         choices, word = [str(choice) for choice in wanted.args], str(given.args[0])
         meant = of_same_meaning(word, choices) or guesser(choices)(word)
         return did_you_mean(meant) or f"use one of {', '.join(f'`{choice}`' for choice in choices)}"
-    meant = misspelt_help(clash) or swapped_fields_help(clash)
+    meant = misspelt_help(clash)
     if meant is not None:
         return meant
     for name in missing_fields(clash):

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.type_inference import Clash
-from smachac.analysis.type_lattice import fields, misfit
-from smachac.checks.types.value_places import part_at, place_of_part, steps_to_misfit, type_at
+from smachac.analysis.type_lattice import fields
+from smachac.checks.types.value_places import part_at, steps_to_misfit
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import listed
 from smachac.ir.nodes import Struct
-from smachac.ir.types import ANY
 
 
 def missing_fields(clash: Clash) -> list[str]:
@@ -63,29 +61,3 @@ def without_fields(clash: Clash) -> str:
     key = f"`{clash.flow.origin.cell.key}`"
     whose = key if clash.misfit.given == clash.flow.type else f"an item of {key}"
     return f"{whose} has no field{'s' if len(missing) > 1 else ''} {listed(missing)}"
-
-
-def swapped_fields_help(clash: Clash) -> str | None:
-    """The help for a record in which the values of two fields have changed places: each fits the
-    other field only."""
-    value = clash.flow.value
-    if not isinstance(value, tuple | Struct):
-        return None
-    steps = steps_to_misfit(value, clash.cell.declared)
-    whole = part_at(value, steps[:-1]) if steps else None
-    type_ = type_at(clash.cell.declared, steps[:-1]) if steps else ANY
-    if not isinstance(whole, Struct) or type_.name != "record":
-        return None
-    types = fields(type_)
-    given = {name: type_of_data(data) for name, data in whole.entries if name in types}
-    wrong = [name for name, type_ in given.items() if misfit(type_, types[name]) is not None]
-    if len(wrong) != 2:
-        return None
-    one, other = wrong
-    if misfit(given[one], types[other]) or misfit(given[other], types[one]):
-        return None
-    span = clash.flow.origin.span
-    texts = {name: place_of_part(span, (*steps[:-1], name)).text for name in wrong}
-    if any("\n" in text for text in texts.values()):
-        return None
-    return f"write `{one}: {texts[other]}, {other}: {texts[one]}`: the values have changed places"

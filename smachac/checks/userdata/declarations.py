@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from itertools import groupby
 from typing import Literal
@@ -18,7 +18,6 @@ from smachac.analysis.code_slots import free_in
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import UserdataScope
 from smachac.analysis.error_recovery import undeclared_reads
-from smachac.analysis.expression_types import type_of_data
 from smachac.analysis.function_slots import function_reads
 from smachac.analysis.type_lattice import misfit
 from smachac.analysis.unset_reads import container_name
@@ -39,14 +38,13 @@ from smachac.checks.userdata.used_keys import sees_everything, used_in
 from smachac.checks.userdata.word_loops import words_as_lists
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
 from smachac.diagnostics.source import NOWHERE, Span, Word
-from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, is_plain, respelt
+from smachac.diagnostics.spelling import guesser, is_plain, respelt
 from smachac.diagnostics.wording import listed
-from smachac.frontend.errors.references import short_value
 from smachac.frontend.errors.script import number_before
 from smachac.ir import nodes
 from smachac.ir.leaf import functions, variable, variable_of
 from smachac.ir.nodes import Container, Key, Leaf, Machine, Node, Remap, Unused
-from smachac.ir.traversal import expressions, remapping, walk
+from smachac.ir.traversal import expressions, walk
 
 
 @rule(
@@ -88,7 +86,7 @@ def dead_key(context: Context) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {succeeded: held}
     """
-    flow = context.corrected_flow
+    flow = context.absorbed_flow
     in_functions = function_reads(context)
     # A state outside or inside the container needs the key, but does not get it.
     needed = {(lost.keeper.path, lost.written.outer) for lost in context.lost_outputs}
@@ -98,14 +96,12 @@ def dead_key(context: Context) -> Iterator[Finding]:
         if context.of_container(sees_everything, scope.path, scope) or container.sugar:
             continue
         read = context.of_container(used_in, scope.path, scope)
-        explained = 0
         for key, node, span in context.of_container(_set_by_the_script, scope.path, scope):
             if key in read or key in in_functions.get(scope.path, ()):
                 continue
             if (scope.path, key) in needed:
                 continue
-            explained += 1
-            finding = _unread_key(scope, key, node, span, is_searched=explained <= MOST_EXPLAINED)
+            finding = _unread_key(scope, key, node, span)
             # The userdata of the machine can be read after the run.
             is_result = container is flow.machine.root and node is not container
             yield replace(finding, severity=Severity.INFO) if is_result else finding
@@ -114,23 +110,14 @@ def dead_key(context: Context) -> Iterator[Finding]:
                 yield _lost_result(scope, child, remap, meant)
 
 
-def _unread_key(
-    scope: UserdataScope,
-    key: str,
-    node: Node,
-    span: Span,
-    *,
-    is_searched: bool,
-) -> Finding:
-    """SM305 for a key of a container that a node sets. `is_searched`: a state that can read the key
-    is searched."""
+def _unread_key(scope: UserdataScope, key: str, node: Node, span: Span) -> Finding:
+    """SM305 for a key of a container that a node sets."""
     where = container_name(scope, span)
     return Finding(
         span=span,
         message=f"`{key}` is set, but nothing in {where} reads it",
         arguments=(key,),
-        help=(_reader_help(scope, key, node) if is_searched else None)
-        or f"remove `{key}`; or add it to the `input_keys` of the state that must read"
+        help=f"remove `{key}`; or add it to the `input_keys` of the state that must read"
         f" it, or to the `output_keys` of {where}",
         related=calls(node, span),
         node=scope.path if node is scope.container else f"{scope.path}/{node.name}",
@@ -149,30 +136,6 @@ def _lost_result(scope: UserdataScope, child: Node, remap: Remap, meant: str) ->
         related=calls(child, remap.span),
         node=f"{scope.path}/{child.name}",
     )
-
-
-def _reader_help(scope: UserdataScope, key: str, node: Node) -> str | None:
-    """The help for a preset that one state can read as its only optional key of that kind, which
-    nothing sets."""
-    container = scope.container
-    data = next((each.value.data for each in container.userdata if each.key == key), None)
-    if node is not container or data is None:
-        return None
-    known = scope.uses.provided
-    given = type_of_data(data)
-    last = key.removesuffix("_id").rpartition("_")[2]
-    found = [
-        (child.name, each.name)
-        for child in container.children
-        for each in (child.inputs if isinstance(child, Leaf) else ())
-        if each.type.name == "optional" and remapping(child)[each.name] not in known
-        if misfit(given, each.type) is None and last in (each.role, each.name)
-    ]
-    if len(found) != 1:
-        return None
-    (state, name), *_ = found
-    pair = notation.mapping(container, "remapping", [(name, key)])
-    return f"`{state}` can read it as `{name}`: write `{pair}` in `{state}`, or remove `{key}`"
 
 
 def _set_by_the_script(scope: UserdataScope) -> tuple[tuple[str, Node, Span], ...]:
@@ -274,7 +237,7 @@ def unused_declaration(context: Context) -> Iterator[Finding]:
                     transitions: {succeeded: done}
               transitions: {done: held}
     """
-    flow = context.corrected_flow
+    flow = context.absorbed_flow
     needed = {(missing.other, missing.key) for missing in context.missing_keys("outside")}
     yield from context.at_containers(_unused_in)
     unwritten = context.of_machine(unwritten_keys)
@@ -346,14 +309,6 @@ def _unused(
     )
 
 
-def _param_meant(name: str, known: Sequence[str]) -> str | None:
-    """The param that is probably meant by an unused one: one of a similar name, or the only one
-    that has a word of its name, as `force` for `grip_force`."""
-    words = set(name.split("_"))
-    alike = [each for each in known if not words.isdisjoint(each.split("_"))]
-    return guesser(known).sure(name) or (alike[0] if len(alike) == 1 else None)
-
-
 MOST_SHOWN = 40
 """The longest value that a message shows, in characters."""
 
@@ -383,8 +338,8 @@ def _unused_word(unused: Unused, root: str) -> Finding:
     """SM306 for a param or type of the script that nothing uses."""
     what, word, via, known, kept = unused
     outside = (call for call in via if call.source is not word.span.source)
-    meant = _param_meant(word.text, known)
-    help = _turned_param_help(word, known) or did_you_mean(meant)
+    meant = guesser(known).sure(word.text)
+    help = did_you_mean(meant)
     if help is None and known:
         help = f"the params that are used here are {listed(known)}"
         if len(known) == 1:
@@ -410,14 +365,6 @@ def _unused_word(unused: Unused, root: str) -> Finding:
         ),
         node=root,
     )
-
-
-def _turned_param_help(word: Word, known: Sequence[str]) -> str | None:
-    """The help for a param whose value is the name of one that is used."""
-    value = short_value(word)
-    if value not in known:
-        return None
-    return f"write `{value}: {word.text}`: the name of the param comes first"
 
 
 def _unused_in(path: str, container: Container) -> Iterator[Finding]:

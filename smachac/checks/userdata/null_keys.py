@@ -34,7 +34,7 @@ def _null_key(
     context: Context, path: str, container: Container, preset: Preset
 ) -> Iterator[Finding]:
     readers = [*_readers(path, container, preset.key)]
-    scope = context.corrected_flow.scopes.get(path) if readers else None
+    scope = context.absorbed_flow.scopes.get(path) if readers else None
     if scope is None or not _is_always_null(scope, preset.key):
         return
     unread = unread_output(scope, preset.key)

@@ -106,7 +106,7 @@ def stale_key(context: Context) -> Iterator[Finding]:
           - LOOK: {template: ScriptedState, outcomes: [seen], transitions: {seen: GRASP}}
     """
     reported: set[tuple[str, str]] = set()
-    for found in stale_counters(context.corrected_flow, lambda: context.routes):
+    for found in stale_counters(context.absorbed_flow, lambda: context.routes):
         if (found.path, found.preset.key) not in reported:
             reported.add((found.path, found.preset.key))
             yield _stale(found)

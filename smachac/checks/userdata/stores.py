@@ -78,7 +78,7 @@ def dead_store(context: Context) -> Iterator[Finding]:
               transitions: {held: done}
     """
     found: dict[tuple[str, str], list[DeadStore]] = {}
-    for store in dead_stores(context.corrected_flow, context.of_container):
+    for store in dead_stores(context.absorbed_flow, context.of_container):
         found.setdefault((store.path, store.leaf.name), []).append(store)
     for stores in found.values():
         leaf = stores[0].leaf

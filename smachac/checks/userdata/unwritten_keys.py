@@ -97,7 +97,7 @@ def read_unwritten(context: Context) -> Mapping[tuple[str, str], tuple[str, str]
     """Such keys, and outputs of containers that nothing in them sets, that a state reads but
     nothing else sets: by the path and the key of the state that never writes them, the path and the
     key of the container."""
-    scopes = context.corrected_flow.scopes
+    scopes = context.absorbed_flow.scopes
     missing = {(each.scope.path, each.key) for each in context.missing_keys("unset", "nowhere")}
     never = {(each.path, each.key.name): remapping(each.leaf)[each.key.name]
              for each in context.of_machine(unwritten_keys) if each.leaf.built_in}  # fmt: skip

@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
-from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
+from smachac.analysis.error_recovery import is_around_open, lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Searches, container_name, provided_keys, reader_at
 from smachac.checks import notation
@@ -20,14 +20,14 @@ from smachac.checks.userdata.initial_presets import missing_together, together_f
 from smachac.checks.userdata.unset_read_findings import fitting_keys, unset_read
 from smachac.checks.userdata.unwritten_keys import read_unwritten
 from smachac.diagnostics.diagnostic import Finding, Related, Severity
-from smachac.diagnostics.repair import Edit
+from smachac.diagnostics.repair import Certainty, Edit, Repair
 from smachac.diagnostics.source import NOWHERE, Span, Word
 from smachac.diagnostics.spelling import MOST_EXPLAINED, guesser, respelt
 from smachac.diagnostics.wording import both, either, listed
 from smachac.frontend.text.unquoted import is_name
 from smachac.ir import nodes
 from smachac.ir.message_types import Definitions
-from smachac.ir.nodes import Container, Key, Node
+from smachac.ir.nodes import Container, Key, Node, Remap
 from smachac.ir.script_paths import name_in_script
 from smachac.ir.traversal import remapping
 from smachac.ir.types import ANY
@@ -87,7 +87,7 @@ def read_before_write(context: Context) -> Iterator[Finding]:
               input_keys: [pose]
               transitions: {done: held}
     """
-    flow = context.corrected_flow
+    flow = context.absorbed_flow
     searches = Searches(flow)
     # What a state declares as an output and never sets is a fault of that state, and so is what
     # its code sets without a declaration.
@@ -114,13 +114,13 @@ def read_before_write(context: Context) -> Iterator[Finding]:
 
 
 def _dropped(container: Container) -> frozenset[str]:
-    """The keys that the code of a state in a container sets, also those that its interface does not
-    declare."""
+    """The keys that the code of a state in a container sets, and its interface does not declare."""
     return frozenset(
         word.text
         for child in container.children
         if isinstance(child, nodes.Leaf) and child.class_facts is not None
         for word in child.class_facts.writes
+        if all(key.name != word.text for key in child.outputs)
     )
 
 
@@ -164,7 +164,7 @@ def unknown_remap(context: Context) -> Iterator[Finding]:
     yield from context.at_containers(_unknown_remaps, context.machine.definitions)
     for missing in context.missing_keys("remapped"):
         yield from _remapped(context.types, missing)
-    for scope in context.corrected_flow.scopes.values():
+    for scope in context.absorbed_flow.scopes.values():
         yield from _empty_remaps(scope)
 
 
@@ -183,9 +183,9 @@ def _ignored(node: Node, meant: str | None, outer: str) -> str:
 def _unknown_remaps(path: str, container: Container, definitions: Definitions) -> Iterator[Finding]:
     lacking: set[tuple[Span, tuple[str, ...]]] = set()
     for node in container.children:
-        if not node.remaps:
+        if not node.remaps or is_around_open(node):
             continue
-        found = list(_unknown_remaps_of(f"{path}/{node.name}", node, container))
+        found = list(_unknown_remaps_of(f"{path}/{node.name}", node))
         leaf = node if found and isinstance(node, nodes.Leaf) else None
         reported = remapped_fields(leaf, definitions) if leaf is not None else ()
         yield from (each for each in found if each.arguments[0] not in reported)
@@ -226,11 +226,13 @@ def _lacking(path: str, node: Container, keys: Sequence[str]) -> Finding:
     )
 
 
-def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[Finding]:
+def _unknown_remaps_of(path: str, node: Node) -> Iterator[Finding]:
     own = list(dict.fromkeys(key.name for key in (*node.inputs, *node.outputs)))
-    unknown = unknown_remaps(node, container)
-    turned = [remap for remap, _, certain in unknown if remap.to in own and certain is None]
-    for remap, meant, certain in unknown:
+    unknown = unknown_remaps(node)
+    guess = guesser(sorted({*own} - {remap.key for remap in node.remaps}))
+    turned = [remap for remap in unknown if remap.to in own and guess.sure(remap.key) is None]
+    for remap in unknown:
+        meant, certain = guess(remap.key), guess.sure(remap.key)
         known = f"use one of its keys: {listed(own)}" if own else "remove it: the state has no keys"
         if remap in turned:
             if remap is not turned[0]:
@@ -250,7 +252,20 @@ def _unknown_remaps_of(path: str, node: Node, container: Container) -> Iterator[
             related=calls(node, remap.span),
             node=path,
             edits=() if remap in turned else respelt(Word(remap.key, remap.span), certain),
+            repairs=tuple(_other_keys(remap, guess.names) if meant is None else ()),
         )
+
+
+MOST_PROPOSED = 3
+"""The most keys that are proposed for an entry of a remapping."""
+
+
+def _other_keys(remap: Remap, names: Sequence[str]) -> Iterator[Repair]:
+    """The repairs that write another key of the state in an entry of its remapping."""
+    for name in names[:MOST_PROPOSED]:
+        edits = respelt(Word(remap.key, remap.span), name)
+        if edits:
+            yield Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="remap another key")
 
 
 def _remapped(types: Types, missing: Missing) -> Iterator[Finding]:
@@ -357,7 +372,7 @@ def undeclared_container_key(context: Context) -> Iterator[Finding]:
                     transitions: {succeeded: done}
               transitions: {done: held}
     """
-    flow = context.corrected_flow
+    flow = context.absorbed_flow
     for missing in context.missing_keys("outside"):
         scope, key = missing.scope, missing.key
         reader = reader_at(scope, missing.vertices[0], key)

@@ -105,10 +105,10 @@ def shared_transitions(span: Span, outcome: str, first: Span | None) -> Finding:
     "missing-member",
     Severity.ERROR,
     firm=False,
-    effect="Python raises AttributeError or ImportError: the program stops when it starts",
+    effect="Python raises NameError, AttributeError or ImportError: the program stops",
 )
 def missing_member(module: str, words: Sequence[Word]) -> Finding:
-    """A module of the repository has no such name.
+    """A module of the repository, or the file itself, has no such name.
 
     The module was read as a whole, and nothing in it can bind another name.
 
@@ -150,11 +150,15 @@ def missing_member(module: str, words: Sequence[Word]) -> Finding:
     """
     first, *others = sorted(words, key=lambda word: word.span.start)
     more = sorted({word.text for word in others} - {first.text})
+    names = listed([first.text, *more])
+    own = module == first.span.source.name
     return Finding(
         span=first.span,
-        message=f"`{module}` has no {listed([first.text, *more])}",
+        message=f"this file has no {names}" if own else f"`{module}` has no {names}",
         arguments=(module, first.text),
-        help="correct the name, or define it in the module",
+        help="correct the name, or import it"
+        if own
+        else "correct the name, or define it in the module",
         related=tuple(
             Related(span=word.span, message="the same here") for word in others[:MOST_RELATED]
         ),

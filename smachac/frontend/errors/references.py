@@ -21,7 +21,7 @@ from smachac.diagnostics.diagnostic import (
 from smachac.diagnostics.repair import Certainty, Repair
 from smachac.diagnostics.source import Span, Word
 from smachac.diagnostics.spelling import guesser, guesser_of, respelt
-from smachac.diagnostics.wording import both, either, listed
+from smachac.diagnostics.wording import listed
 
 _PACKAGE = re.compile(r"package://|file://|\$\(find|\$\{|\$\(")
 """The beginnings of paths that ROS replaces when a program is launched."""
@@ -173,15 +173,7 @@ def recursive_include(chain: Sequence[tuple[str, Span]]) -> Finding:
     effect="there is no code for this state, so no program is generated",
 )
 def template_not_found(
-    word: Word,
-    searched: Sequence[str],
-    known: Iterable[str],
-    other: str = "",
-    fitting: Sequence[str] = (),
-    used: Sequence[str] = (),
-    foreign: str = "",
-    *,
-    script: bool = False,
+    word: Word, searched: Sequence[str], known: Iterable[str], other: str = "", help: str = ""
 ) -> Finding:
     """The type of a state has neither an interface nor a template in any folder.
 
@@ -202,17 +194,12 @@ def template_not_found(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     names = sorted(known)
-    help = _where(word, f"{word.text}.yml", searched, names, "templates", other)
-    if fitting:
-        help = f"did you mean {either(fitting)}, with {both(used)}?"
-    if script:
-        foreign = f"`{word.text}` is a sub-script: write `script: {word.text}`"
     return Finding(
         span=word.span,
         message=f"the template `{word.text}` was not found",
         arguments=(word.text,),
-        help=foreign or help,
-        edits=() if foreign else respelt(word, guesser_of(tuple(names)).sure(word.text)),
+        help=help or _where(word, f"{word.text}.yml", searched, names, "templates", other),
+        edits=() if help else respelt(word, guesser_of(tuple(names)).sure(word.text)),
     )
 
 

@@ -6,12 +6,10 @@ The arguments of a code with several faults begin with a word for the fault, whi
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
-from difflib import SequenceMatcher
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
-    LONGEST_WORD,
     Diagnostic,
     Finding,
     Problem,
@@ -156,6 +154,24 @@ ELSEWHERE = {
 """Fields that only some owners have, each with the effect of another place and the help for it."""
 
 
+class Choice(NamedTuple):
+    """What can be meant by an unknown name. `meant` is certainly meant, `likely` probably;
+    `required` is one of them that is required and missing. `own` are the variables of a state type,
+    which come before other names; `free` the names that are not given yet; `proposed` those that
+    only a new check can choose from."""
+
+    meant: str | None = None
+    likely: str | None = None
+    required: str | None = None
+    own: Collection[str] = ()
+    free: Collection[str] = ()
+    proposed: Sequence[str] = ()
+
+
+ANY_NAME = Choice()
+"""Nothing is known of what is meant."""
+
+
 @problem(
     "SM003",
     "unknown-variable",
@@ -166,16 +182,10 @@ def unknown_variable(
     word: Word,
     owner: Owner,
     known: Iterable[str],
+    choice: Choice = ANY_NAME,
     *,
-    own: Iterable[str] = (),
-    anything: bool = False,
-    meant: str | None = None,
-    outcome: bool = False,
-    key: str | None = None,
-    certain: str | None = None,
-    required: str | None = None,
-    fitting: Collection[str] = (),
-    proposed: Iterable[str] = (),
+    help: str | None = None,
+    message: str | None = None,
     severity: Severity | None = None,
 ) -> Finding:
     """A script sets a variable that neither the language nor the state type has.
@@ -197,62 +207,63 @@ def unknown_variable(
         states:
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
-    own = sorted(own)
+    own = sorted(choice.own)
     names = sorted({*known, *own})
-    owned = f"use one of its {owner.part}s{possible(names, fitting)}"
-    variables = owned if names else f"remove it: {owner.text} has no other {owner.part}s"
-    sure = meant or guesser_of(tuple(names)).sure(word.text)
+    spelt = guesser_of(tuple(names)).sure(word.text)
+    sure = choice.meant or spelt or choice.likely
     number = number_before(word)
     if number:
-        certain = f"a decimal comma? write `{number}.{word.text}`"
-    elif outcome:
-        certain = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
-    elif key is not None:
-        certain = f"`{word.text}` is an input key: {key}"
-    lacks = f"no code reads a field of this name, and `{required}`, which is required, is missing"
-    if certain is not None:
-        return Finding(
-            span=word.span,
-            message=f"`{word.text}` is not a {owner.part} of {owner.text}",
-            arguments=(word.text, owner.name),
-            help=certain,
-            effect=lacks if required else None,
-        )
-    if anything:
-        return Finding(
-            span=word.span,
-            message=f"the template of {owner.text} does not use the variable `{word.text}`",
-            arguments=(word.text, owner.name),
-            help=f"did you mean `{sure}`?" if sure else "remove it, or use it in the template",
-            severity=Severity.WARNING,
-        )
-    foreign = None if sure else FOREIGN.get(word.text)
-    effect = lacks if required else None
-    effect = "SMACH or FlexBE has such a field, smachac has not" if foreign else effect
-    if word.text in ELSEWHERE and not sure:
-        effect, foreign = ELSEWHERE[word.text]
-    if not (sure or foreign) and owner.part == "variable":
-        foreign = _misplaced(word.text)
+        help = f"a decimal comma? write `{number}.{word.text}`"
+    is_known = help is not None
+    lacks = f"no code reads a field of this name, and `{choice.required}`, which is required, is"
+    effect = f"{lacks} missing" if choice.required else None
+    if not is_known:
+        foreign = None if sure else FOREIGN.get(word.text)
+        effect = "SMACH or FlexBE has such a field, smachac has not" if foreign else effect
+        if word.text in ELSEWHERE and not sure:
+            effect, foreign = ELSEWHERE[word.text]
+        if not (sure or foreign) and owner.part == "variable":
+            foreign = _misplaced(word.text)
+        listed = f"use one of its {owner.part}s{possible(names, choice.free)}"
+        others = listed if names else f"remove it: {owner.text} has no other {owner.part}s"
+        help = foreign or _variable_help(word.text, sure, names, own) or others
     return Finding(
         span=word.span,
-        message=f"`{word.text}` is not a {owner.part} of {owner.text}",
+        message=message or f"`{word.text}` is not a {owner.part} of {owner.text}",
         arguments=(word.text, owner.name),
-        help=foreign or _variable_help(word.text, sure, names, own) or variables,
-        edits=respelt(word, sure),
+        help=help,
+        edits=() if is_known else respelt(word, choice.meant or spelt),
         repairs=tuple(
-            Repair(edits=edits, certainty=Certainty.POSSIBLE, operator="write another name")
-            for name in (() if sure else proposed)
-            if (edits := respelt(word, name))
+            Repair(
+                edits=edits,
+                certainty=Certainty.LIKELY if sure else Certainty.POSSIBLE,
+                operator="write another name",
+            )
+            for name in ([sure] if sure else choice.proposed)
+            if not is_known and (edits := respelt(word, name))
         ),
         severity=severity,
         effect=effect,
     )
 
 
+def unused_variable(word: Word, owner: Owner, known: Iterable[str]) -> Diagnostic:
+    """SM003 for a variable that a template, which accepts any, does not use."""
+    sure = guesser_of(tuple(sorted({*known}))).sure(word.text)
+    return unknown_variable(
+        word,
+        owner,
+        (),
+        help=f"did you mean `{sure}`?" if sure else "remove it, or use it in the template",
+        message=f"the template of {owner.text} does not use the variable `{word.text}`",
+        severity=Severity.WARNING,
+    )
+
+
 def one_of_many(word: Word, owner: Owner) -> Diagnostic:
     """SM003 for one of very many unknown variables: without a search for what is meant."""
     help = f"remove it, or correct all fields of {owner.text}"
-    return unknown_variable(word, owner, (), certain=help)
+    return unknown_variable(word, owner, (), help=help)
 
 
 def _misplaced(word: str) -> str | None:
@@ -272,27 +283,12 @@ def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]
     others among `names`."""
     if sure is not None:
         return f"did you mean `{sure}`?"
-    if not own:
-        meant = by_words(word, names)
-        return did_you_mean(word, names) or (f"did you mean `{meant}`?" if meant else None)
-    others = [name for name in names if name not in own]
-    near = SequenceMatcher(a=word)
-    for name in others:
-        near.set_seq2(name)
-        if len(word) <= LONGEST_WORD and near.quick_ratio() > NEAR and near.ratio() > NEAR:
-            return did_you_mean(word, names)
+    meant = by_words(word, own or names)
+    near = did_you_mean(word, own or names)
+    if near is not None or meant is not None:
+        return near or f"did you mean `{meant}`?"
     is_one = len(own) == 1
-    meant = by_words(word, own)
-    return (
-        did_you_mean(word, own)
-        or (f"did you mean `{meant}`?" if meant is not None else None)
-        or f"its variable{'' if is_one else 's'} {'is' if is_one else 'are'} {listed(own)}"
-    )
-
-
-NEAR = 0.75
-"""How similar a name must be to a variable of the language that is meant, if the state type has
-variables of its own."""
+    return f"its variable{' is' if is_one else 's are'} {listed(own)}" if own else None
 
 
 _LONGEST_NUMBER = 20
@@ -378,8 +374,7 @@ def missing_variable(
     example: str = "",
     *,
     help: str | None = None,
-    instead: Word | None = None,
-    in_params: Span | None = None,
+    edits: tuple[Edit, ...] = (),
 ) -> Finding:
     """A variable is missing that the language or the state type requires.
 
@@ -400,19 +395,13 @@ def missing_variable(
           - PICK: {template: ScriptedState, outcomes: [done], transitions: {done: done}}
     """
     help = help or f"add `{name}: {example or MISSING.get(name, '...')}`"
-    if name == "template":
-        help += "; `smachac states` lists the types"
-    if instead is not None:
-        span, help = instead.span, f"write `{name}:` in place of `{instead.text}:`"
-    if in_params is not None:
-        span = in_params
-        help = f"write `{name}:` beside `params:`; `params` has only constants for look-ups"
     return Finding(
         span=span,
         message=f"the {owner.part} `{name}` is missing: {owner.text} requires it",
         arguments=(name, owner.name),
         help=help,
         related=related,
+        edits=edits,
     )
 
 

@@ -150,6 +150,13 @@ def bad_comment(verb: Word) -> Diagnostic:
     return bad_allowance(verb.span, message, help, ("verb", verb.text), VAIN)
 
 
+def vain_description(comment: Span) -> Diagnostic:
+    """SM022 for a comment about the outcomes or keys of a state that has no effect."""
+    message = "this comment describes no state that is unknown"
+    help = "remove it, or write it at the call that adds the state, with names: `outcomes a, b`"
+    return bad_allowance(comment, message, help, ("state", comment.text), "")
+
+
 def unknown_code(code: Word, known: Iterable[str]) -> Diagnostic:
     """SM022 for a code that does not exist."""
     help = did_you_mean(code.text, known) or "`smachac explain --all` lists the codes"

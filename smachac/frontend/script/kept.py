@@ -1,9 +1,11 @@
 """Results that one reading of a script leaves for the next one, after some texts have changed.
 
-The state of a called sub-script is a function of the texts around the call, of the texts of the
-sub-scripts inside, and of the state types there. If all of these are the same objects as in the
-last reading, so is the state. A state type is a function of the answers of the library. Nothing is
-kept that has a finding.
+A state is a function of its fields, of the params and the calls around it, of the aliases of types,
+of the texts of the sub-scripts inside, and of the state types there. If all of these are the same
+as in the last reading, so is the state: that of a called sub-script, and one that is in no
+container of the script. In an editor the spans of a state that did not change are the same
+(pieces.py). A state type is a function of the answers of the library. Nothing is kept that has a
+finding.
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ from smachac.frontend.script.params import Scope
 from smachac.frontend.script.unused import Uses
 from smachac.frontend.text.yaml_tree import Entry
 from smachac.frontend.types.state_types import find_state_type
-from smachac.ir.nodes import Preset, StateType
+from smachac.frontend.types.type_annotations import Aliases
+from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.records import dataclass, field
 
 Answers: TypeAlias = "list[object]"
@@ -28,7 +31,7 @@ Answers: TypeAlias = "list[object]"
 
 
 class KeptCall(NamedTuple):
-    """The state of a called sub-script, and all else that its reading has found.
+    """The state of a call, or one in no container, and all else that its reading has found.
 
     `own`: the fields of the call. `around`: its surroundings, except `scope`. `texts`: those of the
     sub-scripts inside, by their names and the calling texts. `calls`: those inside. `states` and
@@ -47,6 +50,7 @@ class KeptCall(NamedTuple):
     states: int
     keys: int
     most_keys: tuple[Preset, ...]
+    fixed_params: tuple[FixedParam, ...]
 
 
 def same_objects(one: Mapping[str, object], other: Mapping[str, object]) -> bool:
@@ -56,11 +60,17 @@ def same_objects(one: Mapping[str, object], other: Mapping[str, object]) -> bool
 
 @dataclass(slots=True)
 class Kept:
-    """The results of the last reading: the calls by the span of the state's name, and the state
-    types with the answers that they were made from."""
+    """The results of the last reading: the calls by the span of the state's name, the state types
+    with the answers that they were made from, and the aliases of types."""
 
     calls: Mapping[Span, KeptCall] = field(default_factory=dict)
     types: dict[str, tuple[Answers, StateType]] = field(default_factory=dict)
+    aliases: Aliases = field(default_factory=dict)
+
+    def use_aliases(self, aliases: Aliases) -> None:
+        """Forget the calls if the aliases are others."""
+        if aliases != self.aliases:
+            self.aliases, self.calls = aliases, {}
 
     def state_type(self, name: str, library: Library, report: Report) -> StateType | None:
         """As `find_state_type`; the same object as before if the answers are the same."""

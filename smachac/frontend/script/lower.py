@@ -48,8 +48,8 @@ _VARIABLE = re.compile(r"(\.?)\{(\w+)\}")
 
 
 KeptNodes: TypeAlias = "dict[tuple[Span, tuple[Span, ...]], tuple[State, Node]]"
-"""The nodes of containers with the states that they were made from, by the spans of the name and of
-the calls around."""
+"""The nodes with the states that they were made from, by the spans of the name and of the calls
+around."""
 
 
 def lower(script: Script, kept: KeptNodes | None = None) -> Machine:
@@ -323,12 +323,13 @@ def _text(word: Word | None, default: str = "") -> str:
 
 def _node(state: State, kept: _Nodes) -> Node:
     assert state.owner != "base"
-    if state.owner == "state":
+    if state.owner == "state" and not kept.old:
         return _with_sugar(_leaf(state), state)
     place = state.name.span, state.via
     known = kept.old.get(place)
     if known is None or known[0] is not state:
-        known = state, _with_sugar(_container(state, state.owner, kept), state)
+        node = _leaf(state) if state.owner == "state" else _container(state, state.owner, kept)
+        known = state, _with_sugar(node, state)
     kept.new[place] = known
     return known[1]
 

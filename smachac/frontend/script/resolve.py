@@ -6,7 +6,7 @@ every state gets its typed fields and its state type. Lowering needs no tree and
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import PurePath
@@ -51,10 +51,11 @@ from smachac.frontend.script.params import (
     size_up_to,
 )
 from smachac.frontend.script.properties import properties_of
-from smachac.frontend.script.script_functions import functions_of
 from smachac.frontend.script.state_fields import (
     Entries,
+    FieldTable,
     another_state,
+    field_table,
     has_unknown_outcomes,
     has_wrong_transitions,
     is_field,
@@ -71,14 +72,20 @@ from smachac.frontend.script.sub_scripts import (
 )
 from smachac.frontend.script.unknown_templates import (
     Searched,
-    meant_template,
     missing_template,
     missing_template_help,
     unknown_template,
-    with_meant_call,
 )
 from smachac.frontend.script.unused import Mark, Uses
-from smachac.frontend.text.fields import as_name, expanded, kind_of, name_of, pairs_of, wrong
+from smachac.frontend.text.fields import (
+    as_name,
+    expanded,
+    kind_of,
+    name_of,
+    pairs_of,
+    usual_name,
+    wrong,
+)
 from smachac.frontend.text.file_kinds import OTHER_FILES, kind_of_tree
 from smachac.frontend.text.yaml_tree import (
     Entry,
@@ -96,6 +103,7 @@ from smachac.frontend.types.type_annotations import (
     read_aliases,
     typed,
 )
+from smachac.ir.function_facts import FunctionFacts
 from smachac.ir.nodes import FixedParam, Preset, StateType
 from smachac.ir.robot import Robot
 from smachac.pysource.template_sources import TEMPLATE_FILES
@@ -117,14 +125,15 @@ SCRIPT_HELP = "write a mapping with `name:`, `outcomes:` and `states:`"
 
 @dataclass(frozen=True, slots=True)
 class _Environment:
-    """The surroundings of a state: the source of its text and the params in scope.
+    """The surroundings of a state: the source of its text and the params in scope. They are equal
+    if only the texts of other states differ.
 
     `calls`: the sub-scripts that are called around it, with the spans of the calls, outermost
     first. `depth`: the number of containers around it. `inner`: if the state calls a sub-script,
     the name of the state in that. `iterated`: it is the state of an Iterator.
     """
 
-    source: Source
+    source: Source = field(compare=False)
     scope: Scope = field(default_factory=Scope, compare=False)
     calls: tuple[tuple[str, Span], ...] = ()
     depth: int = 0
@@ -201,6 +210,7 @@ class _Resolver:
         self.types: dict[str, StateType | None] = {}
         self.found_texts: dict[tuple[str, str], Source | None] = {}
         self.texts: dict[tuple[str, str], Source] = {}
+        self.tables: dict[tuple[FieldOwner, str, tuple[str, ...]], FieldTable] = {}
         self.parsed: dict[tuple[str, str], tuple[Tree | None, bool]] = {}
         self.templates: tuple[Sequence[str], Sequence[str]] | None = None
         self.calls: dict[Span, KeptCall] = {}
@@ -221,6 +231,8 @@ class _Resolver:
         entries = expanded(tree.entries, self.report)
         if "types" in entries:
             self.aliases = read_aliases(entries["types"].value, self.report)
+        if self.kept is not None:
+            self.kept.use_aliases(self.aliases)
         start = tree.entries[0].key.span if tree.entries else tree.span
         base = self.state(Word("sm", start), entries, _Environment(source), "base", begin)
         self.report[:] = one_for_each_name(self.report)
@@ -245,7 +257,7 @@ class _Resolver:
             properties=properties_of(entries.get("properties"), source, self.library, self.report),
             params=params_of(entries.get("params")),
             fixed_params=tuple(self.fixed_params),
-            functions=functions_of(base, self.types, self.library),
+            functions=self._functions(base),
             state_types={name: type_ for name, type_ in self.types.items() if type_ is not None},
             aliases=self.aliases,
         )
@@ -257,6 +269,15 @@ class _Resolver:
         from smachac.frontend.robots.robots import robot_of
 
         return robot_of(base, source, self.library, self.report)
+
+    def _functions(self, base: State) -> Mapping[str, FunctionFacts]:
+        """The functions of the user that the states name. Scripts without state types of the user
+        do not load what reads Python."""
+        if all(type_ is None or type_.built_in for type_ in self.types.values()):
+            return {}
+        from smachac.frontend.script.script_functions import functions_of
+
+        return functions_of(base, self.types, self.library)
 
     def has_too_many_keys(self) -> bool:
         """Whether the script has too much userdata, which is reported where most of it is."""
@@ -284,22 +305,25 @@ class _Resolver:
         params = own.get("params") or params_meant(own)
         begin = begin or self.uses.mark(self.report)
         scope = child_scope(around.scope, params.value, self.report) if params else around.scope
-        entries: dict[str, Entry] = {}
+        entries = own.copy()
         for key, entry in own.items():
             if key == "states":
-                entries[key] = entry
                 continue
             flat = is_flat(entry.value)
             if flat and key not in TYPED:
-                is_look_up = scope and isinstance(entry.value, Seq)
-                entries[key] = self.fill(key, entry, scope, flat=True) if is_look_up else entry
+                if scope and isinstance(entry.value, Seq):
+                    entries[key] = self.fill(key, entry, scope, flat=True)
                 continue
             self.uses.value(key, entry.value, flat=flat)
-            entries[key] = entry if key == "params" else self.fill(key, entry, scope, flat=flat)
+            if key != "params":
+                entries[key] = self.fill(key, entry, scope, flat=flat)
         type_, owner = self.type_of(name, entries, role, around)
         if type_.variables:
             entries |= self.lists(own, scope, type_)
-        entries = with_meant_fields(entries, owner, type_, self.report)
+        table = self.table(entries, owner, type_)
+        if table.others:
+            entries = with_meant_fields(entries, owner, type_, self.report)
+            table = self.table(entries, owner, type_)
         self.uses.type(type_)
         if scope:
             self.fixed_params += fixed_params(own, type_, scope)
@@ -307,7 +331,7 @@ class _Resolver:
             self.count += 1
         via = around.via
         fields = read_fields(
-            name, entries, owner, type_, self.report, scope=scope, inner=around.inner
+            name, entries, owner, type_, table, self.report, scope=scope, inner=around.inner
         )
         presets: tuple[Preset, ...] = fields.get("userdata", ())
         self.keys += len(presets)
@@ -335,6 +359,13 @@ class _Resolver:
         if around.iterated and "remapping" in entries:
             self.report.append(_remapping_in_iterator(entries["remapping"].key.span))
         return State(owner=owner, type=type_, via=via, states=children, **fields)
+
+    def table(self, entries: Entries, owner: FieldOwner, type_: StateType) -> FieldTable:
+        """The table for states with these fields, which is made once."""
+        which = owner, type_.name, tuple(entries)
+        if which not in self.tables:
+            self.tables[which] = field_table(entries, owner, type_)
+        return self.tables[which]
 
     def fill(self, key: str, entry: Entry, scope: Scope, *, flat: bool) -> Entry:
         """The field with values in place of its look-ups and aliases of types. `flat`: see
@@ -437,7 +468,7 @@ class _Resolver:
             return None
         nothing = isinstance(first.value, Scalar) and first.value.value is None
         if nothing and rest:
-            return self.call(name, expanded(rest, self.report), around)
+            return self.read(name, expanded(rest, self.report), around)
         if nothing or not isinstance(first.value, Map):
             found = kind_of(first.value)
             fault = "is empty" if nothing else f"must be a mapping of variables, not {found}"
@@ -449,21 +480,29 @@ class _Resolver:
         if rest:
             self.report.append(second_key(name, first.value, rest[0]))
         own = tuple(entry for entry in rest if is_field(entry)) if rest else ()
-        return self.call(name, expanded(first.value.entries + own, self.report), around)
+        return self.read(name, expanded(first.value.entries + own, self.report), around)
+
+    def read(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
+        """The state with these fields, which can be a call of a sub-script."""
+        if "template" in own and "script" not in own and (self.kept is None or around.depth > 1):
+            return self.state(name, own, around)
+        return self.call(name, own, around)
 
     def call(self, name: Word, own: dict[str, Entry], around: _Environment) -> State:
-        """As `called`; for the call of a sub-script, the state of the last reading if it is still
-        the same."""
-        if self.kept is None or "script" not in own:
+        """As `called`; for the call of a sub-script, and for a state that is in no container of the
+        script, the state of the last reading if it is still the same."""
+        if self.kept is None or ("script" not in own and around.depth > 1):
             return self.called(name, own, around)
         kept = self.kept.calls.get(name.span)
         if kept is not None and self.is_current(kept, own, around):
             self.count += kept.states
             self.keys += kept.keys
             self.add(kept)
+            self.fixed_params += kept.fixed_params
             self.calls[name.span] = kept
             return kept.state
         before = len(self.report), self.looked_up, self.count, self.keys
+        fixed = len(self.fixed_params)
         outer = self.texts, self.sources, self.types, self.calls, self.uses, self.most_keys
         self.texts, self.sources, self.types, self.calls = {}, {}, {}, {}
         self.uses, self.most_keys = Uses(), ()
@@ -480,6 +519,7 @@ class _Resolver:
             states=self.count - before[2],
             keys=self.keys - before[3],
             most_keys=self.most_keys,
+            fixed_params=tuple(self.fixed_params[fixed:]),
         )
         self.texts, self.sources, self.types, self.calls, self.uses, self.most_keys = outer
         self.add(new)
@@ -488,8 +528,7 @@ class _Resolver:
         return new.state
 
     def is_current(self, kept: KeptCall, own: dict[str, Entry], around: _Environment) -> bool:
-        """Whether reading a call would give the same state again. The surroundings have the spans
-        of the calls around it, and so the main text, which has the aliases of types."""
+        """Whether reading a call would give the same state again."""
         return (
             same_objects(kept.own, own)
             and kept.around == around
@@ -512,7 +551,6 @@ class _Resolver:
         """The state or, if it calls a sub-script, the state of that sub-script with the fields of
         the call."""
         begin = self.uses.mark(self.report)
-        own = with_meant_call(name, own, self.report)
         while "script" in own:
             entry = own.pop("script")
             params = own["params"].value if "params" in own else None
@@ -556,7 +594,7 @@ class _Resolver:
         for entry in found.values():
             word = Word(str(entry.key.value), entry.key.span)
             help = f"`{word.text}` is a param of the sub-script: write it inside `params:`"
-            self.report.append(unknown_variable(word, Owner("state", "a state"), (), certain=help))
+            self.report.append(unknown_variable(word, Owner("state", "a state"), (), help=help))
         span = next(iter(found.values())).key.span
         name = own["params"].key if "params" in own else Scalar("params", True, *span)
         own = {key: entry for key, entry in own.items() if key not in found}
@@ -648,8 +686,13 @@ class _Resolver:
     ) -> tuple[StateType, FieldOwner]:
         """The state type of a state, and its owner in the schema."""
         entry = entries.get("template")
-        if entry is None and role != "base":
-            entry = meant_template(entries, self.state_type)
+        usual = usual_name(entry.value) if entry is not None else None
+        if usual is not None and not role:  # most states
+            kind, type_ = schema.CONTAINERS.get(usual), self.types.get(usual)
+            if kind is not None:
+                return schema.CONTAINER_TYPES[kind], kind
+            if type_ is not None and type_.kind != "container":
+                return type_, "StateMachine" if "states" in entries else "state"
         word = as_name(entry.value, self.report) if entry else None
         if entry is None and role == "base":
             word = Word("Base", name.span)

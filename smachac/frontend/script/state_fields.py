@@ -6,8 +6,8 @@ Reported are unknown fields (SM003), values of the wrong shape (SM004) and missi
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
-from typing import Any
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from smachac.diagnostics.diagnostic import Diagnostic, Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
@@ -20,10 +20,12 @@ from smachac.diagnostics.spelling import (
 from smachac.diagnostics.wording import listed
 from smachac.frontend import schema
 from smachac.frontend.errors.script import (
+    Choice,
     Owner,
     missing_variable,
     one_of_many,
     unknown_variable,
+    unused_variable,
     wrong_shape,
 )
 from smachac.frontend.resolved_script import State
@@ -32,15 +34,9 @@ from smachac.frontend.script.extra_keys import check_interface
 from smachac.frontend.script.missing_outcomes import outcomes_used
 from smachac.frontend.script.params import Scope
 from smachac.frontend.script.sugar import NAMES, is_own, read_sugar
-from smachac.frontend.text.field_shapes import (
-    ends_with_any,
-    fitting_fields,
-    paired_help,
-)
 from smachac.frontend.text.fields import (
     READERS,
     YAML_1_1_BOOLEANS,
-    Keys,
     Pairs,
     as_outcomes,
     listed_keys,
@@ -82,11 +78,58 @@ _BASE_VARIABLES = ("node_name", "function_name", "manifest")
 """The fields of the base that are variables of every base type."""
 
 
+class FieldTable(NamedTuple):
+    """What follows from the names of the fields of a state, its owner and its state type alone, so
+    that it is found once for all states that have these in common.
+
+    `others`: there are fields that neither the schema nor the interface of the type has. `shapes`:
+    the fields of the schema that are read, with their shapes. `missing`: the required fields that
+    are missing. `variables`: the fields that are variables of the type. Those in `lists` must be
+    lists of keys, those in `listed` add keys to a field of the schema, and those in `unquoted` are
+    text that programs contain without quotes.
+    """
+
+    others: bool
+    shapes: tuple[tuple[str, str], ...]
+    missing: tuple[str, ...]
+    variables: tuple[tuple[str, VariableType | None], ...]
+    lists: tuple[str, ...]
+    listed: tuple[tuple[str, str], ...]
+    unquoted: tuple[tuple[str, VariableType], ...]
+
+
+def field_table(names: Collection[str], owner: FieldOwner, type_: StateType) -> FieldTable:
+    """The table for states with fields of these long names."""
+    own, known = schema.OWN_FIELDS[owner], type_.variables
+    required = [*schema.REQUIRED[owner], *(key for key in known if known[key].required)]
+    given = [(key, variable) for key, variable in known.items() if key in names]
+    keys = [(key, each) for key, each in given if each.keys in ("input", "output")]
+    if owner == "base":
+        called = [key for key in (*_BASE_VARIABLES, *known) if key in names]
+    else:
+        called = [key for key in names if key not in own or (key in NAMES and is_own(key, type_))]
+    shapes = [
+        (key, row.shape)
+        for key, row in ((key, schema.VARIABLES.get(key)) for key in names)
+        if row is not None and (key in own or _is_field(key, owner, type_))
+    ]
+    return FieldTable(
+        others=any(key not in own and key not in known for key in names),
+        shapes=tuple(row for row in shapes if row[0] not in _READ_ELSEWHERE),
+        missing=tuple(key for key in required if key not in names),
+        variables=tuple((key, known.get(key)) for key in called),
+        lists=tuple(key for key, each in keys if each.type == ANY),
+        listed=tuple((f"{each.keys}_keys", key) for key, each in keys),
+        unquoted=tuple((key, each) for key, each in given if each.unquoted or each.role == "qos"),
+    )
+
+
 def read_fields(
     name: Word,
     entries: Entries,
     owner: FieldOwner,
     type_: StateType,
+    table: FieldTable,
     report: Report,
     *,
     scope: Scope,
@@ -94,10 +137,15 @@ def read_fields(
 ) -> dict[str, Any]:
     """The fields of a state, as arguments of State.
 
-    `scope` are the params in its scope; `inner` is its name in the sub-script, if it is called.
+    `table` is that of the names of `entries`. `scope` are the params in its scope; `inner` is its
+    name in the sub-script, if it is called.
     """
     before = len(report)
-    read, rejected = _known_fields(entries, owner, type_, report)
+    rejected: set[str | None] = set()
+    if table.others:
+        read, rejected = _known_fields(entries, owner, type_, report)
+    else:
+        read = _fields_of_schema(table, entries, owner, report)
     if len(report) > before and "transitions" in read:
         read["transitions"] = _meant_booleans(read["transitions"], type_, report, before)
     if owner != "base" or read.get("name") is None or is_known_wrong(entries["name"].value):
@@ -113,17 +161,19 @@ def read_fields(
         read["outcomes"] = outcomes_used(entries)
     if owner == "state" and not type_.open:
         check_interface(read, type_, report)
-    if type_.variables:
-        _check_lists(entries, type_, report)
-        for part, keys in _listed_keys(entries, type_):
-            read[part] = (*read.get(part, ()), *keys)
-    examples = {}
-    if "outcomes" not in entries and read.get("outcomes"):
-        examples["outcomes"] = f"[{', '.join(each.name for each in read['outcomes'])}]"
-    _check_required(read["name"], entries, owner, type_, rejected, inner, examples, report)
-    read["variables"] = tuple(_variables(entries, owner, type_))
-    if owner == "base" or type_.variables:
-        _check_unquoted(entries, owner, type_, report)
+    for key in table.lists:
+        _check_list(entries[key].value, report)
+    for part, key in table.listed:
+        read[part] = (*read.get(part, ()), *listed_keys(entries[key].value))
+    missing = [key for key in table.missing if key not in rejected]
+    if missing:
+        _report_missing(missing, entries, owner, type_, read, inner, report)
+    if table.variables:
+        read["variables"] = tuple(_variables(table, entries, owner, type_))
+    if owner == "base" and "function_name" in entries:
+        check_unquoted(entries["function_name"].value, "name", report)
+    for key, variable in table.unquoted:
+        _check_unquoted(entries[key].value, variable, report)
     if type_.prints_itself:
         read["written"] = tuple(_written(read["name"], entries, scope))
     return read
@@ -178,15 +228,7 @@ def with_meant_fields(
     other = next((entries[key] for key in unknown if key in TEMPLATE_WORDS), None)
     if other is not None and owner != "base":
         meant["template"] = other
-    if owner == "state" and "default_outcome" in type_.variables:
-        default = [key for key in unknown if "default" in key.split("_")]
-        if len(default) == 1 and isinstance(entries[default[0]].value, Scalar):
-            meant.setdefault("default_outcome", entries[default[0]])
-    found = {name: entry for name, entry in meant.items() if name is not None}
-    if "child_termination_cb" in unknown and ends_with_any(entries, owner):
-        given = entries["child_termination_cb"]  # the help of its finding is `join: any`
-        found["join"] = Entry(given.key, Scalar("any", True, given.key.span.source, 0, 0))
-    return found | entries
+    return {name: entry for name, entry in meant.items() if name is not None} | entries
 
 
 def params_meant(entries: Entries) -> Entry | None:
@@ -246,7 +288,7 @@ def _known_fields(
                 words = [*schema.names_for(owner), *type_.used]
                 word = Word(str(entry.key.value), entry.key.span)
                 template = Owner(type_.name, f"`{type_.name}`")
-                report.append(unknown_variable(word, template, words, anything=True))
+                report.append(unused_variable(word, template, words))
         else:
             known = schema.names_for(owner)
             word = Word(str(entry.key.value), entry.key.span)
@@ -258,22 +300,16 @@ def _known_fields(
             own = [*type_.variables]
             also = [name for name, each in entries.items() if each is entry and name != key]
             sure = also[0] if also else None
+            as_key = _as_key(word, entry, entries, type_)
+            help = f"`{word.text}` is an input key: {as_key}" if as_key is not None else None
             target = name_of(entry.value) if key in _outcomes(entries, type_) else None
             if target is not None:
                 strays.append((word, target))
-            as_key = _as_key(word, entry, entries, type_)
-            stray = target is not None
-            certain = paired_help(word.text, sure, [*known, *own])
-            fitting = fitting_fields(entry.value, [*known, *own], entries, type_)
-            if sure is None and len(fitting) == 1 and not own:
-                certain = f"did you mean `{fitting[0]}`?"
+                help = f"`{word.text}` is an outcome: write its transition inside `transitions:`"
             needed = sure if sure is not None and _is_required(sure, owner, type_) else None
-            report.append(
-                unknown_variable(
-                    word, whose, known, own=own, meant=sure, outcome=stray, key=as_key,
-                    certain=certain, fitting=fitting, required=needed,
-                )
-            )  # fmt: skip
+            free = [name for name in (*known, *own) if name not in entries]
+            choice = Choice(likely=sure, required=needed, own=own, free=free)
+            report.append(unknown_variable(word, whose, known, choice, help=help))
             if as_key is not None:
                 read["misplaced_keys"] = (*read.get("misplaced_keys", ()), word.text)
             meant.add(guesser_of((*dict.fromkeys((*known, *own)),))(word.text))
@@ -282,6 +318,18 @@ def _known_fields(
     if strays:
         read["transitions"] = (*read.get("transitions", ()), *strays)
     return read, meant
+
+
+def _fields_of_schema(
+    table: FieldTable, entries: Entries, owner: FieldOwner, report: Report
+) -> dict[str, Any]:
+    """The fields of the schema, read, of a state without unknown fields."""
+    read: dict[str, Any] = {}
+    for key, shape in table.shapes:
+        value = _read(key, shape, entries[key], report)
+        if key in _FIELDS and (key != "name" or owner == "base"):
+            read[key] = value
+    return read
 
 
 def _is_required(key: str, owner: FieldOwner, type_: StateType) -> bool:
@@ -376,42 +424,38 @@ def _outcomes(entries: Entries, type_: StateType) -> set[str]:
     return {each.name for each in (*type_.outcomes, *given)}
 
 
-def _check_required(
-    name: Word,
+def _report_missing(
+    missing: Sequence[str],
     entries: Entries,
     owner: FieldOwner,
     type_: StateType,
-    meant: set[str | None],
+    read: Mapping[str, Any],
     inner: Word | None,
-    examples: Mapping[str, str],
     report: Report,
 ) -> None:
-    """Required fields that are missing; not those for which a misspelt one was found. `examples`
-    are their values where the script shows them."""
-    required = [*schema.REQUIRED[owner]]
-    if type_.variables:
-        required += [key for key, variable in type_.variables.items() if variable.required]
-    for key in required:
-        if key not in entries and key not in meant:
-            whose = _owner_of(owner, type_, of_type=key in type_.variables)
-            related: tuple[Related, ...] = ()
-            place = name.span
-            if inner is not None and key in schema.REQUIRED[owner]:
-                place = inner.span  # one finding for all calls
-                related = (Related(span=name.span, message="in the sub-script called here"),)
-            elif inner is not None:
-                related = (Related(span=inner.span, message="the sub-script does not set it"),)
-            variable = type_.variables.get(key)
-            example = examples.get(key, "")
-            if variable is not None:
-                example = _example(variable)
-            params = entries.get("params")
-            entry = params.value.get(key) if params and isinstance(params.value, Map) else None
-            inside = entry.key.span if entry is not None else None
-            help = _with_type(key, variable)
-            report.append(
-                missing_variable(place, key, whose, related, example, help=help, in_params=inside)
-            )
+    """Reports the required fields that are missing (SM005). `read` are the fields that were
+    read."""
+    name: Word = read["name"]
+    for key in missing:
+        whose = _owner_of(owner, type_, of_type=key in type_.variables)
+        related: tuple[Related, ...] = ()
+        place = name.span
+        if inner is not None and key in schema.REQUIRED[owner]:
+            place = inner.span  # one finding for all calls
+            related = (Related(span=name.span, message="in the sub-script called here"),)
+        elif inner is not None:
+            related = (Related(span=inner.span, message="the sub-script does not set it"),)
+        variable = type_.variables.get(key)
+        example = _example(variable) if variable is not None else ""
+        if key == "outcomes" and read.get(key):
+            example = f"[{', '.join(each.name for each in read[key])}]"
+        params = entries.get("params")
+        entry = params.value.get(key) if params and isinstance(params.value, Map) else None
+        help = _with_type(key, variable)
+        if entry is not None:
+            place = entry.key.span
+            help = f"write `{key}:` beside `params:`; `params` has only constants for look-ups"
+        report.append(missing_variable(place, key, whose, related, example, help=help))
 
 
 TYPE_EXAMPLES = {
@@ -460,35 +504,21 @@ def _example(variable: VariableType) -> str:
     return shown if inside else "..."
 
 
-def _check_lists(entries: Entries, type_: StateType, report: Report) -> None:
+def _check_list(value: Tree, report: Report) -> None:
     """Reports one name in place of a list of keys: a program reads its letters as the keys."""
-    for name, variable in type_.variables.items():
-        is_list = variable.keys in ("input", "output") and variable.type == ANY
-        value = entries[name].value if is_list and name in entries else None
-        if isinstance(value, Scalar) and isinstance(value.value, str) and is_plain(value.value):
-            wrong(value, "keys", report)
+    if isinstance(value, Scalar) and isinstance(value.value, str) and is_plain(value.value):
+        wrong(value, "keys", report)
 
 
-def _listed_keys(entries: Entries, type_: StateType) -> Iterator[tuple[str, Keys]]:
-    """The keys that variables of a state type list, each with the field that they add to."""
-    for name, variable in type_.variables.items():
-        if variable.keys in ("input", "output") and name in entries:
-            yield f"{variable.keys}_keys", listed_keys(entries[name].value)
-
-
-def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterator[Variable]:
+def _variables(
+    table: FieldTable, entries: Entries, owner: FieldOwner, type_: StateType
+) -> Iterator[Variable]:
     """The variables of the state type that a script sets: all fields that are not the owner's."""
-    own: Collection[str] = () if owner == "base" else schema.OWN_FIELDS[owner]
-    for name in (*_BASE_VARIABLES, *type_.variables) if owner == "base" else entries:
-        if name in own and not (name in NAMES and is_own(name, type_)):
-            continue
-        entry, row = entries.get(name), schema.VARIABLES.get(name)
-        if entry is None:
-            continue
+    for name, known in table.variables:
+        entry, row = entries[name], schema.VARIABLES.get(name)
         named = row is not None and row.shape == "name" and _is_field(name, owner, type_)
         if named and not isinstance(entry.value, Scalar):
             continue  # reported
-        known = type_.variables.get(name)
         role = known.role if known is not None else ""
         called = name == "callbacks" or role in ("callbacks", "conditions")
         value = as_value(entry.value, code=called)
@@ -505,15 +535,12 @@ def _variables(entries: Entries, owner: FieldOwner, type_: StateType) -> Iterato
         )
 
 
-def _check_unquoted(entries: Entries, owner: FieldOwner, type_: StateType, report: Report) -> None:
-    """The shapes of the variables that programs contain without quotes."""
-    if owner == "base" and "function_name" in entries:
-        check_unquoted(entries["function_name"].value, "name", report)
-    for name, variable in type_.variables.items():
-        if variable.unquoted and name in entries:
-            check_unquoted(entries[name].value, variable.unquoted, report)
-        if variable.role == "qos" and name in entries:
-            _check_qos(entries[name].value, report)
+def _check_unquoted(value: Tree, variable: VariableType, report: Report) -> None:
+    """The shape of a variable that programs contain without quotes."""
+    if variable.unquoted:
+        check_unquoted(value, variable.unquoted, report)
+    if variable.role == "qos":
+        _check_qos(value, report)
 
 
 def _check_qos(tree: Tree, report: Report) -> None:

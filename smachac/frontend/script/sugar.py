@@ -15,7 +15,13 @@ from smachac.diagnostics.diagnostic import Related, Report, did_you_mean
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser
 from smachac.diagnostics.wording import both, either, listed
-from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable, wrong_shape
+from smachac.frontend.errors.script import (
+    Choice,
+    Owner,
+    missing_variable,
+    unknown_variable,
+    wrong_shape,
+)
 from smachac.frontend.resolved_script import (
     ERROR,
     EXHAUSTED,
@@ -25,7 +31,6 @@ from smachac.frontend.resolved_script import (
     Sugar,
     Timeout,
 )
-from smachac.frontend.text.field_shapes import paired_help
 from smachac.frontend.text.fields import as_items, as_name, as_names, pairs_of, wrong
 from smachac.frontend.text.values import UNKNOWN
 from smachac.frontend.text.yaml_tree import Entry, Map, Scalar, Seq, Tree, is_known_wrong
@@ -125,7 +130,7 @@ def _move_limit(fields: dict[str, Entry], report: Report) -> None:
         limit = inside[0]
         owner = Owner(name, f"`{name}`", "part")
         help = f"write `timeout: {limit.value.span.text}` beside `{name}`"
-        report.append(unknown_variable(Word("timeout", limit.key.span), owner, (), certain=help))
+        report.append(unknown_variable(Word("timeout", limit.key.span), owner, (), help=help))
         rest = tuple(each for each in inner if each is not limit)
         fields |= {name: replace(entry, value=Map(rest, entry.value.span)), "timeout": limit}
 
@@ -345,15 +350,16 @@ def _parts(
         others = tuple(name for name in known if name not in written)
         meant = _part_meant(word.text, others)
         if meant is None and paired:
-            help = paired_help(word.text, paired, ())
-            report.append(unknown_variable(word, owner, others, certain=help, required=paired))
+            report.append(
+                unknown_variable(word, owner, others, Choice(likely=paired, required=paired))
+            )
             parts[paired] = each.value
             continue
         if meant is None:
             report.append(unknown_variable(word, owner, others))
             continue
         lost = meant if meant in required and meant not in written else None
-        found.append(unknown_variable(word, owner, known, meant=meant, required=lost))
+        found.append(unknown_variable(word, owner, known, Choice(meant=meant, required=lost)))
         parts.setdefault(meant, each.value)
     report += _as_one(entry, found, required)
     for name, example in required.items():

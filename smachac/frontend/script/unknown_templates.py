@@ -6,15 +6,16 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from smachac.diagnostics.diagnostic import Diagnostic, Related, Report
+from smachac.diagnostics.diagnostic import Diagnostic, Related
+from smachac.diagnostics.repair import Edit
 from smachac.diagnostics.source import Span, Word
-from smachac.diagnostics.spelling import guesser_of, words_of
-from smachac.diagnostics.wording import either, listed
+from smachac.diagnostics.spelling import guesser_of, respelt, words_of
+from smachac.diagnostics.wording import both, either, listed
 from smachac.frontend import schema
 from smachac.frontend.errors.references import template_not_found
-from smachac.frontend.errors.script import Owner, missing_variable, unknown_variable
-from smachac.frontend.script.state_fields import FIELDS_OF_STATES, TEMPLATE_WORDS, accepts
-from smachac.frontend.text.fields import name_of, pairs_of
+from smachac.frontend.errors.script import Owner, missing_variable
+from smachac.frontend.script.state_fields import FIELDS_OF_STATES, TEMPLATE_WORDS
+from smachac.frontend.text.fields import pairs_of
 from smachac.frontend.text.yaml_tree import Entry
 from smachac.ir.nodes import StateType
 
@@ -94,49 +95,15 @@ def unknown_template(
     """SM013 for a template that was not found: with the type that is meant by its name or by the
     `entries` of the state."""
     folders, types, known, scripts, other = searched
-    fitting: tuple[str, ...] = ()
-    used: tuple[str, ...] = ()
-    foreign = ""
-    is_script = word.text in scripts
-    if not (other or is_script) and guesser_of(tuple(known)).sure(word.text) is None:
-        foreign = type_of_other_framework(word.text, entries, types, find) if entries else ""
+    help = ""
+    if word.text in scripts:
+        help = f"`{word.text}` is a sub-script: write `script: {word.text}`"
+    elif not other and guesser_of(tuple(known)).sure(word.text) is None:
+        help = type_of_other_framework(word.text, entries, types, find) if entries else ""
         fitting, used = types_with_the_names(entries, word.text, types, find)
-    return template_not_found(word, folders, known, other, fitting, used, foreign, script=is_script)
-
-
-def with_meant_call(name: Word, own: dict[str, Entry], report: Report) -> dict[str, Entry]:
-    """The fields of a state with neither `template` nor `script`, in which a misspelt `script` is
-    corrected, which is reported (SM003)."""
-    if "template" in own or "script" in own:
-        return own
-    sure = guesser_of(("script", "template")).sure
-    for key, entry in own.items():
-        if key not in schema.VARIABLES and sure(key) == "script" and name_of(entry.value):
-            owner = Owner(name.text, f"`{name.text}`")
-            word = Word(str(entry.key.value), entry.key.span)
-            report.append(unknown_variable(word, owner, ["script"], meant="script"))
-            return {("script" if each == key else each): own[each] for each in own}
-    return own
-
-
-def meant_template(
-    entries: Mapping[str, Entry], find: Callable[[str], StateType | None]
-) -> Entry | None:
-    """The field with another name that is meant for `template`, if it names a type that does not
-    have the field: then the name is reported as unknown."""
-    sure = guesser_of(FIELDS_OF_STATES).sure
-    for key, entry in entries.items():
-        if key in schema.VARIABLES or not (key in TEMPLATE_WORDS or sure(key) == "template"):
-            continue
-        word = name_of(entry.value)
-        if word is None or not word.text:
-            continue
-        if word.text in schema.CONTAINERS:
-            return entry
-        found = find(word.text)
-        if found is not None and not found.open and not accepts(found, key):
-            return entry
-    return None
+        if fitting and not help:
+            help = f"did you mean {either(fitting)}, with {both(used)}?"
+    return template_not_found(word, folders, known, other, help)
 
 
 def missing_template_help(
@@ -178,9 +145,17 @@ def missing_template(
     """SM005 for a state without a template. `calls` are those of sub-scripts that lead to it."""
     related = tuple(Related(span=each, message=CALLED_HERE) for each in calls)
     owner = Owner(state.text, f"`{state.text}`")
-    others = [entries[key] for key in entries if key in TEMPLATE_WORDS]
-    instead = Word(str(others[0].key.value), others[0].key.span) if others else None
-    return missing_variable(state.span, "template", owner, related, help=help, instead=instead)
+    place, help = state.span, f"{help or 'add `template: TYPE`'}; `smachac states` lists the types"
+    edits: tuple[Edit, ...] = ()
+    sure = guesser_of((*FIELDS_OF_STATES, "script")).sure
+    for key, entry in entries.items():
+        near = sure(key) if key not in schema.VARIABLES else None
+        meant = "template" if key in TEMPLATE_WORDS else near
+        if meant in ("template", "script"):
+            place, help = entry.key.span, f"write `{meant}:` in place of `{entry.key.value}:`"
+            edits = respelt(Word(str(entry.key.value), place), near)
+            break
+    return missing_variable(place, "template", owner, related, help=help, edits=edits)
 
 
 def _has(type_: StateType, used: Iterable[str], ends: Iterable[str]) -> bool:

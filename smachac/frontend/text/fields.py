@@ -168,9 +168,7 @@ def _arrows(tree: Tree) -> tuple[Entry, ...]:
             Scalar(
                 found[group],
                 True,
-                tree.source,
-                start + found.start(group),
-                start + found.end(group),
+                *Span(tree.source, start + found.start(group), start + found.end(group)),
             )
             for group in (1, 2)
         )
@@ -219,7 +217,7 @@ def as_name(tree: Tree, report: Report) -> Word | None:
         text = name_text(tree, report)
     if text is None:
         return None
-    return new_tuple(Word, (text, new_tuple(Span, (tree.source, tree.start, tree.end))))
+    return new_tuple(Word, (text, new_tuple(Span, (tree.piece, tree.first, tree.last))))
 
 
 def expanded(entries: Iterable[Entry], report: Report) -> dict[str, Entry]:
@@ -392,6 +390,13 @@ def as_pairs(tree: Tree, report: Report) -> Pairs:
             target = as_name(entry.value, report) or _only_name(entry.value)
             pairs.append((key, target or Word("", key.span)))
     return tuple(pairs)
+
+
+def usual_name(tree: Tree) -> str | None:
+    """The text of a scalar for which `as_name` reports nothing; None for other trees, also for some
+    names, such as a number."""
+    text = tree.value if isinstance(tree, Scalar) else None
+    return text if isinstance(text, str) and text not in YAML_1_1_BOOLEANS else None
 
 
 def pairs_of(tree: Tree) -> Pairs:

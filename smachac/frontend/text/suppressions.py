@@ -60,12 +60,21 @@ def suppressions_in(
         if before and comment.start() < hidden[before - 1][1]:
             continue
         span = Span(source, comment.start(), comment.start() + len(comment.group().rstrip()))
+        if source.name.endswith(".py") and _is_about_a_state(comment["verb"]):
+            continue
         if comment["verb"] != "allow":
             word = Word(comment["verb"], Span(source, *comment.span("verb")))
             report.append(bad_comment(word))
             continue
         found += _codes(source, comment, span, applied, report, codes)
     return found
+
+
+def _is_about_a_state(verb: str) -> bool:
+    """Whether a comment in Python describes a state, and allows nothing."""
+    from smachac.pysource.machines.state_comments import VERBS
+
+    return verb in VERBS
 
 
 def _scalars(source: Source, parse: Parser) -> list[tuple[int, int]]:

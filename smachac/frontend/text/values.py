@@ -32,7 +32,7 @@ def _look_ups(tree: Tree) -> tuple[LookUp, ...]:
 
 
 def _inner_look_ups(tree: Seq | Map, path: tuple[str | int, ...]) -> Iterator[LookUp]:
-    source, start, end = tree.span
+    source, start, end = tree.span.source, tree.span.start, tree.span.end
     for at, item in (
         enumerate(tree.items)
         if isinstance(tree, Seq)

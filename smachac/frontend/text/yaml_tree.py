@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import gc
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 from smachac.diagnostics.diagnostic import Diagnostic, Report
 from smachac.diagnostics.repair import Edit
-from smachac.diagnostics.source import Source, Span, Word, new_tuple
+from smachac.diagnostics.source import Piece, Source, Span, Word, new_tuple
 from smachac.frontend.errors.script import duplicate_key, too_big, wrong_shape, yaml_syntax
 from smachac.frontend.text.yaml_errors import (
     JOINED,
@@ -52,14 +52,26 @@ class Scalar:
 
     value: bool | int | float | str | None
     plain: bool
-    source: Source = field(compare=False, repr=False)
-    start: int = field(compare=False)
-    end: int = field(compare=False)
+    piece: Piece = field(compare=False, repr=False)
+    first: int = field(compare=False)
+    last: int = field(compare=False)
 
     @property
     def span(self) -> Span:
         """The place of the value, made when it is needed: a long list has millions of values."""
-        return new_tuple(Span, (self.source, self.start, self.end))
+        return new_tuple(Span, (self.piece, self.first, self.last))
+
+    @property
+    def source(self) -> Source:
+        return self.piece.source
+
+    @property
+    def start(self) -> int:
+        return self.piece.begin + self.first
+
+    @property
+    def end(self) -> int:
+        return self.piece.begin + self.last
 
 
 @dataclass(slots=True, unsafe_hash=True)
@@ -150,6 +162,25 @@ def parse(
     limits that are exceeded (SM006). With `mended`, the tree is that of the repaired text, with
     places in the source.
     """
+    if not fits_limits(source, report):
+        return None
+    builder = _Builder(source, source.pieces[0], report)
+    if mended is None:
+        return _build(builder, events(source.text), doubts)
+    return _build(builder, _moved_back(events(mended.text), mended), doubts)
+
+
+def parse_piece(
+    source: Source, piece: Piece, text: str, report: Report, doubts: Doubts
+) -> Tree | None:
+    """The tree of a piece of a source, which has this text, with places in the piece."""
+    builder = _Builder(source, piece, report)
+    builder.most_levels -= 1  # the mapping around the list of states
+    return _build(builder, events(text), doubts)
+
+
+def fits_limits(source: Source, report: Report) -> bool:
+    """Whether a text is not too long, and has only characters of YAML; if not, that is reported."""
     if len(source.text) >= MAX_CHARACTERS:
         span = Span(source, 0, 0)
         report.append(
@@ -161,7 +192,7 @@ def parse(
                 arguments=("characters",),
             )
         )
-        return None
+        return False
     bad = _unprintable(source.text)
     if bad is not None:
         span = Span(source, bad.start(), bad.end())
@@ -173,8 +204,7 @@ def parse(
                 arguments=("character", f"U+{ord(bad.group()):04X}"),
             )
         )
-        return None
-    return _build(source, report, doubts, mended)
+    return bad is None
 
 
 # The characters that are not printable: YAML 1.2.2, section 5.1.
@@ -249,17 +279,15 @@ def _moved_back(events: Iterator[Any], mended: Mended) -> Iterator[Any]:
         yield event
 
 
-def _build(
-    source: Source, report: Report, doubts: Doubts | None = None, mended: Mended | None = None
-) -> Tree | None:
+def _build(builder: _Builder, found: Iterable[Any], doubts: Doubts | None) -> Tree | None:
+    """The tree of the events of a text."""
     from yaml import MarkedYAMLError
 
-    builder = _Builder(source, report)
-    found = events(source.text if mended is None else mended.text)
+    source, report = builder.source, builder.report
     collecting = gc.isenabled()
     gc.disable()  # or it runs many times over the growing tree
     try:
-        builder.drive(found if mended is None else _moved_back(found, mended))
+        builder.drive(found)
     except MarkedYAMLError as error:
         builder.items = []
         deep = too_deep_at(error)
@@ -302,7 +330,7 @@ def _jinja_look_up(items: list[Tree], span: Span, report: Report) -> Seq | None:
     name = str(key.value).removeprefix("params.")
     if not key.plain or not name.isidentifier():
         return None
-    word = Scalar(name, True, key.source, key.end - len(name), key.end)
+    word = Scalar(name, True, *Span(key.source, key.end - len(name), key.end))
     message, written = "`{{ }}` is for templates, not for scripts", word.span.text
     help = f"a param is looked up with `[params, {written}]`"
     report.append(wrong_shape(span, message, help, arguments=("braces", written)))
@@ -348,74 +376,95 @@ def _is_empty(tree: Tree) -> bool:
 class _Builder:
     """Builds one tree from events, with a stack in place of recursion."""
 
-    def __init__(self, source: Source, report: Report) -> None:
+    def __init__(self, source: Source, piece: Piece, report: Report) -> None:
         self.source = source
+        self.piece = piece
         self.report = report
+        self.most_levels = MAX_DEPTH
         self.stack: list[_Open] = []
         self.items: list[Tree] = []
-        self.nodes = 0
         self.anchors: dict[str, tuple[Tree, int]] = {}
         self.doubtful: list[int] = []
         self.misplaced: list[int] = []
         self.aliased = 0
-        self.end = 0
         self.most = min(MAX_NODES, MAX_SMALL_NODES + len(source.text) // CHARACTERS_OF_A_NODE)
 
     def drive(self, events: Iterable[Any]) -> None:
-        """Builds the tree. Scalars, which are most events, are read here, without calls."""
+        """Builds the tree, in one loop: a long script has hundreds of thousands of events."""
         from yaml import events as kinds
 
-        steps: dict[type, Callable[[Any], None]] = {
-            kinds.MappingStartEvent: self._open,
-            kinds.SequenceStartEvent: self._open,
-            kinds.MappingEndEvent: self._close_mapping,
-            kinds.SequenceEndEvent: self._close_list,
-            kinds.AliasEvent: self._alias,
-        }
-        scalar, source = kinds.ScalarEvent, self.source
+        scalar, alias = kinds.ScalarEvent, kinds.AliasEvent
+        mapping_start, mapping_end = kinds.MappingStartEvent, kinds.MappingEndEvent
+        list_start, list_end = kinds.SequenceStartEvent, kinds.SequenceEndEvent
+        piece, stack, most = self.piece, self.stack, self.most
+        items = self.items
+        known: dict[str, str] = {}  # most texts are there many times: fields, templates, outcomes
+        nodes = last = 0  # the number of nodes, and the end of the last one
         for event in events:
-            kind = type(event)
-            if kind is not scalar:
-                step = steps.get(kind)
-                if step is not None:
-                    step(event)
-                elif self._is_second(event):
-                    break
-                continue
-            text: str = event.value
-            start, end = event.start_mark.index, event.end_mark.index
-            plain = not event.style
-            if not text and plain and start == end:  # positions of nothing differ between parsers
-                start = end = self.end
-            self.end = end
-            value: bool | int | float | str | None = text
-            if event.tag is not None:
-                value = self._tagged(event)
-            elif plain and (not text.isidentifier() or text in WORDS):  # most texts are names
-                value = value_of(text)
-                if " " in text or text[-1:] in _LAST_SIGNS:
-                    self._doubt(text, start)
-            node = Scalar(value, plain, source, start, end)
-            self.items.append(node)
-            self.nodes += 1
-            if self.nodes > self.most:
-                self._too_many(start)
-            if event.anchor is not None:
-                self._check_anchor(event)
-                self.anchors[event.anchor] = (node, 1)
+            kind = event.__class__
+            if kind is scalar:
+                text: str = event.value
+                text = known.setdefault(text, text)
+                start, end = event.start_mark.index, event.end_mark.index
+                plain = not event.style
+                value: bool | int | float | str | None = text
+                if event.tag is not None:
+                    value = self._tagged(event)
+                elif plain and (not text.isidentifier() or text in WORDS):  # most are names
+                    value = value_of(text)
+                    if " " in text or text[-1:] in _LAST_SIGNS:
+                        self._doubt(text, start)
+                if start == end and plain:  # positions of nothing differ between parsers
+                    start = end = last
+                last = end
+                node: Tree = Scalar(value, plain, piece, start, end)
+                nodes += 1
+                items.append(node)
+                if nodes > most:
+                    self._too_many(start)
+                if event.anchor is not None:
+                    self._check_anchor(event)
+                    self.anchors[event.anchor] = (node, 1)
+            elif kind is mapping_end or kind is list_end:
+                inside = items
+                items, before, flow, start, anchor = stack.pop()
+                if flow:
+                    last = event.end_mark.index
+                span = new_tuple(Span, (piece, start, last))
+                if kind is list_end:
+                    node = Seq(tuple(inside), span)
+                else:
+                    node = self._mapping(inside, span, flow)
+                items.append(node)
+                if anchor is not None:
+                    self.anchors[anchor] = (node, nodes - before)
+            elif kind is mapping_start or kind is list_start:
+                start, last = event.start_mark.index, event.end_mark.index
+                self._check_opening(event)
+                stack.append((items, nodes, event.flow_style, start, event.anchor))
+                items = []
+                nodes += 1
+                if nodes > most:
+                    self._too_many(start)
+            elif kind is alias:
+                last = event.end_mark.index
+                node, size = self._meant(event)
+                items.append(node)
+                nodes += size
+                if nodes > most:
+                    self._too_many(event.start_mark.index)
+            elif items and kind is kinds.DocumentStartEvent:
+                self._refuse_second(event)
+                items = []  # what the rest of the text defines would be reported as missing
+                break
+        self.items = items
 
-    def _is_second(self, event: Any) -> bool:
-        """Whether a second document begins, which is reported."""
-        from yaml import events as kinds
-
-        if not self.items or type(event) is not kinds.DocumentStartEvent:
-            return False
+    def _refuse_second(self, event: Any) -> None:
+        """Reports a second document."""
         span = Span(self.source, event.start_mark.index, event.end_mark.index)
         message = "a second YAML document begins here"
         help = "remove the `---`: a script is one document"
         self.report.append(wrong_shape(span, message, help, arguments=("document",)))
-        self.items = []  # what the rest of the text defines would be reported as missing
-        return True
 
     def _doubt(self, text: str, start: int) -> None:
         """Notes a text without quotes that is probably two, or a part of one: `done READY`."""
@@ -475,52 +524,28 @@ class _Builder:
             )
         )
 
-    def _open(self, event: Any) -> None:
-        start = event.start_mark.index
+    def _check_opening(self, event: Any) -> None:
+        """Reports what is wrong with the tag, the depth or the anchor of a list or a mapping."""
         if event.tag is not None:
             self._check_tag(event)
-        depth = len(self.stack)
-        if depth >= MAX_DEPTH:
-            self.report.append(_too_deep(self.source, start))
+        if len(self.stack) >= self.most_levels:
+            self.report.append(_too_deep(self.source, event.start_mark.index))
             raise _BeyondLimitError
         if event.anchor is not None:
             self._check_anchor(event)
-        self.stack.append((self.items, self.nodes, event.flow_style, start, event.anchor))
-        self.items = []
-        self.end = event.end_mark.index
-        self.nodes += 1
-        if self.nodes > self.most:
-            self._too_many(start)
 
-    def _close_mapping(self, event: Any) -> None:
-        items = self.items
-        self.items, before, flow, start, anchor = self.stack.pop()
-        if flow:
-            self.end = event.end_mark.index
-        span = new_tuple(Span, (self.source, start, self.end))
-        node: Seq | Map | None = None
-        if flow and items and isinstance(items[0], Map):
-            node = _jinja_look_up(items, span, self.report)
-        if node is None:
-            node = Map(self._entries(items, flow), span)
-        self.items.append(node)
-        if anchor is not None:
-            self.anchors[anchor] = (node, self.nodes - before)
+    def _mapping(self, items: list[Tree], span: Span, flow: bool) -> Seq | Map:
+        """The mapping of keys and values in turn; a look-up in the form of Jinja is a list."""
+        if flow and items and items[0].__class__ is Map:
+            look_up = _jinja_look_up(items, span, self.report)
+            if look_up is not None:
+                return look_up
+        return Map(self._entries(items, flow), span)
 
-    def _close_list(self, event: Any) -> None:
-        items = self.items
-        self.items, before, flow, start, anchor = self.stack.pop()
-        if flow:
-            self.end = event.end_mark.index
-        node = Seq(tuple(items), new_tuple(Span, (self.source, start, self.end)))
-        self.items.append(node)
-        if anchor is not None:
-            self.anchors[anchor] = (node, self.nodes - before)
-
-    def _alias(self, event: Any) -> None:
-        self.end = event.end_mark.index
+    def _meant(self, event: Any) -> tuple[Tree, int]:
+        """The node that an alias stands for, and the number of nodes in it."""
         self._check_anchor(event)
-        span = Span(self.source, event.start_mark.index, self.end)
+        span = Span(self.source, event.start_mark.index, event.end_mark.index)
         known = self.anchors.get(event.anchor)
         if known is None:
             name = event.anchor
@@ -536,10 +561,7 @@ class _Builder:
             self._stop(
                 span.start, message, "use fewer aliases, or aliases of shorter lists", "aliases"
             )
-        self.items.append(node)
-        self.nodes += size
-        if self.nodes > self.most:
-            self._too_many(span.start)
+        return node, size
 
     def _too_many(self, at: int) -> None:
         self._stop(
@@ -643,8 +665,8 @@ class _Builder:
             self.report.append(wrong)
         name, _, rest = text.partition(":")
         return (
-            Scalar(value_of(name), True, self.source, key.start, colon),
-            Scalar(value_of(rest), True, self.source, colon + 1, key.end),
+            Scalar(value_of(name), True, *Span(self.source, key.start, colon)),
+            Scalar(value_of(rest), True, *Span(self.source, colon + 1, key.end)),
         )
 
     def _merge(self, value: Tree) -> Iterator[Entry]:

@@ -8,7 +8,7 @@ from smachac.diagnostics.diagnostic import Report
 from smachac.diagnostics.meanings import of_same_meaning
 from smachac.diagnostics.source import Word
 from smachac.diagnostics.spelling import guesser_of
-from smachac.frontend.errors.script import Owner, unknown_variable
+from smachac.frontend.errors.script import Choice, Owner, unknown_variable
 from smachac.frontend.schema import INTERFACE_FIELDS
 from smachac.frontend.text.fields import as_map
 from smachac.frontend.text.yaml_tree import Map, Tree
@@ -54,7 +54,7 @@ def interface_fields(tree: Map, report: Report) -> dict[str, Tree]:
         word = Word(key, entry.key.span)
         report.append(
             unknown_variable(
-                word, owner, INTERFACE_FIELDS, meant=one, fitting=missing, proposed=proposed
+                word, owner, INTERFACE_FIELDS, Choice(meant=one, free=missing, proposed=proposed)
             )
         )
     return meant | fields

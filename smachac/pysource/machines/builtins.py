@@ -215,6 +215,27 @@ def _isinstance(evaluator: Interpreter, arguments: Arguments, span: Span | None)
     return UNKNOWN
 
 
+def _type(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    match arguments.positional:
+        case (Const(value=known),) if known is not None:
+            return LibraryClass(f"builtins.{type(known).__name__}")
+        case (ListValue(kind=kind),):
+            return LibraryClass(f"builtins.{kind}")
+        case (TupleValue(),):
+            return LibraryClass("builtins.tuple")
+        case (DictValue(),):
+            return LibraryClass("builtins.dict")
+        case (Instance(cls=cls),):
+            return cls
+    return UNKNOWN
+
+
+def _hasattr(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    """True if the attribute is known; else not known."""
+    found = _getattr(evaluator, arguments, span)
+    return UNKNOWN if isinstance(found, Unknown | OneOf) else Const(True)
+
+
 def _map(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
     if len(arguments.positional) != 2:
         return UNKNOWN
@@ -246,8 +267,8 @@ BUILTINS: Mapping[str, Value] = {
         "isinstance": _isinstance, "map": _map, "print": _nothing, "iter": lambda e, a, s: (
             a.positional[0] if a.positional else UNKNOWN),
         "abs": _unknown, "min": _unknown, "max": _unknown, "sum": _unknown, "input": _unknown,
-        "repr": _unknown, "format": _unknown, "hasattr": _unknown, "any": _unknown, "all": _unknown,
-        "id": _unknown, "hash": _unknown, "type": _unknown, "open": _unknown, "next": _unknown,
+        "repr": _unknown, "format": _unknown, "hasattr": _hasattr, "any": _unknown, "all": _unknown,
+        "id": _unknown, "hash": _unknown, "type": _type, "open": _unknown, "next": _unknown,
         "callable": _unknown, "issubclass": _unknown, "round": _unknown, "vars": _unknown,
         "filter": _unknown, "chr": _unknown, "ord": _unknown, "dir": _unknown, "divmod": _unknown,
         "pow": _unknown, "eval": _unknown, "globals": _unknown, "locals": _unknown,

@@ -20,6 +20,7 @@ from smachac.pysource.machines.values import (
     alternatives,
     truth,
 )
+from smachac.pysource.syntax_tree import walk_code
 
 
 class Choice(NamedTuple):
@@ -43,7 +44,8 @@ def choices(facts: ClassFacts, classes: Sequence[Value]) -> tuple[Choice, ...]:
         if isinstance(value, Function) and isinstance(value.node, ast.FunctionDef)
     ]
     changed = {name for method in methods if method.name != "__init__"
-               for name in _assigned(method.node)}  # fmt: skip
+               if isinstance(method.node, ast.FunctionDef)
+               for name in assigned(method.node)}  # fmt: skip
     words = (*facts.reads, *facts.writes, *facts.returns)
     found = [choice for method in methods for choice in _choices_of(method, words)]
     return tuple(
@@ -70,15 +72,28 @@ def live_facts(facts: ClassFacts, found: Iterable[Choice], instance: Instance) -
     )
 
 
+def unknown_places(found: Iterable[Choice], instance: Instance) -> Iterator[Span]:
+    """The places of facts that conditions over attributes select whose values are not known."""
+    for choice in found:
+        is_unknown = _condition(choice.test, choice.own, instance.slots) is None
+        if is_unknown and any(_attributes(choice.test)):
+            yield from choice.if_true | choice.if_false
+
+
 def _attributes(node: ast.AST) -> Iterator[str]:
-    return (part.attr for part in ast.walk(node) if isinstance(part, ast.Attribute))
+    return (part.attr for part in walk_code(node) if isinstance(part, ast.Attribute))
 
 
-def _assigned(function: ast.AST) -> Iterator[str]:
-    """The attributes that code assigns, of any object."""
-    for node in ast.walk(function):
-        if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load):
-            yield node.attr
+def assigned(node: ast.AST) -> Iterator[str]:
+    """The attributes that code assigns; of a method, not those of its parameters, as userdata."""
+    others: set[str] = set()
+    if isinstance(node, ast.FunctionDef):
+        others = {argument.arg for argument in node.args.args[1:]}
+    for part in walk_code(node):
+        if isinstance(part, ast.Attribute) and not isinstance(part.ctx, ast.Load):
+            owner = part.value.id if isinstance(part.value, ast.Name) else ""
+            if owner not in others:
+                yield part.attr
 
 
 def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
@@ -87,13 +102,13 @@ def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
         return
     own = node.args.args[0].arg
     place = text.span(node)
-    inside = [word.span for word in words if _contains(place, word.span)]
+    inside = [word.span for word in words if contains(place, word.span)]
 
     def within(parts: Sequence[ast.stmt | ast.expr]) -> frozenset[Span]:
         places = [text.span(part) for part in parts]
-        return frozenset(span for span in inside for place in places if _contains(place, span))
+        return frozenset(span for span in inside for place in places if contains(place, span))
 
-    for part in ast.walk(node) if inside else ():
+    for part in walk_code(node) if inside else ():
         match part:
             case ast.If(test=test, body=body, orelse=orelse):
                 yield Choice(test, own, within(body), within(orelse))
@@ -106,7 +121,8 @@ def _choices_of(method: Function, words: Sequence[Word]) -> Iterator[Choice]:
                     yield Choice(value, own, none if is_or else rest, rest if is_or else none)
 
 
-def _contains(place: Span, span: Span) -> bool:
+def contains(place: Span, span: Span) -> bool:
+    """Whether a place in the code contains another one."""
     return place.source is span.source and place.start <= span.start < place.end
 
 

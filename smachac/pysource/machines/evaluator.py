@@ -7,13 +7,16 @@ state, and the states are joined. `try` is such a condition: its handlers may ru
 from __future__ import annotations
 
 import ast
+import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal, Protocol
 
 from smachac.diagnostics.source import Span
+from smachac.pysource.machines.bound_names import KNOWN_NAMES, bound_names, star_imports
 from smachac.pysource.machines.builtins import BUILTINS, attribute_of_value, is_pure
 from smachac.pysource.machines.heap import ABSENT, Changes, Children, Heap, present
+from smachac.pysource.machines.lasting import Lasting
 from smachac.pysource.machines.operations import (
     MOST_BITS,
     MOST_ITEMS,
@@ -39,6 +42,7 @@ from smachac.pysource.machines.values import (
     ModuleValue,
     Native,
     OneOf,
+    OwnSlots,
     Partial,
     Slots,
     Super,
@@ -47,13 +51,15 @@ from smachac.pysource.machines.values import (
     UseFault,
     Value,
     alternatives,
+    newest,
     one_of,
     sequence,
     truth,
 )
+from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass, field
 
-MOST_STEPS, MOST_TIMES = 400_000, 2
+MOST_STEPS, MOST_TIMES = 150_000, 2
 """The most statements and expressions that are evaluated for the main part of a file, or for one of
 its functions and classes, and how many times as many for all of them."""
 DEEPEST_CALL, MOST_RECURSIVE = 60, 2
@@ -112,6 +118,7 @@ class Evaluator:
         self.tries = 0
         self.exhausted = False
         self.faults: list[UseFault] = []
+        self.missed: set[tuple[int, str]] = set()
 
     # --- statements
 
@@ -199,13 +206,14 @@ class Evaluator:
 
     def load(self, body: Sequence[ast.stmt], frame: Frame) -> bool:
         """Evaluates a module that another one imports; whether it ends with an error. What it
-        writes stays, also if the import is under a condition."""
-        around = self.opened, self.regions, self.unsure
-        self.opened, self.regions, self.unsure = [], [], 0
+        writes stays, also if the import is under a condition; the faults in it are its own."""
+        around = self.opened, self.regions, self.unsure, self.faults
+        self.opened, self.regions, self.unsure, self.faults = [], [], 0, []
         try:
             return self.heap.apart(lambda: self.block(body, frame)) is not None
         finally:
-            self.opened, self.regions, self.unsure = around
+            frame.module.faults = self.faults
+            self.opened, self.regions, self.unsure, self.faults = around
 
     def begin(self) -> None:
         """Begins the evaluation of a file, with all steps left. What the code of the one before
@@ -231,9 +239,10 @@ class Evaluator:
         mark = self.heap.mark()
         states: list[Changes] = []
         last: Completion | None = None
-        opened = [*self.opened]
+        opened, others = [*self.opened], len(self.heap.others)
         self.unsure += 1
         for branch in branches:
+            start = newest()
             end = branch()
             self.opened[:] = opened
             if end is not None:
@@ -242,7 +251,9 @@ class Evaluator:
                 self.heap.undo(mark)
             else:
                 states.append(self.heap.undo(mark))
+            self.heap.others.append((start, newest()))
         self.unsure -= 1
+        del self.heap.others[others:]
         self.heap.join(states)
         self.heap.release(mark)
         if states:
@@ -372,10 +383,17 @@ class Evaluator:
             made, faults = len(self.made), len(self.faults)
             orphans, opened = self.orphans, [*self.opened]
             left = [len(region.left) for region in self.regions]
-            mark = self.heap.mark()
+            mark, start = self.heap.mark(), newest()
+            self.missed.clear()
             end = self.choice([some, lambda: None])
-            changed = [(slots, key) for slots, key, before, now in self.heap.since(mark)
-                       if _is_other(present(slots, key, before), now)]  # fmt: skip
+            written = [*self.heap.since(mark)]
+            lasting = Lasting(start, written)
+            changed = [
+                (slots, key)
+                for slots, key, before, now in written
+                if (before is ABSENT and (id(slots), key) in self.missed)
+                or (_is_other(present(slots, key, before), now) and slots in lasting)
+            ]
             if not changed:
                 self.heap.release(mark)
                 return end
@@ -506,7 +524,7 @@ class Evaluator:
 
     def _capture(self, subject: Value, pattern: ast.pattern, frame: Frame) -> None:
         """Binds the names of a pattern."""
-        for part in ast.walk(pattern):
+        for part in walk_code(pattern):
             name = getattr(part, "name", None) or getattr(part, "rest", None)
             if isinstance(name, str):
                 self.bind(name, subject if part is pattern else UNKNOWN, frame)
@@ -543,6 +561,30 @@ class Evaluator:
             return frame.module.slots[name]  # type: ignore[no-any-return]
         if name in BUILTINS:
             return BUILTINS[name]
+        self.missed |= {(id(frame.slots), name), (id(frame.module.slots), name)}
+        return self._undefined(name, node, frame)
+
+    def _undefined(self, name: str, node: ast.expr | None, frame: Frame) -> Value:
+        """The value of a name that has none. If nothing in the file can bind it, it is a fault;
+        else a module that was not found can."""
+        module = frame.module
+        span = self.span(node, frame) if node is not None else None
+        text = module.text
+        if span is None or text is None:
+            return UNKNOWN
+        if module.bound is None:
+            module.bound = bound_names(text.tree)
+        if name in module.bound:
+            return UNKNOWN
+        for part in star_imports(text.tree):
+            found = self.project.load(self, self._full_name(part, module), module)
+            if isinstance(found, Unknown):
+                return found
+            if not isinstance(found, ModuleValue) or found.dynamic:
+                return UNKNOWN
+        known = name in KNOWN_NAMES or any(word in text.source.text for word in _BINDING)
+        if not (known or self.tries):
+            self.faults.append(UseFault("missing member", span, (name, module.file)))
         return UNKNOWN
 
     def assign(self, target: ast.expr, value: Value, frame: Frame) -> None:
@@ -555,6 +597,8 @@ class Evaluator:
                 self.assign(inner, value, frame)
             case ast.Attribute(value=owner, attr=name):
                 self.set_attribute(self.value(owner, frame), name, value)
+            case ast.Subscript(value=owner, slice=ast.Slice() as index):
+                self._set_slice(self.value(owner, frame), index, value, frame)
             case ast.Subscript(value=owner, slice=index):
                 self._set_item(self.value(owner, frame), self.value(index, frame), value)
 
@@ -675,12 +719,7 @@ class Evaluator:
                 self.bind(alias.asname or alias.name, found, frame)
 
     def _import_from(self, node: ast.ImportFrom, frame: Frame) -> None:
-        package = frame.module.package
-        for _ in range(node.level - 1):
-            package = package.rpartition(".")[0]
-        name = node.module or ""
-        if node.level:
-            name = f"{package}.{name}".strip(".")
+        name = self._full_name(node, frame.module)
         found = self.project.load(self, name, frame.module)
         for alias in node.names:
             if alias.name == "*":
@@ -702,6 +741,14 @@ class Evaluator:
                 if isinstance(found, Unknown):
                     value = found if isinstance(inner, Unknown) else inner
             self.bind(alias.asname or alias.name, value, frame)
+
+    def _full_name(self, node: ast.ImportFrom, module: ModuleValue) -> str:
+        """The module of an import, which can be relative to that of the import."""
+        package = module.package
+        for _ in range(node.level - 1):
+            package = package.rpartition(".")[0]
+        name = node.module or ""
+        return f"{package}.{name}".strip(".") if node.level else name
 
     # --- functions and classes
 
@@ -768,7 +815,8 @@ class Evaluator:
     def _order(self, bases: Sequence[Value]) -> tuple[Value, ...]:
         """The classes in which Python searches a name after the class with these bases: C3, as in
         "A Monotonic Superclass Linearization for Dylan" (Barrett et al., 1996)."""
-        known = [base if isinstance(base, Class | LibraryClass) else UNKNOWN for base in bases]
+        kinds = Class | LibraryClass | Unknown
+        known = [base if isinstance(base, kinds) else UNKNOWN for base in bases]
         rows = [[base, *self.classes(base)[1:]] for base in known] + [[*known]]
         found: list[Value] = []
         while rows := [row for row in rows if row]:
@@ -909,7 +957,7 @@ class Evaluator:
 
     def _dict(self, node: ast.Dict, frame: Frame) -> Value:
         pairs: dict[Any, tuple[Value, Value]] | None = {}
-        repeated: list[Const] = []
+        repeated: list[tuple[Const, bool]] = []
         written: set[object] = set()  # a key replaces that of a `**` dictionary on purpose
         for key, value in zip(node.keys, node.values, strict=True):
             found = self.value(value, frame)
@@ -922,7 +970,7 @@ class Evaluator:
             name = self.value(key, frame)
             if isinstance(name, Const) and pairs is not None:
                 if name.value in written:
-                    repeated.append(name)
+                    repeated.append((name, bool(same(pairs[name.value][1], found))))
                 written.add(name.value)
                 pairs[name.value] = name, found
             else:
@@ -944,7 +992,8 @@ class Evaluator:
     ) -> tuple[Value, ...] | None:
         """The items of a comprehension; None: not known."""
         found: list[Value] = []
-        inner = Frame({}, frame.module, frame, frame.function, frame.me, kind="comprehension")
+        slots = OwnSlots({})
+        inner = Frame(slots, frame.module, frame, frame.function, frame.me, kind="comprehension")
         is_known = True
 
         def visit(at: int) -> None:
@@ -1124,25 +1173,41 @@ class Evaluator:
         return UNKNOWN
 
     def _slice(self, owner: Value, index: ast.Slice, frame: Frame) -> Value:
+        bounds = self._bounds(index, frame)
+        if bounds is None:
+            return UNKNOWN
+        match owner:
+            case Const(value=str() as text, span=span):
+                return Const(text[bounds], span)
+            case TupleValue(items=items):
+                return TupleValue(items[bounds])
+            case ListValue():
+                items_ = owner.items
+                return self.new_list(items_[bounds]) if isinstance(items_, tuple) else UNKNOWN
+        return UNKNOWN
+
+    def _bounds(self, index: ast.Slice, frame: Frame) -> slice | None:
+        """A slice; None if it is not known, or wrong."""
         bounds: list[int | None] = []
         for part in (index.lower, index.upper, index.step):
             found = self.value(part, frame) if part is not None else NONE
             if not isinstance(found, Const) or not isinstance(found.value, int | None):
-                return UNKNOWN
+                return None
             bounds.append(found.value)
-        if bounds[2] == 0:
-            return UNKNOWN
-        match owner:
-            case Const(value=str() as text, span=span):
-                return Const(text[slice(*bounds)], span)
-            case TupleValue(items=items):
-                return TupleValue(items[slice(*bounds)])
-            case ListValue():
-                items_ = owner.items
-                return (
-                    self.new_list(items_[slice(*bounds)]) if isinstance(items_, tuple) else UNKNOWN
-                )
-        return UNKNOWN
+        return None if bounds[2] == 0 else slice(*bounds)
+
+    def _set_slice(self, owner: Value, index: ast.Slice, value: Value, frame: Frame) -> None:
+        bounds, more = self._bounds(index, frame), sequence(value)
+        for part in alternatives(owner):
+            if isinstance(part, ListValue):
+                whole: object = UNKNOWN
+                known = part.items if part is owner else UNKNOWN
+                if isinstance(known, tuple) and bounds is not None and more is not None:
+                    items = [*known]
+                    with contextlib.suppress(ValueError):  # an extended slice of another size
+                        items[bounds] = more
+                        whole = tuple(items) if len(items) <= MOST_ITEMS else UNKNOWN
+                self.heap.set(part.slots, "items", whole)
 
     # --- attributes
 
@@ -1196,6 +1261,8 @@ class Evaluator:
         if name == "__class__":
             return owner.cls
         found = self.of_class(owner.cls, name, owner)
+        if found is UNKNOWN:
+            self.missed.add((id(owner.slots), name))
         function = found.function if isinstance(found, Method) else None
         if isinstance(function, Function) and function.kind == "property":
             return self.call(function, Arguments((owner,)), node, frame)
@@ -1373,7 +1440,7 @@ class Evaluator:
     def _parameters(self, function: Function, arguments: Arguments) -> Slots:
         taken = function.node.args
         positional = [*taken.posonlyargs, *taken.args]
-        slots: Slots = {}
+        slots: Slots = OwnSlots({})
         given = arguments.positional
         for argument, value in zip(positional, given, strict=False):
             slots[argument.arg] = value
@@ -1488,7 +1555,7 @@ def _are_other_types(left: Value, right: Value) -> bool:
 
 def _parts(body: Sequence[ast.stmt]) -> Iterator[ast.AST]:
     for statement in body:
-        yield from ast.walk(statement)
+        yield from walk_code(statement)
 
 
 def _exits(node: ast.expr) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import PurePath
 from typing import Any, Literal, NamedTuple, Protocol
 
 from smachac.diagnostics.source import NOWHERE, Span
@@ -34,9 +35,12 @@ from smachac.ir.nodes import (
     Transition,
 )
 from smachac.ir.traversal import outer_inputs
+from smachac.pysource.machines.dead_code import contains
 from smachac.pysource.machines.evaluator import Evaluator
 from smachac.pysource.machines.heap import Added, Children
+from smachac.pysource.machines.proven_reads import doubtful_in
 from smachac.pysource.machines.roots import Roots
+from smachac.pysource.machines.state_comments import StateComments
 from smachac.pysource.machines.values import (
     UNKNOWN,
     Class,
@@ -69,11 +73,16 @@ several places, and each of them is a state."""
 
 
 class FactReader(Protocol):
-    """Reads what the code of a state does."""
+    """Reads what the code of a state does. `comments` are those about states."""
 
+    @property
+    def comments(self) -> StateComments: ...
     def of_class(self, cls: Class) -> ClassFacts | None: ...
     def of_instance(self, instance: Instance, classes: Sequence[Value]) -> ClassFacts | None: ...
-    def of_callback(self, function: Function, *, bound: bool) -> ClassFacts | None: ...
+    def of_callback(
+        self, function: Function, *, bound: bool, given: frozenset[str] = frozenset()
+    ) -> ClassFacts | None: ...
+    def doubtful(self, instance: Instance, classes: Sequence[Value]) -> tuple[Span, ...]: ...
 
 
 class Coverage(NamedTuple):
@@ -109,7 +118,9 @@ class _Builder:
         self.evaluator = evaluator
         self.reader = reader
         self.types: dict[str, StateType] = {}
-        self.type_names: dict[tuple[object, ...], str] = {}
+        self.type_names: dict[tuple[Any, ...], str] = {}
+        self.first_types: dict[str, tuple[Any, ...]] = {}
+        self.variants: dict[str, int] = {}
         self.unknown: list[tuple[Span, str]] = []
         self.states = 0
         self.nodes = 0
@@ -140,8 +151,10 @@ class _Builder:
 
     # --- containers
 
-    def container(self, made: Instance, name: str, span: Span, depth: int) -> Container:
-        """A container with its states."""
+    def container(
+        self, made: Instance, name: str, span: Span, depth: int, assumed: Sequence[str] = ()
+    ) -> Container:
+        """A container with its states. `assumed` are its outcomes if they are not known."""
         children = made.slots.get("$children")
         added = children.added if isinstance(children, Children) else ()
         complete = isinstance(children, Children) and children.complete and self.roots.complete
@@ -155,19 +168,22 @@ class _Builder:
         if inside:
             added = ()
         self.path.append(made)
-        node = self._built(made, name, span, depth, added, complete=complete)
+        node = self._built(made, name, span, depth, added, assumed, complete=complete)
         self.path.pop()
         return node
 
     def _built(
-        self, made: Instance, name: str, span: Span, depth: int, added: Sequence[Added], *,
-        complete: bool,
+        self, made: Instance, name: str, span: Span, depth: int, added: Sequence[Added],
+        assumed: Sequence[str], *, complete: bool,
     ) -> Container:  # fmt: skip
         kind = _text(made.slots.get("$kind")) or "StateMachine"
         outcomes = self.names(made.slots.get("$outcomes"), span)
         builder = _Children(self, made, kind, outcomes, complete=complete)
         built = builder.build(added, depth)
-        known = outcomes if outcomes is not None else builder.targets_outside()
+        known = outcomes
+        if known is None:
+            named = dict.fromkeys([*assumed, *_selected_outcomes(made)], span)
+            known = [*{**named, **dict(builder.targets_outside())}.items()]
         common: dict[str, Any] = {
             "name": name,
             "type": kind,
@@ -191,6 +207,14 @@ class _Builder:
             case "Iterator":
                 return self._iterator(made, common, built, added, span)
         return StateMachine(**common, children=built, initial=initial, initial_span=span)
+
+    def _runs_as_state(self, made: Instance) -> bool:
+        """Whether a container has no states, but a method `execute` of its own."""
+        children = made.slots.get("$children")
+        return children == Children() and any(
+            isinstance(cls, Class) and "execute" in cls.slots
+            for cls in self.evaluator.classes(made.cls)
+        )
 
     def _overrides(self, made: Instance) -> bool:
         """Whether a class changes how states are added or run."""
@@ -219,25 +243,40 @@ class _Builder:
             else:
                 place = _place(key, span)
                 rules.append(OutcomeRule(outcome=name, when=tuple(conditions), span=place))
-        callback = made.slots.get("$outcome_cb")
-        if callback is not None and not _is_none(callback):
-            unknown = True
         default = made.slots.get("$default_outcome")
         join = self._join(made.slots.get("$child_termination_cb"))
+        outcomes: tuple[Outcome, ...] = common["outcomes"]
+        decided: list[Leaf] = []
         if unknown or builder.incomplete:
-            outcomes: tuple[Outcome, ...] = common["outcomes"]
-            extra = Leaf(name=ELSEWHERE, type=ELSEWHERE, open=True, synthetic=True, span=span,
-                         outcomes=outcomes)  # fmt: skip
-            built = (*(child for child in built if child.name != ELSEWHERE), extra)
+            decided.append(_decider(ELSEWHERE, outcomes, span))
+        callback = made.slots.get("$outcome_cb")
+        if callback is not None and not _is_none(callback):
+            decided.append(self._callback(callback, outcomes, span))
+        if decided:
+            built = (*(child for child in built if child.name != ELSEWHERE), *decided)
             rules += [
                 OutcomeRule(outcome=outcome.name, span=span,
-                            when=(Condition(child=ELSEWHERE, outcome=outcome.name, span=span),))
-                for outcome in outcomes
+                            when=(Condition(child=leaf.name, outcome=outcome.name, span=span),))
+                for leaf in decided
+                for outcome in leaf.outcomes
             ]  # fmt: skip
         return Concurrence(
             **common, children=built, rules=tuple(rules), join=join,
             default_outcome=_text(default) or "", default_span=_place(default, span),
         )  # fmt: skip
+
+    def _callback(self, callback: Value, outcomes: tuple[Outcome, ...], span: Span) -> Leaf:
+        """The state in place of `outcome_cb`, a function that selects the outcome: those of the
+        container that it returns."""
+        bound = isinstance(callback, Method)
+        function = callback.function if isinstance(callback, Method) else callback
+        if not isinstance(function, Function):
+            return _decider(ELSEWHERE, outcomes, span)
+        facts = self.reader.of_callback(function, bound=bound)
+        if facts is not None and facts.complete:
+            names = {ending.outcome.text for ending in facts.endings}
+            outcomes = tuple(outcome for outcome in outcomes if outcome.name in names) or outcomes
+        return _decider(f"{function.name}()", outcomes, span)
 
     def _join(self, callback: Value | None) -> Literal["all", "any"]:
         """Whether the first branch that ends stops the others."""
@@ -278,26 +317,25 @@ class _Builder:
 
     def state(self, value: Value, added: Added, name: str, depth: int) -> Node:
         span: Span = added.span
-        if isinstance(value, Instance) and "$children" in value.slots:
-            return self.container(value, name, span, depth + 1)
+        is_container = isinstance(value, Instance) and "$children" in value.slots
+        if isinstance(value, Instance) and is_container and not self._runs_as_state(value):
+            return self.container(value, name, span, depth + 1, _outcomes_of(added))
         self.states += 1
         if not isinstance(value, Instance) or "$outcomes" not in value.slots:
-            reason = "its class is not known"
-            if isinstance(value, Unknown) and value.reason:
-                reason = f"package {value.reason.partition('.')[0]} not found"
+            reason = self._missing(value, added)
             return self.open_leaf(name, span, added, reason, self._faults(value))
         outcomes = self.names(value.slots.get("$outcomes"), span)
         inputs = sequence(value.slots.get("$inputs"))
         outputs = sequence(value.slots.get("$outputs"))
         if outcomes is None or inputs is None or outputs is None or value.opaque:
             what = "outcomes" if outcomes is None else "keys"
-            reason = "a base class is not known" if value.opaque else f"its {what} are not known"
+            reason = self._missing(value, added) if value.opaque else f"its {what} are not known"
             return self.open_leaf(name, span, added, reason)
         facts = self._facts(value)
         required = sequence(value.slots.get("$required")) or ()
         names = {text for item in required if (text := _text(item)) is not None}
         if facts is not None:
-            names |= _read_first(facts)
+            names |= _read_first(facts, self._doubtful(value))
         in_keys = tuple(
             key if key.name in names else _optional(key)
             for key in self.keys(value.slots.get("$inputs"), span, required=True)
@@ -309,16 +347,44 @@ class _Builder:
             inputs=in_keys, outputs=out_keys, span=span, class_facts=facts,
         )  # fmt: skip
 
+    def _missing(self, value: Value, added: Added) -> str:
+        """Why the type of a state is not known."""
+        if len(alternatives(added.state)) > 1:
+            return "a condition that is not known selects its class"
+        bases = self.evaluator.classes(value.cls) if isinstance(value, Instance) else [value]
+        for base in bases:
+            if isinstance(base, Unknown) and base.reason:
+                if base.reason.endswith(".py"):
+                    return f"{base.reason} cannot be read"
+                return f"package {base.reason.partition('.')[0]} not found"
+        return "its class is not known"
+
     def _facts(self, value: Instance) -> ClassFacts | None:
         """What the code of a state does; None if it is not known."""
         if isinstance(value.cls, Class):
             return self.reader.of_instance(value, self.evaluator.classes(value.cls))
+        function = self._callback_of(value)
+        if function is None:
+            return None
+        bound = isinstance(value.slots.get("$callback"), Method)
+        given = value.slots.get("$callback_values")
+        pairs = given.items if isinstance(given, DictValue) else {}
+        if not isinstance(pairs, Mapping):
+            return None
+        return self.reader.of_callback(function, bound=bound, given=frozenset(map(str, pairs)))
+
+    def _callback_of(self, value: Instance) -> Function | None:
+        """The function that a CBState calls."""
         callback = value.slots.get("$callback")
-        bound = isinstance(callback, Method)
         function = callback.function if isinstance(callback, Method) else callback
-        if isinstance(function, Function):
-            return self.reader.of_callback(function, bound=bound)
-        return None
+        return function if isinstance(function, Function) else None
+
+    def _doubtful(self, value: Instance) -> tuple[Span, ...]:
+        """The places in the code of a state at which reads of userdata need not happen."""
+        if isinstance(value.cls, Class):
+            return self.reader.doubtful(value, self.evaluator.classes(value.cls))
+        function = self._callback_of(value)
+        return doubtful_in(function) if function is not None else ()
 
     def _faults(self, value: Value) -> ClassFacts | None:
         """The faults of a class whose constructor does not set the outcomes of the state."""
@@ -330,14 +396,21 @@ class _Builder:
     def open_leaf(
         self, name: str, span: Span, added: Added, reason: str, facts: ClassFacts | None = None
     ) -> Leaf:
-        """A state of an unknown type: its outcomes are those of its transitions."""
-        self.unknown.append((span, reason))
-        items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
-        names = [str(key) for key in items] if isinstance(items, Mapping) else []
-        outcomes = tuple(Outcome(name=text, span=span) for text in names)
+        """A state of an unknown type: its outcomes are those of a comment, or of its
+        transitions."""
+        told = self.reader.comments.at(span)
+        if told.outcomes is None:
+            self.unknown.append((span, reason))
+            outcomes = tuple(Outcome(name=text, span=span) for text in _outcomes_of(added))
+        else:
+            outcomes = tuple(Outcome(name=word.text, span=word.span) for word in told.outcomes)
         type_ = facts.name.text if facts is not None and facts.name is not None else ELSEWHERE
-        return Leaf(name=name, type=type_, open=True, outcomes=outcomes, span=span,
-                    class_facts=facts)  # fmt: skip
+        return Leaf(
+            name=name, type=type_, outcomes=outcomes, span=span, class_facts=facts,
+            open=told.input_keys is None and told.output_keys is None,
+            inputs=tuple(Key(name=word.text, span=word.span) for word in told.input_keys or ()),
+            outputs=tuple(Key(name=word.text, span=word.span) for word in told.output_keys or ()),
+        )  # fmt: skip
 
     def _type(
         self, value: Instance, outcomes: Sequence[tuple[str, Span]], inputs: Sequence[Key],
@@ -347,7 +420,7 @@ class _Builder:
         short = cls.name if isinstance(cls, Class) else cls.short
         if facts is not None and facts.name is not None:
             short = facts.name.text
-        which = (
+        which: tuple[Any, ...] = (
             id(cls) if isinstance(cls, Class) else f"{cls.name} {short}",
             tuple(name for name, _ in outcomes),
             tuple(key.name for key in inputs),
@@ -357,15 +430,28 @@ class _Builder:
         known = self.type_names.get(which)
         if known is not None:
             return known
-        name, number = short, 2
-        while name in self.types:
-            name, number = f"{short}_{number}", number + 1
+        first = self.first_types.setdefault(short, which)
+        own = short if first is which else f"{short} ({self._difference(cls, first, which)})"
+        number = self.variants[own] = self.variants.get(own, 0) + 1
+        name = own if number == 1 else f"{own} {number}"
         self.type_names[which] = name
         self.types[name] = StateType(
             name=name, outcomes=tuple(Outcome(name=t, span=p) for t, p in outcomes),
             input_keys=tuple(inputs), output_keys=tuple(outputs), class_facts=facts,
         )  # fmt: skip
         return name
+
+    def _difference(
+        self, cls: Class | LibraryClass, first: tuple[Any, ...], other: tuple[Any, ...]
+    ) -> str:
+        """What a state type has that the first one of its name has not: its module, its outcomes or
+        its keys."""
+        if first[0] != other[0] and isinstance(cls, Class):
+            return PurePath(cls.frame.module.file).stem
+        for names, more in zip(first[1:4], other[1:4], strict=True):
+            if names != more:
+                return ", ".join([*more[:3], *(["..."] if len(more) > 3 else [])]) or "none"
+        return "other values"
 
     def names(self, value: Value | None, span: Span) -> list[tuple[str, Span]] | None:
         """The names in a list, each with its place; None: not known."""
@@ -550,6 +636,22 @@ class _Children:
         )  # fmt: skip
 
 
+def _selected_outcomes(made: Instance) -> Iterator[str]:
+    """The outcomes that the rules of a container name."""
+    for slot in ("$default_outcome", "$exhausted_outcome", "$connector_outcome"):
+        if (name := _text(made.slots.get(slot))) is not None:
+            yield name
+    rules = made.slots.get("$outcome_map")
+    pairs = rules.items if isinstance(rules, DictValue) else {}
+    yield from map(str, pairs if isinstance(pairs, Mapping) else ())
+
+
+def _outcomes_of(added: Added) -> list[str]:
+    """The outcomes that the transitions of a state name."""
+    items = added.transitions.items if isinstance(added.transitions, DictValue) else {}
+    return [str(key) for key in items] if isinstance(items, Mapping) else []
+
+
 def _one_for_each_name(added: Sequence[Added]) -> list[Added]:
     """The states of a container. Those of one name that unknown conditions add are one state: it
     is one of several, and leads to one of several targets."""
@@ -632,13 +734,17 @@ def _connected(node: Node, transitions: tuple[Transition, ...], remaps: tuple[Re
     return replace(node, transitions=transitions, remaps=remaps)
 
 
-def _read_first(facts: ClassFacts) -> set[str]:
-    """The keys that code reads in no line after one that sets them."""
+def _read_first(facts: ClassFacts, doubtful: Sequence[Span]) -> set[str]:
+    """The keys that code reads in no line after one that sets them, at no place of `doubtful`."""
     set_in: dict[str, int] = {}
     for word in facts.writes:
         set_in[word.text] = min(word.span.line, set_in.get(word.text, word.span.line))
-    return {word.text for word in facts.reads
-            if word.span.line <= set_in.get(word.text, word.span.line)}  # fmt: skip
+    return {
+        word.text
+        for word in facts.reads
+        if word.span.line <= set_in.get(word.text, word.span.line)
+        and not any(contains(place, word.span) for place in doubtful)
+    }
 
 
 def _is_none(value: Value | None) -> bool:
@@ -646,9 +752,15 @@ def _is_none(value: Value | None) -> bool:
 
 
 def _place(value: Value | None, span: Span) -> Span:
-    """The place of a value; if it has none in the project, another one."""
+    """The place of a value; if it has none in the same file, another one."""
     found = getattr(value, "span", None)
-    return found if isinstance(found, Span) else span
+    near = isinstance(found, Span) and (span is NOWHERE or found.source is span.source)
+    return found if isinstance(found, Span) and near else span
+
+
+def _decider(name: str, outcomes: tuple[Outcome, ...], span: Span) -> Leaf:
+    """A state in place of what selects the outcome of a concurrence."""
+    return Leaf(name=name, type=name, open=True, synthetic=True, span=span, outcomes=outcomes)
 
 
 def _optional(key: Key) -> Key:

@@ -15,17 +15,40 @@ from smachac.pysource.machines.values import (
     OwnSlots,
     Slots,
     Value,
+    newest,
     one_of,
 )
 from smachac.records import dataclass
 
 T = TypeVar("T")
 
+_Written: TypeAlias = "dict[tuple[int, Any], tuple[Slots, Any, Any]]"
+
 ABSENT = object()
 """In place of a slot that does not exist."""
 
-Changes: TypeAlias = "dict[tuple[int, Any], tuple[Slots, Any, Any]]"
-"""The slots that were written, each with its owner, its key and its value."""
+Births: TypeAlias = tuple[int, int]
+"""The objects that are younger than the first number, and not than the second one."""
+
+
+class Changes(dict[tuple[int, Any], tuple[Slots, Any, Any]]):
+    """The slots that were written, each with its owner, its key and its value. `end` is the birth
+    of the youngest object that there is, `others` are those of objects that other branches of
+    unknown conditions have made."""
+
+    __slots__ = ("end", "others")
+
+    def __init__(self, end: int, others: tuple[Births, ...]) -> None:
+        super().__init__()
+        self.end = end
+        self.others = others
+
+    def has(self, slots: Slots) -> bool:
+        """Whether the object of some slots exists."""
+        if not isinstance(slots, OwnSlots):
+            return True
+        born = slots.born
+        return born <= self.end and not any(low < born <= high for low, high in self.others)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +86,7 @@ class Heap:
         self._logged: dict[tuple[int, Any], list[int]] = {}
         self._marks = [0]
         self._watches: list[Watch] = []
+        self.others: list[Births] = []
 
     def set(self, slots: Slots, key: Any, value: Any) -> None:
         before = slots.get(key, ABSENT)
@@ -90,7 +114,7 @@ class Heap:
     def _is_at(self, at: int, slots: Slots, key: Any) -> bool:
         return at < len(self.log) and self.log[at][0] is slots and self.log[at][1] == key
 
-    def watch(self, run: Callable[[], T]) -> tuple[T, Changes]:
+    def watch(self, run: Callable[[], T]) -> tuple[T, _Written]:
         """Runs a part of code that can end anywhere: its result, and of each slot of an object that
         was there before all values that it has had."""
         watch = Watch()
@@ -128,13 +152,14 @@ class Heap:
         """Gives up all marks."""
         self._marks[1:] = []
         self._watches.clear()
+        self.others.clear()
 
     def changes(self, mark: int) -> Changes:
         """The slots that were written since a mark, with their present values."""
-        return {
-            (id(slots), key): (slots, key, slots.get(key, ABSENT))
-            for slots, key, _ in self.log[mark:]
-        }
+        found = Changes(newest(), tuple(self.others))
+        for slots, key, _ in self.log[mark:]:
+            found[id(slots), key] = slots, key, slots.get(key, ABSENT)
+        return found
 
     def since(self, mark: int) -> Iterator[tuple[Slots, Any, Any, Any]]:
         """The slots that were written since a mark, with the values at the mark and now."""
@@ -155,7 +180,7 @@ class Heap:
         del self.log[mark:]
         return found
 
-    def apply(self, changes: Changes) -> None:
+    def apply(self, changes: _Written) -> None:
         for slots, key, value in changes.values():
             if value is ABSENT:
                 self.delete(slots, key)
@@ -173,7 +198,8 @@ class Heap:
             written |= {which: (slots, key) for which, (slots, key, _) in state.items()}
         for which, (slots, key) in written.items():
             now = slots.get(key, ABSENT)
-            values = [state[which][2] if which in state else now for state in states]
+            values = [state[which][2] if which in state else now for state in states
+                      if which in state or state.has(slots)]  # fmt: skip
             values = [present(slots, key, value) for value in values]
             self.work += sum(len(v.added) for v in values if isinstance(v, Children)) // 16
             whole = joined(values)
@@ -188,7 +214,7 @@ class Watch:
 
     def __init__(self) -> None:
         self.start = OwnSlots({}).born
-        self.changes: Changes = {}
+        self.changes: _Written = {}
 
     def see(self, slots: Slots, key: Any, before: Any, value: Any) -> None:
         if isinstance(slots, OwnSlots) and slots.born > self.start:

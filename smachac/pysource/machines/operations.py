@@ -12,7 +12,9 @@ from typing import Any
 from smachac.diagnostics.source import Span
 from smachac.pysource.machines.values import (
     UNKNOWN,
+    Class,
     Const,
+    LibraryClass,
     OneOf,
     TupleValue,
     Unknown,
@@ -45,6 +47,9 @@ def same(left: Value, right: Value) -> bool | None:
         return None
     if left is right:
         return True
+    classes = Class | LibraryClass
+    if isinstance(left, classes) and isinstance(right, classes):
+        return left == right
     none = isinstance(left, Const) and left.value is None
     if none or (isinstance(right, Const) and right.value is None):
         return False

@@ -19,6 +19,7 @@ from smachac.pysource.machines.values import (
     ModuleValue,
     Native,
     Unknown,
+    UseFault,
     Value,
 )
 from smachac.pysource.python2 import NotInstalledError, python2_text
@@ -42,6 +43,7 @@ class Repository:
         self.loaded: dict[str, ModuleValue | Unknown] = {}
         self.libraries: dict[str, ModuleValue] = {}
         self.imported: dict[str, dict[str, None]] = {}
+        self.set_names: dict[str, bool] = {}
 
     def method_of(self, cls: str, name: str) -> Native | None:
         return method_of(cls, name)
@@ -71,6 +73,11 @@ class Repository:
             found |= dict.fromkeys(sorted(new))
             todo += sorted(new)
         return found
+
+    def faults_of(self, file: str) -> list[UseFault]:
+        """The faults in the main parts of the modules that a file imports."""
+        modules = (self.loaded.get(other) for other in self.files_of(file) if other != file)
+        return [fault for part in modules if isinstance(part, ModuleValue) for fault in part.faults]
 
     def file_of(self, name: str, user: ModuleValue) -> str | None:
         """The file of a module."""
@@ -125,11 +132,27 @@ class Repository:
         """Forgets a file that was loaded as the main module."""
         self.loaded.pop(f"{file}:main", None)
 
+    def sets(self, name: str) -> bool:
+        """Whether any code of the repository sets an attribute of this name."""
+        if name not in self.set_names:
+            files = (file for some in self.by_stem.values() for file in some)
+            pattern = _setting(name)
+            self.set_names[name] = any(
+                pattern.search(source.text) for file in files if (source := self.read(file))
+            )
+        return self.set_names[name]
+
     def may_set(self, name: str) -> bool:
         """Whether code that was loaded sets an attribute of this name of anything."""
-        sets = re.compile(rf"\.{re.escape(name)}\b\s*(?:=[^=]|:)")
+        sets = _setting(name)
         texts = (module.text for module in self.loaded.values() if isinstance(module, ModuleValue))
         return any(text is not None and sets.search(text.source.text) for text in texts)
+
+
+def _setting(name: str) -> re.Pattern[str]:
+    """Code that sets an attribute."""
+    word = re.escape(name)
+    return re.compile(rf"\.{word}\b\s*(?:=[^=]|:)|setattr\([^,]*,\s*[\"']{word}[\"']")
 
 
 def module_text(source: Source) -> PythonText | None:

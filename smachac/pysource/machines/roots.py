@@ -24,6 +24,7 @@ from smachac.pysource.machines.values import (
     Value,
     alternatives,
 )
+from smachac.pysource.syntax_tree import walk_code
 from smachac.records import dataclass
 
 T = TypeVar("T")
@@ -191,7 +192,7 @@ def _unknown(function: Function, *, variants: bool) -> Arguments:
 def _builds(node: ast.AST, module: ModuleValue) -> bool:
     """Whether code names a container class of SMACH, or one of the module that is derived from
     one."""
-    for part in ast.walk(node):
+    for part in walk_code(node):
         name = part.attr if isinstance(part, ast.Attribute) else getattr(part, "id", None)
         if name in _WORDS:
             return True
@@ -208,7 +209,7 @@ def _called_names(module: ModuleValue) -> frozenset[str]:
     if module.text is None:
         return frozenset()
     found = set()
-    for node in ast.walk(module.text.tree):
+    for node in walk_code(module.text.tree):
         if isinstance(node, ast.Call):
             match node.func:
                 case ast.Name(id=name) | ast.Attribute(attr=name):

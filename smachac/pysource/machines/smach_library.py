@@ -153,6 +153,9 @@ def _cb_state(evaluator: Interpreter, arguments: Arguments, span: Span | None) -
         outputs = _joined(_names(evaluator, given[2], here), own[2], both)
         _interface(evaluator, me, outcomes, inputs, outputs)
         evaluator.heap.set(me.slots, "$callback", function)
+        values = arguments.get(3, "cb_kwargs")
+        if values is not None:
+            evaluator.heap.set(me.slots, "$callback_values", _copied(values) or NONE)
     return NONE
 
 
@@ -252,7 +255,9 @@ def _add(kind: str) -> Run:
         evaluator.heap.set(container.slots, "$children", Children(whole, children.complete))
         for given in (transitions, remapping):
             if isinstance(given, DictValue):
-                for key in given.repeated:
+                for key, is_same in given.repeated:
+                    if is_same and given is remapping:
+                        continue
                     place = key.span or span
                     fault = UseFault("repeated key", place, (str(key.value),))
                     if fault not in evaluator.faults:
@@ -371,6 +376,14 @@ def _close(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> V
     return NONE
 
 
+def _from_keys(evaluator: Interpreter, arguments: Arguments, span: Span | None) -> Value:
+    names, value = sequence(arguments.get(0, "iterable")), arguments.get(1, "value", NONE)
+    if names is None or not all(isinstance(name, Const) for name in names):
+        return DictValue({"items": UNKNOWN}, span)
+    pairs = {name.value: (name, value) for name in names if isinstance(name, Const)}
+    return DictValue({"items": pairs}, span)
+
+
 _CONTAINER: Mapping[str, Run] = {
     **_STATE,
     "open": _open,
@@ -380,6 +393,8 @@ _CONTAINER: Mapping[str, Run] = {
 
 _METHODS: Mapping[str, Mapping[str, Run]] = {
     "smach.State": _STATE,
+    "smach.CBInterface": {"__get__": _nothing},
+    "builtins.dict": {"fromkeys": _from_keys},
     "smach.CBState": {**_STATE, "__init__": _cb_state},
     "smach.StateMachine": {
         **_CONTAINER,
@@ -504,6 +519,8 @@ def _libraries() -> dict[str, ModuleValue]:
     smach = {
         **_classes("smach", "State CBState StateMachine Sequence Concurrence Iterator"),
         "ConditionState": LibraryClass("smach.ConditionState"),
+        "CBInterface": LibraryClass("smach.CBInterface"),
+        **_classes("smach_ros", "SimpleActionState ServiceState MonitorState"),  # before 1.2
         "cb_interface": Native("cb_interface", _cb_interface),
         "UserData": Native("UserData", _user_data),
         "Container": UNKNOWN,

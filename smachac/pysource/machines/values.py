@@ -47,6 +47,12 @@ class OwnSlots(dict[Any, Any]):
         return default
 
 
+def newest() -> int:
+    """A number that is larger than `born` of all slots that there are, and not larger than that of
+    later ones."""
+    return next(_BIRTHS)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unknown:
     """A value that is not known, with the reason and the place, if there is one to tell."""
@@ -104,11 +110,12 @@ class ListValue:
 @dataclass(eq=False, slots=True)
 class DictValue:
     """A dictionary; its slot `items` is a dictionary of pairs (key, value) by the key's constant,
-    or UNKNOWN. `repeated` are the keys that its literal has twice."""
+    or UNKNOWN. `repeated` are the keys that its literal has twice, each with whether it has one
+    value at both places."""
 
     slots: Slots
     span: Span | None = None
-    repeated: tuple[Const, ...] = ()
+    repeated: tuple[tuple[Const, bool], ...] = ()
 
     def __post_init__(self) -> None:
         self.slots = OwnSlots(self.slots)
@@ -227,7 +234,8 @@ class Native:
 
 @dataclass(eq=False, slots=True)
 class ModuleValue:
-    """A module of the project; `dynamic`: it can have names that were not read."""
+    """A module of the project; `dynamic`: it can have names that were not read. `bound` are the
+    names that its code binds, as soon as one was searched in vain."""
 
     name: str
     slots: Slots
@@ -236,6 +244,8 @@ class ModuleValue:
     dynamic: bool = False
     file: str = ""
     is_loaded: bool = False
+    bound: frozenset[str] | None = None
+    faults: list[UseFault] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
-from smachac.targets import BuildContext, Files, OptionError, Target, levels_open, made_by, stem
+from smachac.targets import (
+    DEPTH,
+    GENERATED,
+    BuildContext,
+    Files,
+    OptionError,
+    Target,
+    levels_open,
+    made_by,
+    stem,
+    view_of,
+)
 from smachac.targets.dot.graph import picture
 
 DIRECTIONS = ("TB", "LR", "BT", "RL")
@@ -15,11 +26,12 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
     Raises OptionError for an invalid value of an option.
     """
-    depth = levels_open(context.options)
+    view = view_of(machine, context.options)
+    depth = levels_open(context.options, view)
     rankdir = context.options.get("rankdir", "TB")
     if rankdir not in DIRECTIONS:
         raise OptionError(f"`rankdir` must be one of {', '.join(DIRECTIONS)}, not `{rankdir}`")
-    lines = picture(machine, depth=depth, rankdir=rankdir)
+    lines = picture(machine, view, depth=depth, rankdir=rankdir)
     return {f"{stem(machine)}.dot": "\n".join([f"// {made_by(machine)}", *lines, ""])}
 
 
@@ -29,7 +41,8 @@ TARGET = Target(
     emit=emit,
     is_picture=True,
     options={
-        "depth": "levels of containers that are drawn open; deeper ones are closed boxes",
+        "depth": DEPTH,
+        "generated": GENERATED,
         "rankdir": "where the picture runs to: TB (down, the default), LR, BT or RL",
     },
 )

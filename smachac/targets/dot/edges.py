@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from smachac.ir import graph, nodes
 from smachac.ir.graph import START
-from smachac.ir.nodes import Concurrence, Container, Data, Expression
-from smachac.ir.script_paths import role_in_words
+from smachac.ir.nodes import Concurrence, Container, Node
 from smachac.ir.traversal import leads_to_child, outcome_names
+from smachac.ir.written import WrittenState, items_in_words
 from smachac.targets.dot.style import (
     FAINT,
     INK,
@@ -34,12 +34,13 @@ class Spot(NamedTuple):
 class Piece(NamedTuple):
     """A drawn state: the end of its incoming edges and the nodes of its outgoing edges.
 
-    `ports` maps outcomes to nodes; it is empty for a state that is one box. `notes` are texts
-    beside its outcomes.
+    `ports` maps outcomes to nodes; it is empty for a state that is one box. `node` has the outcomes
+    with which it leaves, `notes` are texts beside them.
     """
 
     entry: Spot
     ports: dict[str, str]
+    node: Node
     notes: Mapping[str, str] = {}
 
 
@@ -54,6 +55,7 @@ class Edge(NamedTuple):
     tail: str
     head: Spot
     outcome: str = ""
+    tone: str = "neutral"
     tacit: bool = False
     dashed: bool = False
     main: bool = False
@@ -66,19 +68,17 @@ Drawn = dict[str, Piece]
 """The children of a container by name."""
 
 
-def entry_mark(container: Container, id: str, *, sideways: bool) -> str:
+def entry_mark(state: WrittenState, id: str, *, sideways: bool) -> str:
     """The start node of a container: a bar for a concurrence, a label for an iterator, else a dot.
 
     `sideways`: the graph runs horizontally, so that bars are vertical.
     """
+    container = state.node
     if isinstance(container, Concurrence):
         return _bar(id, INK, "all at once", "1.2", sideways=sideways)
     if isinstance(container, nodes.Iterator):
-        if container.sugar == "retry":
-            label = font(html(role_in_words(container)), colour=INK, size=11)
-            return f'"{id}"{attributes({"color": LOOP_BORDER}, label)}'
         head = font(f"for each <B>{html(container.item_key)}</B>", colour=INK, size=11)
-        label = spaced([head, font(html(items(container)), colour=FAINT, size=9)])
+        label = spaced([head, font(html(items_in_words(container)), colour=FAINT, size=9)])
         return f'"{id}"{attributes({"color": LOOP_BORDER}, label)}'
     dot = {"label": "", "tooltip": "start", "shape": "circle"}
     size = {"width": "0.14", "height": "0.14", "fixedsize": "true"}
@@ -92,30 +92,11 @@ def _bar(id: str, colour: str, tooltip: str, length: str, *, sideways: bool) -> 
     return f'"{id}"{attributes(look | {"fillcolor": colour, "color": colour} | size)}'
 
 
-def items(container: nodes.Iterator) -> str:
-    """The items of an iterator as a short text."""
-    if container.items is None:
-        return f"in {container.items_key}"
-    text = _short(container.items.data)
-    return f"in {text if len(text) <= 24 else text[:23] + '…'}"
-
-
-def _short(data: Data) -> str:
-    match data:
-        case Expression(text=text):
-            return text
-        case tuple() if len(data) > 4:
-            return f"{len(data)} items"
-        case tuple():
-            return f"[{', '.join(map(_short, data))}]"
-        case nodes.Struct():
-            return "{…}"
-        case _:
-            return str(data)
-
-
-def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn) -> Iterator[Edge]:
-    """The edges of a container: from its start, between its children and to its outcomes."""
+def edges(
+    container: Container, start: str, exits: dict[str, str], drawn: Drawn, caught: str
+) -> Iterator[Edge]:
+    """The edges of a container: from its start, between its children and to its outcomes. `caught`
+    is the outcome that exceptions in it become."""
     match container:
         case Concurrence():
             found = list(_rules(container, start, exits, drawn))
@@ -124,8 +105,9 @@ def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn)
         case _:
             found = list(_transitions(container, start, exits, drawn))
     yield from found
-    if container.catches in exits:
-        yield Edge(start, Spot(exits[container.catches]), container.catches, dashed=True)
+    if caught in exits:
+        shade = tone(caught, container)
+        yield Edge(start, Spot(exits[caught]), caught, shade, dashed=True)
     exit = next(iter(exits.values()), None)
     if exit is not None:
         yield from _hidden(found, Spot(exit), drawn)
@@ -147,9 +129,10 @@ def _leave(piece: Piece, outcome: str, head: Spot, exit: str = "") -> Edge:
     """
     port = piece.ports.get(outcome)
     tacit = port is not None or outcome == exit
-    main = tone(outcome) in ("success", "neutral")
+    shade = tone(outcome, piece.node)
+    main = shade in ("success", "neutral")
     note = piece.notes.get(outcome, "")
-    return Edge(port or piece.entry.id, head, outcome, tacit, main=main, note=note)
+    return Edge(port or piece.entry.id, head, outcome, shade, tacit, main=main, note=note)
 
 
 def _transitions(
@@ -191,7 +174,8 @@ def _rules(
             else:
                 yield _leave(piece, condition.outcome, bar)
         if len(rule.when) != 1:
-            yield Edge(bar.id, exit, rule.outcome, tacit=True, main=True)
+            shade = tone(rule.outcome, container)
+            yield Edge(bar.id, exit, rule.outcome, shade, tacit=True, main=True)
     yield from _otherwise(container, exits, drawn)
 
 
@@ -212,13 +196,13 @@ def join_id(start: str, number: int) -> str:
     return f"{start}+{number}"
 
 
-def joins(container: Container, start: str, *, sideways: bool) -> Iterator[str]:
+def joins(container: Node, start: str, *, sideways: bool) -> Iterator[str]:
     """The bars of a concurrence: one for each rule that does not have just one condition."""
     if not isinstance(container, Concurrence):
         return
     for number, rule in enumerate(container.rules):
         if len(rule.when) != 1:
-            colour = TONES[tone(rule.outcome)][0]
+            colour = TONES[tone(rule.outcome, container)][0]
             yield _bar(
                 join_id(start, number), colour, f"all: {rule.outcome}", "0.8", sideways=sideways
             )
@@ -240,7 +224,9 @@ def _loop(
                 yield _leave(piece, outcome, Spot(exits[target]), target)
     if exhausted in exits:
         tacit = exhausted == container.exhausted_outcome
-        yield Edge(start, Spot(exits[exhausted]), container.exhausted_outcome, tacit, main=True)
+        shade = tone(exhausted, container)
+        name = container.exhausted_outcome
+        yield Edge(start, Spot(exits[exhausted]), name, shade, tacit, main=True)
 
 
 def merged(edges: Iterable[Edge]) -> Iterator[str]:
@@ -255,12 +241,15 @@ def merged(edges: Iterable[Edge]) -> Iterator[str]:
 def _arrow(bundle: list[Edge]) -> str:
     first = bundle[0]
     outcomes = [edge.outcome for edge in bundle if edge.outcome]
-    look = {"color": TONES[_common([tone(edge.outcome) for edge in bundle])][0]}
+    look = {"color": TONES[_common([edge.tone for edge in bundle])][0]}
     label = ""
     noted = any(edge.note for edge in bundle)
     if outcomes and (noted or not all(edge.tacit for edge in bundle)):
-        texts = [(edge.outcome, f"{edge.outcome} {edge.note}".rstrip()) for edge in bundle]
-        rows = [font(html(text), colour=TONES[tone(name)][0]) for name, text in texts if name]
+        rows = [
+            font(html(f"{edge.outcome} {edge.note}".rstrip()), colour=TONES[edge.tone][0])
+            for edge in bundle
+            if edge.outcome
+        ]
         label = lines(f" {row} " for row in rows)
     if outcomes:
         look["tooltip"] = ", ".join(outcomes)

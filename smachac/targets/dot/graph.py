@@ -7,11 +7,12 @@ from typing import NamedTuple
 
 from smachac.analysis.context import Context
 from smachac.ir import nodes
-from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node
-from smachac.ir.script_paths import name_in_script, role_in_words, script_paths
+from smachac.ir.nodes import Concurrence, Leaf, Machine
 from smachac.ir.traversal import outcome_names
+from smachac.ir.written import Written, WrittenState
 from smachac.targets.dot.edges import Piece, Spot, edges, entry_mark, joins, merged
 from smachac.targets.dot.style import (
+    BADGE_INK,
     BORDER,
     FAINT,
     FILLS,
@@ -36,7 +37,7 @@ from smachac.targets.dot.style import (
 
 
 class Notes(NamedTuple):
-    """Texts that are drawn beside a machine: below the names of states, by full path, and beside
+    """Texts that are drawn beside a machine: below the names of states, by path, and beside
     outcomes, by path and outcome."""
 
     states: Mapping[str, str] = {}
@@ -44,87 +45,79 @@ class Notes(NamedTuple):
 
 
 class Position(NamedTuple):
-    """The position of a state: its full path, its node name in DOT and its depth; `paths` are those
-    of the script by full path, where they differ; `tones` those of the states in properties;
-    `unknown` the reasons of the states that are not known exactly."""
+    """A state in the picture: its node name in DOT, and what is drawn of it. `tones` are those of
+    the states in properties, `unknown` the reasons of the states that are not known exactly."""
 
-    path: str
+    state: WrittenState
     id: str
-    level: int
-    paths: Mapping[str, str]
+    view: Written
     tones: Mapping[str, str]
     unknown: Mapping[str, str]
     notes: Notes = Notes()
 
-    def below(self, name: str) -> Position:
-        path, id = f"{self.path}/{name}", f"{self.id}/{identifier(name)}"
-        return self._replace(path=path, id=id, level=self.level + 1)
+    def inside(self) -> Iterator[Position]:
+        """The states inside."""
+        for path in self.state.children:
+            state = self.view.states[path]
+            yield self._replace(state=state, id=f"{self.id}/{identifier(state.name)}")
 
     @property
-    def shown(self) -> str:
-        """The path in the script."""
-        return self.paths.get(self.path, self.path)
+    def level(self) -> int:
+        """The number of containers around the states inside."""
+        return self.state.level + 1
 
     @property
     def start(self) -> str:
         return f"{self.id}#start"
 
-    def exits(self, node: Node) -> dict[str, str]:
-        """The node names of the outcomes of a container at this position."""
-        return {name: f"{self.id}={identifier(name)}" for name in outcome_names(node)}
+    @property
+    def exits(self) -> dict[str, str]:
+        """The node names of the ends of a container: its outcomes, and those after which the next
+        try or item begins."""
+        names = dict.fromkeys([*outcome_names(self.state.outer), *self.state.repeated])
+        return {name: f"{self.id}={identifier(name)}" for name in names}
+
+    def is_open(self, depth: int | None) -> bool:
+        return not isinstance(self.state.node, Leaf) and (depth is None or self.state.level < depth)
 
 
 def picture(
     machine: Machine,
+    view: Written,
     *,
     depth: int | None = None,
     rankdir: str = "TB",
     notes: Notes = Notes(),  # noqa: B008 (constant)
 ) -> Iterator[str]:
-    """The lines of a DOT file. Containers below `depth` levels are drawn as closed boxes."""
-    root = machine.root
+    """The lines of a DOT file of the states of a view. Containers below `depth` levels are drawn as
+    closed boxes."""
+    root = view.root
+    unknown = {view.state(path): reason for path, reason in machine.unknown.items()}
     yield f"digraph {quoted(root.name)} {{"
-    for line in _settings(machine, rankdir, draws_unknown=_draws_unknown(machine, depth)):
+    drawn = (path for path in unknown if depth is None or view.states[path].level <= depth)
+    for line in _settings(machine, rankdir, draws_unknown=any(True for _ in drawn)):
         yield f"  {line}"
-    todo: list[str | tuple[Position, Container]] = ["}"]
-    tones = property_tones(machine)
-    paths = script_paths(root)
-    start = Position(root.name, identifier(root.name), 1, paths, tones, machine.unknown, notes)
-    todo.append((start, root))
+    tones = {view.state(path): tone for path, tone in property_tones(machine).items()}
+    todo: list[str | Position] = ["}"]
+    todo.append(Position(root, identifier(root.name), view, tones, unknown, notes))
     while todo:
-        item = todo.pop()
-        if isinstance(item, str):
-            yield item
+        place = todo.pop()
+        if isinstance(place, str):
+            yield place
             continue
-        place, container = item
         pad = "  " * place.level
         opened = []
-        todo += reversed([pad + line for line in _arrows(place, container, depth)])
-        for line in _marks(place, container, sideways=rankdir in ("LR", "RL")):
+        todo += reversed([pad + line for line in _arrows(place, depth)])
+        for line in _marks(place, sideways=rankdir in ("LR", "RL")):
             yield pad + line
-        for child in container.children:
-            if isinstance(child, Leaf) or place.level == depth:
-                yield pad + _box(child, place.below(child.name))
+        for inner in place.inside():
+            if inner.is_open(depth):
+                opened.append(inner)
             else:
-                opened.append(child)
-        for child in reversed(opened):
-            inner = place.below(child.name)
-            todo += [f"{pad}}}", (inner, child)]
-            todo += reversed([pad + line for line in _frame(child, inner)])
-
-
-def _draws_unknown(machine: Machine, depth: int | None) -> bool:
-    """Whether a state that is not known exactly is drawn, not only the closed box around it."""
-    todo: list[tuple[str, Container, int]] = [(machine.root.name, machine.root, 1)]
-    while todo and machine.unknown:
-        path, container, level = todo.pop()
-        for child in container.children:
-            inside = f"{path}/{child.name}"
-            if inside in machine.unknown:
-                return True
-            if not isinstance(child, Leaf) and level != depth:
-                todo.append((inside, child, level + 1))
-    return False
+                yield pad + _box(inner)
+        for inner in reversed(opened):
+            todo += [f"{pad}}}", inner]
+            todo += reversed([pad + line for line in _frame(inner)])
 
 
 def _settings(machine: Machine, rankdir: str, *, draws_unknown: bool) -> Iterator[str]:
@@ -152,8 +145,10 @@ def _settings(machine: Machine, rankdir: str, *, draws_unknown: bool) -> Iterato
     yield f"edge{attributes(edge)}"
 
 
-def _frame(container: Container, place: Position) -> Iterator[str]:
+def _frame(place: Position) -> Iterator[str]:
     """The opening lines of a container's cluster."""
+    state, path = place.state, place.state.path
+    container = state.node
     kind = html(container.type)
     fill, border, style = FILLS[place.level % 2], BORDER, "rounded,filled"
     match container:
@@ -162,43 +157,52 @@ def _frame(container: Container, place: Position) -> Iterator[str]:
             kind = f"|| {kind}" + (", first to end" if container.join == "any" else "")
         case nodes.Iterator():
             fill, border = LOOP_FILL, LOOP_BORDER
-    kind = html(role_in_words(container)) if container.sugar else kind
-    name = name_in_script(container)
-    title = f"<B>{html(name)}</B>  {font(kind, colour=FAINT, size=9)}"
-    if shade := place.tones.get(place.path):
+    title = f"<B>{html(state.name)}</B>  {font(kind, colour=FAINT, size=9)}"
+    if state.badges:
+        title += f"  {_badges(state)}"
+    if shade := place.tones.get(path):
         title += f"  {_property_mark(shade)}"
-    if note := place.notes.states.get(place.path):
+    if note := place.notes.states.get(path):
         title += f"<BR/>{font(html(note), colour=FAINT, size=9)}"
-    if place.path in place.unknown:
+    if path in place.unknown:
         style = UNKNOWN_STYLE
     look = {"labeljust": "c", "labelloc": "t", "style": style}
     colours = {"fillcolor": fill, "color": border, "fontsize": "11"}
     yield f'subgraph "cluster_{place.id}" {{'
-    tip = {"tooltip": _tip(container, place)}
+    tip = {"tooltip": _tip(place)}
     yield f"  graph{attributes(look | colours | tip, title)}"
 
 
-def _box(node: Node, place: Position) -> str:
+def _badges(state: WrittenState) -> str:
+    text = ", ".join(badge.text for badge in state.badges)
+    return font(html(text), colour=BADGE_INK, size=9)
+
+
+def _box(place: Position) -> str:
     """A leaf, or a container that is drawn closed."""
-    rows = [f"<B>{html(name_in_script(node))}</B>"]
-    kind = html(role_in_words(node) or node.type)
-    kind = kind if isinstance(node, Leaf) else f"{kind} <B>+</B>"
-    if node.type:
+    state, path = place.state, place.state.path
+    rows = [f"<B>{html(state.name)}</B>"]
+    kind = html(state.node.type)
+    kind = kind if isinstance(state.node, Leaf) else f"{kind} <B>+</B>"
+    if state.node.type:
         rows.append(font(kind, colour=FAINT, size=9))
-    look = {"tooltip": _tip(node, place)}
-    if place.path in place.unknown:
+    if state.badges:
+        rows.append(_badges(state))
+    look = {"tooltip": _tip(place)}
+    if path in place.unknown:
         look["style"] = UNKNOWN_STYLE
-    if shade := place.tones.get(place.path):
+    if shade := place.tones.get(path):
         rows.append(_property_mark(shade))
         look |= {"color": TONES[shade][0], "penwidth": "2"} if shade == "failure" else {}
-    if note := place.notes.states.get(place.path):
+    if note := place.notes.states.get(path):
         rows.append(font(html(note), colour=INK, size=9))
     return f'"{place.id}"{attributes(look, spaced(rows))}'
 
 
-def _tip(node: Node, place: Position) -> str:
-    reason = place.unknown.get(place.path)
-    return f"{place.shown}: {reason}" if reason else node.doc or place.shown
+def _tip(place: Position) -> str:
+    path = place.state.path
+    reason = place.unknown.get(path)
+    return f"{path}: {reason}" if reason else place.state.outer.doc or path
 
 
 def _property_mark(shade: str) -> str:
@@ -220,44 +224,47 @@ def property_tones(machine: Machine) -> dict[str, str]:
     return found
 
 
-def _exit(container: Container, outcome: nodes.Outcome, id: str, *, final: bool) -> str:
-    """An outcome of a container: double lines if the whole machine ends with it."""
-    line, fill = TONES[tone(outcome.name)]
-    label = html(outcome.name)
-    if isinstance(container, Concurrence) and outcome.name == container.default_outcome:
+def _exit(place: Position, outcome: str, id: str) -> str:
+    """An end of a container: double lines if the whole machine ends with it."""
+    state = place.state
+    found = next((each for each in state.outer.outcomes if each.name == outcome), None)
+    line, fill = TONES[tone(outcome, state.node if found is None else state.outer)]
+    label = html(outcome)
+    if isinstance(state.node, Concurrence) and outcome == state.node.default_outcome:
         label = spaced([label, font("otherwise", colour=FAINT, size=8)])
+    if (again := state.next_round(outcome)) is not None:
+        label = spaced([label, font(f"next {again}", colour=FAINT, size=8)])
     look = {"shape": "ellipse", "fillcolor": fill, "color": line, "fontcolor": line}
-    if final:
+    if state.parent is None:
         look |= {"peripheries": "2", "fontsize": "11"}
     else:
         look |= {"fontsize": "9", "margin": "0.04,0.02", "height": "0.25", "width": "0.5"}
-    tip = {"tooltip": outcome.doc or outcome.name}
+    tip = {"tooltip": (found.doc if found else "") or outcome}
     return f'"{id}"{attributes(look | tip, label)}'
 
 
-def _marks(place: Position, container: Container, *, sideways: bool) -> Iterator[str]:
+def _marks(place: Position, *, sideways: bool) -> Iterator[str]:
     """The start and the exits of a container, at its top and bottom."""
-    yield entry_mark(container, place.start, sideways=sideways)
-    yield from joins(container, place.start, sideways=sideways)
-    ids = place.exits(container)
-    by_id = {ids[outcome.name]: outcome for outcome in container.outcomes}
-    final = place.level == 1
-    drawn = [_exit(container, outcome, id, final=final) for id, outcome in by_id.items()]
+    yield entry_mark(place.state, place.start, sideways=sideways)
+    yield from joins(place.state.node, place.start, sideways=sideways)
+    drawn = [_exit(place, outcome, id) for outcome, id in place.exits.items()]
     if drawn:
         yield f"{{ rank=same; {'; '.join(drawn)} }}"
 
 
-def _arrows(place: Position, container: Container, depth: int | None) -> Iterator[str]:
-    closed = place.level == depth
-    drawn = {c.name: _piece(c, place.below(c.name), closed=closed) for c in container.children}
+def _arrows(place: Position, depth: int | None) -> Iterator[str]:
+    container = place.state.node
+    if isinstance(container, Leaf):
+        return
+    drawn = {each.state.name: _piece(each, depth) for each in place.inside()}
     if isinstance(container, Concurrence) and drawn:
         level = "; ".join(f'"{piece.entry.id}"' for piece in drawn.values())
         yield f"{{ rank=same; {level} }}"
-    yield from merged(edges(container, place.start, place.exits(container), drawn))
+    yield from merged(edges(container, place.start, place.exits, drawn, place.state.catches))
 
 
-def _piece(node: Node, place: Position, *, closed: bool) -> Piece:
-    notes = place.notes.outcomes.get(place.path, {})
-    if closed or isinstance(node, Leaf):
-        return Piece(Spot(place.id), {}, notes)
-    return Piece(Spot(place.start, place.id), place.exits(node), notes)
+def _piece(place: Position, depth: int | None) -> Piece:
+    notes = place.notes.outcomes.get(place.state.path, {})
+    if place.is_open(depth):
+        return Piece(Spot(place.start, place.id), place.exits, place.state.outer, notes)
+    return Piece(Spot(place.id), {}, place.state.outer, notes)

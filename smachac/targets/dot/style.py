@@ -6,6 +6,9 @@ import re
 from collections.abc import Iterable, Mapping
 from html import escape
 
+from smachac.ir.nodes import Node
+from smachac.ir.outcome_names import fails
+
 FONT = "Helvetica,Arial,sans-serif"
 
 INK = "#24292f"
@@ -18,6 +21,7 @@ FILLS = ("#f6f8fa", "#eaeef2")
 
 PARALLEL_FILL, PARALLEL_BORDER = "#f0f6ff", "#54aeff"
 LOOP_FILL, LOOP_BORDER = "#fff8e5", "#d4a72c"
+BADGE_INK = "#7d4e00"
 
 TONES = {
     "success": ("#1a7f37", "#dafbe1"),
@@ -44,8 +48,17 @@ _ODD = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 """Characters that XML 1.0 cannot represent."""
 
 
-def tone(outcome: str) -> str:
-    """The tone that the name of an outcome suggests: a key of `TONES`."""
+def tone(outcome: str, node: Node) -> str:
+    """The tone of an outcome of a state, a key of `TONES`: failure if it is one, by its interface
+    too, else what its name suggests."""
+    found = _tone_of_name(outcome)
+    declared = next((each.failure for each in node.outcomes if each.name == outcome), None)
+    if declared is None:
+        return "failure" if found != "warning" and fails(node, outcome) else found
+    return "failure" if declared else "neutral" if found == "failure" else found
+
+
+def _tone_of_name(outcome: str) -> str:
     word = outcome.casefold()
     before, _, last = word.rpartition("_")
     found = _TONE.get(word) or _TONE.get(last) or "neutral"

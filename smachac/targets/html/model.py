@@ -1,6 +1,6 @@
 """The model of the viewer: a machine as JSON data, with its findings and properties.
 
-The edges are those of the control-flow graph of each container (`ir.graph.edges`).
+The states are those of the script, each with its badges (`ir.written`).
 docs/targets.md describes the fields.
 """
 
@@ -14,18 +14,23 @@ from smachac.analysis.context import Context
 from smachac.analysis.secret_values import secret_values
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.diagnostics.source import NOWHERE, Source, Span
-from smachac.ir import graph, nodes
-from smachac.ir.graph import START, Edge
-from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Machine, Node
+from smachac.ir import nodes
+from smachac.ir.nodes import Concurrence, Container, Key, Leaf, Machine
 from smachac.ir.outcome_names import fails, successes
 from smachac.ir.properties import in_words
-from smachac.ir.script_paths import name_in_script, role_in_words
 from smachac.ir.secret_keys import SecretKeys
-from smachac.ir.traversal import enclosing, remapping
+from smachac.ir.traversal import remapping
+from smachac.ir.written import (
+    Badge,
+    Written,
+    WrittenEdge,
+    WrittenState,
+    items_in_words,
+    written,
+)
 from smachac.runtime.tracing.writer import SECRET
-from smachac.targets.dot.edges import items
 
-VERSION = 1
+VERSION = 2
 """The version of the format; it increases with every change that a reader must know of."""
 
 SNIPPET_LINES, SNIPPET_COLUMNS = 24, 160
@@ -36,20 +41,25 @@ _UNWRITTEN = frozenset(["implicit", "default", "caught"])
 
 
 def machine_model(
-    machine: Machine, findings: Sequence[Diagnostic] = (), *, live: bool = False
+    machine: Machine,
+    findings: Sequence[Diagnostic] = (),
+    *,
+    live: bool = False,
+    view: Written | None = None,
 ) -> dict[str, Any]:
-    """A machine, which may have errors, as JSON data.
+    """A machine, which may have errors, as JSON data: as it was written, or the states of another
+    `view` of it.
 
     `live`: the page connects to the server that it comes from.
     """
     context = Context(machine)
-    around = enclosing(machine.root)
-    shown = context.script_paths
+    view = written(machine) if view is None else view
     hidden = [flow.span for flow in secret_values(context.types, context.secret_keys)]
-    by_node: dict[str, list[int]] = {}
+    by_state: dict[str, list[int]] = {}
     for index, item in enumerate(findings):
-        if item.finding.node is not None:
-            by_node.setdefault(item.finding.node, []).append(index)
+        if (place := item.finding.node) is not None:
+            by_state.setdefault(_place(view, place), []).append(index)
+    unknown = {view.state(path): reason for path, reason in machine.unknown.items()}
     return {
         "version": VERSION,
         "name": machine.root.name,
@@ -58,112 +68,127 @@ def machine_model(
         "root": machine.root.name,
         "live": live,
         "nodes": [
-            _node(path, node, around, context, shown, by_node.get(path, []), hidden)
-            | ({"unknown": machine.unknown[path]} if path in machine.unknown else {})
-            for path, node in context.states
+            _node(state, context, by_state.get(path, []), hidden)
+            | ({"unknown": unknown[path]} if path in unknown else {})
+            for path, state in view.states.items()
         ],
-        "edges": [edge for path, node in context.containers for edge in edges_of(path, node)],
-        "findings": [finding_data(item) for item in findings],
+        "edges": [edge for state in view.states.values() for edge in edges_of(state, view.states)],
+        "findings": [finding_data(item, view) for item in findings],
         "properties": [
             {
                 "name": each.property.name,
                 "text": in_words(each.property.form),
                 "verdict": each.verdict,
-                "states": list(each.states),
+                "states": list(dict.fromkeys(map(view.state, each.states))),
             }
             for each in (context.judgements if machine.properties else ())
         ],
     }
 
 
+def _place(view: Written, path: str) -> str:
+    """The state of a finding, whose path is that in the script."""
+    return path if path in view.states else view.state(path)
+
+
 def _node(
-    path: str,
-    node: Node,
-    around: Mapping[str, tuple[str, Container]],
-    context: Context,
-    shown: Mapping[str, str],
-    found: list[int],
-    hidden: Sequence[Span],
+    state: WrittenState, context: Context, found: list[int], hidden: Sequence[Span]
 ) -> dict[str, Any]:
+    node, outer = state.node, state.outer
     file, line = place_in_script(node.span)
-    children = () if isinstance(node, Leaf) else node.children
-    good = successes(node)
+    good = successes(outer)
     data: dict[str, Any] = {
-        "path": path,
-        "name": name_in_script(node),
+        "path": state.path,
+        "name": state.name,
         "kind": "leaf" if isinstance(node, Leaf) else node.keyword,
-        "parent": around[path][0] if path in around else None,
-        "children": [f"{path}/{child.name}" for child in children],
-        "initial": _initial(path, node),
+        "parent": state.parent,
+        "children": list(state.children),
+        "initial": _initial(state),
         "type": node.type or None,
-        "role": role_in_words(node) or None,
-        "doc": node.doc,
+        "badges": [badge_data(badge) for badge in state.badges],
+        "doc": outer.doc,
         "file": file,
         "line": line,
         "snippet": snippet(node.span, hidden),
         "outcomes": [
             {
                 "name": each.name,
-                "failure": fails(node, each.name),
+                "failure": fails(outer, each.name),
                 "success": each.name in good,
                 "doc": each.doc,
+                **({"field": field} if (field := state.field_of(each.name)) else {}),
             }
-            for each in node.outcomes
+            for each in outer.outcomes
         ],
-        "inputs": _keys(path, node, node.inputs, context.types.inputs, context.secret_keys),
-        "outputs": _keys(path, node, node.outputs, context.types.outputs, context.secret_keys),
+        "inputs": _keys(state, node.inputs, context.types.inputs, context.secret_keys),
+        "outputs": _keys(state, node.outputs, context.types.outputs, context.secret_keys),
         "findings": found,
         "tags": list(node.tags),
     }
-    if path in shown:
-        data["shown"] = shown[path]
-    return data | _of_container(path, node, context)
+    if state.parts[0].shown != state.path:
+        data["parts"] = [[part.shown, part.role, part.begins, part.full] for part in state.parts]
+    if state.repeated:
+        data["repeated"] = [{"name": name, "failure": fails(node, name)} for name in state.repeated]
+    return data | _of_container(state, context)
 
 
-def _initial(path: str, node: Node) -> str | None:
+def badge_data(badge: Badge) -> dict[str, Any]:
+    """A badge: its field, its words, the outcome that it adds, and the outcomes after which the
+    next of `count` tries or items begins."""
+    return {
+        "field": badge.field,
+        "text": badge.text,
+        "outcome": badge.outcome or None,
+        "again": list(badge.again),
+        "count": badge.number,
+    }
+
+
+def _initial(state: WrittenState) -> str | None:
+    node = state.node
     if not isinstance(node, nodes.StateMachine | nodes.Sequence) or not node.initial:
         return None
-    return f"{path}/{node.initial}"
+    return f"{state.path}/{node.initial}"
 
 
 def _keys(
-    path: str,
-    node: Node,
+    state: WrittenState,
     keys: Sequence[Key],
     types: Mapping[tuple[str, str], Any],
     secret: SecretKeys,
 ) -> list[dict[str, Any]]:
     """Keys of a state: `key` is the key of the container around it that each refers to."""
-    names = remapping(node)
+    names = remapping(state.outer)
     return [
         {
             "name": key.name,
             "key": names[key.name],
-            "type": str(types.get((path, key.name), key.type)),
+            "type": str(types.get((state.full, key.name), key.type)),
             "doc": key.doc,
-            **({"secret": True} if key.name in secret.get(path, ()) else {}),
+            **({"secret": True} if key.name in secret.get(state.full, ()) else {}),
         }
         for key in keys
     ]
 
 
-def _of_container(path: str, node: Node, context: Context) -> dict[str, Any]:
+def _of_container(state: WrittenState, context: Context) -> dict[str, Any]:
     """The fields that only containers have."""
+    node = state.node
     if isinstance(node, Leaf):
         return {}
     data: dict[str, Any] = {
         "userdata": [
             {
                 "key": preset.key,
-                "type": str(context.types.keys.get((path, preset.key), preset.type)),
+                "type": str(context.types.keys.get((state.full, preset.key), preset.type)),
                 "value": SECRET
-                if preset.key in context.secret_keys.get(path, ())
+                if preset.key in context.secret_keys.get(state.full, ())
                 else " ".join(preset.value.span.text.split())[:SNIPPET_COLUMNS],
             }
             for preset in node.userdata
         ]
     }
-    return data | form_of(path, node)
+    return data | form_of(state.path, node)
 
 
 def form_of(path: str, container: Container) -> dict[str, Any]:
@@ -181,33 +206,33 @@ def form_of(path: str, container: Container) -> dict[str, Any]:
                     for rule in container.rules
                 ],
             }
-        case nodes.Iterator() if not container.sugar:
-            return {"items": f"{container.item_key} {items(container)}"}
+        case nodes.Iterator():
+            return {"items": f"{container.item_key} {items_in_words(container)}"}
     return {}
 
 
-def edges_of(path: str, container: Container) -> Iterator[dict[str, Any]]:
-    """The edges inside a container. `source` is null for the edge from its start, `target` is a
+def edges_of(state: WrittenState, states: Mapping[str, WrittenState]) -> Iterator[dict[str, Any]]:
+    """The edges inside one of `states`. `source` is null for the edge from its start, `target` is a
     state, or an outcome of the container."""
-    by_name = {child.name: child for child in container.children}
-    found = list(graph.edges(container))
-    if container.catches:
-        found.append(Edge(START, graph.exit_vertex(container.catches), "", "caught"))
+    found = list(state.edges())
+    if not isinstance(state.node, Leaf) and (caught := state.catches):
+        found.append(WrittenEdge(state.path, None, "", caught, True, "caught"))
     for edge in found:
-        source = by_name.get(edge.source) if isinstance(edge.source, str) else None
-        target = edge.target
+        source = states.get(edge.source) if edge.source is not None else None
         yield {
-            "container": path,
-            "source": f"{path}/{edge.source}" if isinstance(edge.source, str) else None,
+            "container": edge.container,
+            "source": edge.source,
             "outcome": edge.outcome,
-            "target": f"{path}/{target}" if isinstance(target, str) else {"outcome": target[1]},
+            "target": {"outcome": edge.target} if edge.leaves else edge.target,
             "kind": edge.kind,
             "implicit": edge.kind in _UNWRITTEN,
-            "failure": fails(source, edge.outcome) if source else edge.kind == "caught",
+            "failure": fails(source.outer, edge.outcome) if source else edge.kind == "caught",
         }
 
 
-def finding_data(item: Diagnostic) -> dict[str, Any]:
+def finding_data(item: Diagnostic, view: Written | None = None) -> dict[str, Any]:
+    """A finding; its state is a state of the view."""
+    place = item.finding.node
     file, line = place_in_script(item.span)
     return {
         "code": item.code,
@@ -216,7 +241,7 @@ def finding_data(item: Diagnostic) -> dict[str, Any]:
         "help": item.help,
         "file": file,
         "line": line,
-        "node": item.finding.node,
+        "node": place if view is None or place is None else _place(view, place),
         "related": [
             dict(
                 zip(("file", "line"), place_in_script(each.span), strict=True), message=each.message

@@ -35,11 +35,32 @@
     const ended = Object.values(state.outcomes).reduce((sum, each) => sum + each, 0);
     return `${ended ? Number((100 * countOf(state, outcome) / ended).toFixed(1)) : 0} %`;
   }
+  var Parts = class {
+    known = /* @__PURE__ */ new Map();
+    constructor(nodes) {
+      const old = [];
+      for (const node of nodes) {
+        const parts = node.parts ?? [[node.path, "state", null, node.path]];
+        parts.forEach(([shown, role, begins, full], index) => {
+          const field = begins === "try" ? "retry" : "for_each";
+          const count2 = node.badges.find((badge2) => badge2.field === field)?.count ?? null;
+          const added = role === "timer" || role === "pause";
+          const part = { path: node.path, outer: index === 0, added, begins, count: count2 };
+          this.known.set(shown, part);
+          old.push([full, part]);
+        });
+      }
+      for (const [full, part] of old) if (!this.known.has(full)) this.known.set(full, part);
+    }
+    of(path) {
+      return this.known.get(path);
+    }
+  };
   function indexed(model) {
     const graph = {
       model,
       nodes: new Map(model.nodes.map((node) => [node.path, node])),
-      byShown: new Map(model.nodes.map((node) => [node.shown ?? node.path, node])),
+      parts: new Parts(model.nodes),
       inside: /* @__PURE__ */ new Map(),
       leaving: /* @__PURE__ */ new Map()
     };
@@ -82,7 +103,6 @@ ${target2}`;
     return void 0;
   }
   function kindInWords(node) {
-    if (node.role) return node.role;
     if (node.kind === "concurrence") return node.join === "any" ? "in parallel, first to end" : "in parallel";
     if (node.kind === "iterator" && node.items) return `for each ${node.items}`;
     if (node.kind === "sequence") return "sequence";
@@ -97,7 +117,7 @@ ${target2}`;
       const next = [];
       for (const path of level) {
         const node = graph.nodes.get(path);
-        if (!node || !isContainer(node) || isWrapped(graph, node)) continue;
+        if (!node || !isContainer(node)) continue;
         if (count2 + node.children.length > limit && at > 0) continue;
         open.add(path);
         count2 += node.children.length;
@@ -107,12 +127,12 @@ ${target2}`;
     }
     return open;
   }
-  function isWrapped(graph, node) {
-    if (!node.role) return false;
-    return node.children.every((path) => {
-      const child = graph.nodes.get(path);
-      return child !== void 0 && (!isContainer(child) || isWrapped(graph, child));
-    });
+  function isRetry(node) {
+    return node.kind === "iterator" && node.badges.some(({ field }) => field === "retry");
+  }
+  function nextRound(node, outcome) {
+    const badge2 = node.badges.find(({ again }) => again.includes(outcome));
+    return badge2?.field === "for_each" ? "next item" : "next try";
   }
 
   // src/text.ts
@@ -122,6 +142,7 @@ ${target2}`;
     name: `600 13px ${FAMILY}`,
     detail: `11px ${FAMILY}`,
     label: `11px ${FAMILY}`,
+    chip: `10px ${FAMILY}`,
     exit: `600 11px ${FAMILY}`
   };
   var LONGEST = 300;
@@ -188,16 +209,28 @@ ${target2}`;
     const name = width(fitting(node.name, "name"), "name") + (node.findings.length ? 20 : 0);
     const detail = boxDetail(node, count2);
     const chevron2 = isContainer(node) ? 22 : 0;
+    const chips = node.badges.length ? chipsOf(node).width : 0;
     const exits = written.length ? width(fitting(exitsInWords(written), "detail"), "detail") : 0;
     return {
-      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24),
-      height: (detail ? 48 : 36) + (written.length ? WRITTEN_HEIGHT : 0)
+      width: Math.max(96, name + chevron2 + 32, width(fitting(detail, "detail"), "detail") + 32, exits + 24, chips + 20),
+      height: (detail ? 48 : 36) + (chips ? CHIP_HEIGHT + 5 : 0) + (written.length ? WRITTEN_HEIGHT : 0)
     };
+  }
+  var CHIP_HEIGHT = 16;
+  var CHIP_GAP = 4;
+  function chipsOf(node) {
+    let at = 0;
+    const chips = node.badges.map((badge2) => {
+      const text = fitting(badge2.text, "chip", 170);
+      const chip = { badge: badge2, text, x: at, width: width(text, "chip") + 12 };
+      at += chip.width + CHIP_GAP;
+      return chip;
+    });
+    return { chips, width: Math.max(0, at - CHIP_GAP) };
   }
   function boxDetail(node, count2) {
     if (!isContainer(node)) return node.type ?? "";
-    const words = kindInWords(node);
-    return node.role ? words : `${words}, ${count2} ${count2 === 1 ? "state" : "states"}`;
+    return `${kindInWords(node)}, ${count2} ${count2 === 1 ? "state" : "states"}`;
   }
   function contentOf(graph, path, open, sizes) {
     const container = graph.nodes.get(path);
@@ -206,8 +239,8 @@ ${target2}`;
       const node = graph.nodes.get(child);
       if (node) pieces.push({ id: child, what: "state", label: node.name, path: child, ...sizes.get(child) });
     }
-    for (const outcome of container.outcomes) {
-      const label = fitting(outcome.name, "exit");
+    for (const outcome of exitsOf(container)) {
+      const label = fitting(outcome.label, "exit");
       pieces.push({
         id: exitId(outcome.name),
         what: "exit",
@@ -236,7 +269,18 @@ ${target2}`;
         add2(line, edgeId(edge), withFigures(graph, edge, line, labelOf(container, edge, line)));
       }
     }
-    return { path, pieces, lines: [...lines.values()] };
+    const ids = new Set(pieces.map(({ id }) => id));
+    const isInside = ({ from, to }) => ids.has(from) && ids.has(to);
+    const all = [...lines.values()];
+    return { path, pieces, lines: all.filter(isInside), far: all.filter((line) => !isInside(line)) };
+  }
+  function exitsOf(container) {
+    const repeated = container.repeated ?? [];
+    const label = (name) => repeated.some((each) => each.name === name) ? `${name} \u2192 ${nextRound(container, name)}` : name;
+    const own = container.outcomes.map((each) => ({ ...each, label: label(each.name) }));
+    const names = new Set(own.map(({ name }) => name));
+    const others = repeated.filter(({ name }) => !names.has(name));
+    return [...own, ...others.map((each) => ({ ...each, success: false, label: label(each.name) }))];
   }
   function withFigures(graph, edge, line, label) {
     if (line.change) return `${SIGNS[line.change]} ${label}`.trim();
@@ -250,7 +294,7 @@ ${target2}`;
       return { id: START, what: "fork", label: "all start together", width: size, height: 5 };
     }
     if (container.kind === "iterator") {
-      const label = container.role ? "next try" : "next item";
+      const label = isRetry(container) ? "next try" : "next item";
       return { id: START, what: "loop", label, width: width(label, "label") + 24, height: 24 };
     }
     return { id: START, what: "start", label: "start", width: 12, height: 12 };
@@ -294,7 +338,7 @@ ${target2}`;
   function labelOf(container, edge, line) {
     if (edge.kind === "default") return "otherwise";
     if (edge.kind === "caught") return "exception";
-    if (edge.kind === "exhausted") return edge.source === null ? "" : container.role ? "no tries left" : "no more items";
+    if (edge.kind === "exhausted") return edge.source === null ? "" : isRetry(container) ? "no tries left" : "no more items";
     return line.to === exitId(edge.outcome) ? "" : edge.outcome;
   }
 
@@ -314,7 +358,16 @@ ${target2}`;
     const grounds = new Map(scene.boxes.map((box) => [box.path, ground(graph.nodes.get(box.path), box)]));
     const labels = svg("g", { "aria-hidden": "true" }, ...scene.lines.map(({ line, label, container }) => drawLabel(line, label, grounds.get(container) ?? "")));
     const marks = svg("g", { "aria-hidden": "true" }, ...scene.pieces.map((piece) => drawPiece(graph, piece)));
-    return { root: svg("g", {}, tree, edges, marks, labels), states, lines };
+    const linesAt = /* @__PURE__ */ new Map();
+    for (const { line, element } of lines) {
+      for (const end2 of /* @__PURE__ */ new Set([line.line.from, line.line.to])) {
+        const known2 = linesAt.get(end2);
+        if (known2) known2.push(element);
+        else linesAt.set(end2, [element]);
+      }
+    }
+    const root = svg("g", {}, tree, edges, marks, labels);
+    return { root, states, lines, linesAt, selected: null, focusable: null, run: null };
   }
   function drawState(graph, node, box) {
     const siblings = node.parent === null ? [node.path] : graph.nodes.get(node.parent)?.children ?? [];
@@ -356,18 +409,19 @@ ${target2}`;
     );
   }
   function ground(node, box) {
-    if (node?.role || node?.kind === "iterator") return "looping";
+    if (node?.kind === "iterator") return "looping";
     if (node?.kind === "concurrence") return "parallel";
     return box.level % 2 ? "odd" : "even";
   }
   function addTooltip(element, node) {
     if (element.querySelector(":scope > title")) return;
-    const text = [node.shown ?? node.path, node.doc, node.unknown].filter(Boolean).join("\n");
+    const text = [node.path, node.doc, node.unknown].filter(Boolean).join("\n");
     element.prepend(svg("title", {}, text));
   }
   function spoken(node, box) {
     const words = box.open ? kindInWords(node) : boxDetail(node, node.children.length);
-    const parts = [[node.name, words, exitsInWords(box.written)].filter(Boolean).join(" ")];
+    const badges = node.badges.map((badge2) => badge2.text).join(", ");
+    const parts = [[node.name, words, badges, exitsInWords(box.written)].filter(Boolean).join(" ")];
     if (node.outcomes.length) parts.push(`outcomes: ${node.outcomes.map((each) => each.name).join(", ")}`);
     if (node.change && node.change !== "same") parts.push(node.change);
     if (node.unknown) parts.push(`not known exactly: ${node.unknown}`);
@@ -383,6 +437,7 @@ ${target2}`;
       " ",
       svg("text", { class: "detail", x: 32 + width(name, "title") + 10, y: 22 }, detail)
     );
+    if (node.badges.length) group.append(" ", chipRow(node, 32 + width(name, "title") + width(detail, "detail") + 20, 10));
     if (node.findings.length) group.append(badge(graph, node, box.width - 18, 17));
   }
   function drawText(graph, group, node, box) {
@@ -394,14 +449,27 @@ ${target2}`;
     if (detail) {
       group.append(" ", svg("text", { class: "detail", x: middle, y: 37, "text-anchor": "middle" }, detail));
     }
+    const below = y + (detail ? 16 : 0);
+    if (node.badges.length) {
+      group.append(" ", chipRow(node, middle - chipsOf(node).width / 2, below + 6));
+    }
     if (box.written.length) {
       const exits = fitting(exitsInWords(box.written), "detail");
       const failure = box.written.every((edge) => edge.failure);
       const look3 = failure ? "detail written failure" : "detail written";
-      group.append(" ", svg("text", { class: look3, x: middle, y: y + (detail ? 32 : 16), "text-anchor": "middle" }, exits));
+      group.append(" ", svg("text", { class: look3, x: middle, y: below + (node.badges.length ? CHIP_HEIGHT + 5 : 0) + 16, "text-anchor": "middle" }, exits));
     }
     if (isContainer(node)) group.append(chevron(14, y - 4, false));
     if (node.findings.length) group.append(badge(graph, node, box.width - 13, 13));
+  }
+  function chipRow(node, x, y) {
+    const chips = chipsOf(node).chips.map((chip) => svg(
+      "g",
+      { class: `chip ${chip.badge.field}`, transform: `translate(${chip.x} 0)` },
+      svg("rect", { width: chip.width, height: CHIP_HEIGHT, rx: CHIP_HEIGHT / 2 }),
+      svg("text", { x: chip.width / 2, y: 11.5, "text-anchor": "middle" }, chip.text)
+    ));
+    return svg("g", { class: "badges", transform: `translate(${x} ${y})` }, ...chips.flatMap((chip, index) => index ? [" ", chip] : [chip]));
   }
   function chevron(x, y, open) {
     const points = open ? "-4,-2 0,3 4,-2" : "-2,-4 3,0 -2,4";
@@ -496,7 +564,7 @@ ${target2}`;
       const transform = `translate(${end2.x} ${end2.y}) rotate(${turn})`;
       group.append(svg("path", { class: "head", d: "M0 0L-7.5-4Q-5.9 0-7.5 4Z", transform }));
       const [only, ...others] = line.edges;
-      if (only !== void 0 && !others.length) group.append(svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
+      if (only !== void 0 && !others.length) group.append(svg("path", { class: "hit", d, ...origin(only) }), svg("circle", { class: "grip", cx: end2.x, cy: end2.y, r: 7, ...origin(only) }));
     }
     return group;
   }
@@ -520,18 +588,22 @@ ${target2}`;
   function background({ x, y, width: width2, height }) {
     return svg("rect", { x, y, width: width2, height, rx: 4 });
   }
-  function markSelection(picture, path) {
-    for (const [each, element] of picture.states) {
-      const chosen = each === path;
-      element.classList.toggle("selected", chosen);
-      element.setAttribute("aria-selected", String(chosen));
-      element.setAttribute("tabindex", chosen ? "0" : "-1");
+  function markSelection(picture, path, focusable) {
+    for (const [each, chosen] of [[picture.selected, false], [path, true]]) {
+      if (each === null) continue;
+      const element = picture.states.get(each);
+      element?.classList.toggle("selected", chosen);
+      element?.setAttribute("aria-selected", String(chosen));
+      for (const line of picture.linesAt.get(each) ?? []) line.classList.toggle("near", chosen);
     }
-    for (const { line, element } of picture.lines) {
-      element.classList.toggle("near", path !== null && (line.line.from === path || line.line.to === path));
-    }
+    if (picture.focusable !== null) picture.states.get(picture.focusable)?.setAttribute("tabindex", "-1");
+    picture.states.get(focusable)?.setAttribute("tabindex", "0");
+    picture.selected = path;
+    picture.focusable = focusable;
   }
   function markRun(graph, picture, run) {
+    if (picture.run === run) return;
+    picture.run = run;
     const active = drawnStates(graph, picture, run?.active);
     const waiting = drawnStates(graph, picture, run?.waiting);
     const breakpoints = drawnStates(graph, picture, run?.breakpoints);
@@ -540,7 +612,7 @@ ${target2}`;
       element.classList.toggle("active", active.has(path));
       element.classList.toggle("waiting", waiting.has(path));
       setBreakpoint(element, breakpoints.has(path));
-      setVisits(element, run?.visits?.get(path) ?? 0, run?.times?.get(path) ?? "");
+      setVisits(element, run?.visits?.get(path) ?? 0, [run?.rounds?.get(path), run?.times?.get(path)]);
     }
     for (const { line, element } of picture.lines) {
       element.classList.toggle("taken", line.line.edges.some((edge) => taken.has(edge)));
@@ -561,10 +633,10 @@ ${target2}`;
     if (!is) mark?.remove();
     else if (!mark) element.append(svg("circle", { class: "stop", cx: 0, cy: 0, r: 6.5 }));
   }
-  function setVisits(element, count2, time) {
+  function setVisits(element, count2, words) {
     element.classList.toggle("visited", count2 > 0);
     let mark = element.querySelector(":scope > .visits");
-    const text = [count2 < 2 ? "" : `\xD7${count2}`, time].filter(Boolean).join(" \xB7 ");
+    const text = [count2 < 2 ? "" : `\xD7${count2}`, ...words].filter(Boolean).join(" \xB7 ");
     speakVisits(element, text && ` ${text}`);
     if (!text) {
       mark?.remove();
@@ -694,7 +766,7 @@ ${target2}`;
   // src/transition_drag.ts
   var FAR_ENOUGH = 4;
   var HANDLE_RADIUS = 6;
-  function drawTransitions(viewer, drawn) {
+  function drawTransitions(viewer, drawn, clicked) {
     const { frame, world } = viewer;
     frame.classList.add("editable");
     viewer.onMark((picture) => addHandles(viewer.graph, picture, viewer.selected));
@@ -705,7 +777,7 @@ ${target2}`;
       event.preventDefault();
       drag(viewer.graph, frame, world, event, origin2, {
         dropped: (target2) => drawn(origin2.path, origin2.outcome, target2),
-        clicked: () => void viewer.select(origin2.path)
+        clicked: () => clicked(origin2.path, origin2.outcome)
       });
     }, { capture: true });
   }
@@ -808,6 +880,7 @@ ${target2}`;
   // src/edit_fields.ts
   var NOWHERE = "";
   var TRANSITION = "Change a transition";
+  var BEHIND = "Add a state behind it";
   function labelled(text, control) {
     control.id = `edit-${text.toLowerCase().replaceAll(" ", "-")}`;
     return html("p", { class: "field" }, html("label", { for: control.id }, text), control);
@@ -831,8 +904,9 @@ ${target2}`;
       if (hasTransitions(graph, state)) forms.push(transition(graph, state, parent));
       forms.push(rename(state));
     }
-    if (parent) forms.push(add("Add a state behind it", parent, types, state));
-    if (isContainer(state) && state.children.length) forms.push(add("Add a state inside", state, types));
+    if (parent) forms.push(add(BEHIND, graph, parent, types, state));
+    const last = graph.nodes.get(state.children.at(-1) ?? "");
+    if (isContainer(state) && last && state.kind !== "iterator") forms.push(add("Add a state inside", graph, state, types, last));
     if (parent) {
       forms.push(remove(graph, state, parent), contain(graph, state, parent));
     }
@@ -884,30 +958,42 @@ ${target2}`;
       }
     };
   }
-  function add(title, parent, types, after) {
+  function add(title, graph, parent, types, after) {
     const [nameLabel, name] = textField("Name of the new state");
     const [typeLabel, type] = choice("State type", []);
     const doc = html("p", { class: "help" });
-    const outcomes2 = after && parent.kind === "machine" ? after.outcomes.map(({ name: name2 }) => [name2, name2]) : [];
-    const [onLabel, on] = choice("Outcome that leads to it", [[NOWHERE, "(none yet)"], ...outcomes2]);
+    const outcomes2 = parent.kind === "machine" ? after.outcomes.map(({ name: name2 }) => [name2, name2]) : [];
+    const label = title === BEHIND ? "Outcome that leads to it" : `Outcome of ${after.name} that leads to it`;
+    const [onLabel, on] = choice(label, [...outcomes2, [NOWHERE, "(none yet)"]]);
+    on.value = outcomes2.length ? entrance(graph, after) : NOWHERE;
     void types.then((known2) => {
       const describe = () => {
         doc.textContent = known2.find((each) => each.name === type.value)?.doc ?? "";
       };
-      type.replaceChildren(...known2.map((each) => html("option", { value: each.name }, each.name)));
+      const groups = /* @__PURE__ */ new Map();
+      for (const each of known2) groups.set(each.group, [...groups.get(each.group) ?? [], each]);
+      type.replaceChildren(...[...groups].map(([group, some]) => html("optgroup", { label: group }, ...some.map((each) => html("option", { value: each.name, title: each.doc }, each.name)))));
       type.addEventListener("change", describe);
       describe();
     });
     return {
       title,
       fields: [nameLabel, typeLabel, doc, ...outcomes2.length ? [onLabel] : []],
+      fill(outcome) {
+        on.value = outcome;
+        name.focus();
+      },
       planned() {
         const given = { name: name.value.trim(), type: type.value };
-        if (after) given["after"] = lastName(after.path);
+        given["after"] = lastName(after.path);
         if (on.value !== NOWHERE) given["on"] = on.value;
         return { edit: { operation: "add", path: parent.path, arguments: given }, then: `${parent.path}/${name.value.trim()}` };
       }
     };
+  }
+  function entrance(graph, state) {
+    const led = new Set((graph.leaving.get(state.path) ?? []).map(({ outcome }) => outcome));
+    return (state.outcomes.find(({ name }) => !led.has(name)) ?? state.outcomes.find(({ success }) => success) ?? state.outcomes[0])?.name ?? NOWHERE;
   }
   function remove(graph, state, parent) {
     const others = targets(graph, parent).filter(([value]) => value !== lastName(state.path));
@@ -982,16 +1068,32 @@ ${target2}`;
     const made = html(
       "section",
       { "data-section": "state" },
-      html("p", { class: "path" }, around ? link(around.shown ?? around.path, around.path, actions) : "machine"),
+      html("p", { class: "path" }, around ? link(around.path, around.path, actions) : "machine"),
       html("h2", {}, node.name),
-      html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) && !node.role ? ` (${node.type})` : "")
+      html("p", { class: "kind" }, kindInWords(node), node.type && isContainer(node) ? ` (${node.type})` : "")
     );
+    if (node.badges.length) {
+      made.append(html("ul", { class: "badges" }, ...node.badges.map((badge2) => html("li", {}, badgeInWords(badge2, node)))));
+    }
     if (node.doc) made.append(html("p", { class: "doc" }, node.doc));
     if (node.unknown) made.append(html("p", { class: "doc" }, `Not known exactly: ${node.unknown}.`));
     if (node.tags.length) {
       made.append(html("p", { class: "tags" }, ...node.tags.map((tag) => html("span", { class: "tag" }, tag))));
     }
     return made;
+  }
+  function badgeInWords(badge2, node) {
+    const again = badge2.again.join(" or ");
+    switch (badge2.field) {
+      case "timeout":
+        return `${badge2.text}: then ${node.outcomes.some(({ name }) => name === badge2.outcome) ? "it" : "a try"} ends with ${badge2.outcome}`;
+      case "retry":
+        return `${badge2.text}: the next one after ${again}; after the last one it ends with ${badge2.outcome}`;
+      case "for_each":
+        return again ? `${badge2.text}: the next one after ${again}` : badge2.text;
+      case "catches":
+        return `an exception in it ends it with ${badge2.outcome}`;
+    }
   }
   function findings(found) {
     return html("ul", { class: "findings" }, ...found.map((item) => html(
@@ -1010,7 +1112,11 @@ ${target2}`;
       const targets2 = html("span", { class: "targets" }, ...edges.map((edge) => target(graph, edge, actions)));
       return html("li", {}, name, targets2);
     });
-    return html("ul", { class: "rows" }, ...rows);
+    const repeated = (node.repeated ?? []).map((outcome) => {
+      const name = html("span", { class: `outcome${outcome.failure ? " failure" : ""}` }, outcome.name);
+      return html("li", {}, name, html("span", { class: "targets" }, html("span", { class: "target" }, nextRound(node, outcome.name))));
+    });
+    return html("ul", { class: "rows" }, ...rows, ...repeated);
   }
   function target(graph, edge, actions) {
     const words = { default: "otherwise ", implicit: "implied: ", loop: "next item: ", exhausted: "no more items: ", rule: "by rule: " };
@@ -1087,7 +1193,7 @@ ${target2}`;
       { "data-section": "machine" },
       html("p", { class: "path" }, model.source),
       html("h2", {}, model.name),
-      html("p", { class: "kind" }, `${model.nodes.length} states, ${model.edges.length} transitions`),
+      html("p", { class: "kind" }, `${counted(model.nodes.length - 1, "state")}, ${counted(model.edges.length, "transition")}`),
       root?.doc ? html("p", { class: "doc" }, root.doc) : null
     );
     return [
@@ -1097,6 +1203,9 @@ ${target2}`;
       section("Legend", legend(model)),
       section("Keys", html("dl", { class: "keys" }, ...KEYS.flatMap(([key, text]) => [html("dt", {}, html("kbd", {}, key)), html("dd", {}, text)])))
     ];
+  }
+  function counted(count2, noun) {
+    return `${count2} ${noun}${count2 === 1 ? "" : "s"}`;
   }
   function machineFindings(graph, actions) {
     const list = findings(graph.model.findings);
@@ -1126,7 +1235,11 @@ ${target2}`;
       this.forget();
       viewer.addSection({ id: "edit", title: "Edit", first: true, fill: (node) => this.fill(node) });
       document.addEventListener("keydown", (event) => this.key(event));
-      drawTransitions(viewer, (path, outcome, target2) => void this.propose(path, outcome, target2));
+      drawTransitions(
+        viewer,
+        (path, outcome, target2) => void this.propose(path, outcome, target2),
+        (path, outcome) => void this.insert(path, outcome)
+      );
     }
     viewer;
     token;
@@ -1160,15 +1273,22 @@ ${target2}`;
       this.chosen()?.fill?.(outcome, target2);
       await this.look();
     }
+    /** Offer a new state on a transition. */
+    async insert(path, outcome) {
+      await this.viewer.select(path);
+      this.kinds.value = BEHIND;
+      this.showFields();
+      this.chosen()?.fill?.(outcome, "");
+    }
     /** The form of the selected state; what is typed in stays while the state and the machine stay. */
     fill(node) {
       const { graph } = this.viewer;
       const path = node?.path ?? null;
       if (this.filledFor?.graph === graph && this.filledFor.path === path) return this.form;
       if (this.filledFor?.path !== path && !this.said.classList.contains("done")) this.say("");
+      const before = this.filledFor?.path === path ? this.kinds.value : "";
       this.filledFor = { graph, path };
       this.forms = formsOf(graph, node, this.types);
-      const before = this.kinds.value;
       this.kinds.replaceChildren(...this.forms.map(({ title }) => html("option", { value: title }, title)));
       if (this.forms.some(({ title }) => title === before)) this.kinds.value = before;
       this.showFields();
@@ -1253,13 +1373,35 @@ ${target2}`;
     return answer.ok ? answer.content.types : [];
   }
   function described(preview) {
-    const lines = preview.diff.replace(/\n$/, "").split("\n").map((line) => html("span", { class: line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null }, line));
+    const texts = preview.diff.replace(/\n$/, "").split("\n");
+    const lines = texts.map((line, index) => {
+      const look3 = line.startsWith("+") ? "more" : line.startsWith("-") ? "less" : null;
+      return html("span", { class: look3 }, ...markedWords(line, otherLine(texts, index)));
+    });
     const parts = [
       html("pre", { class: "diff", tabindex: "0", role: "region", "aria-label": "Change of the script" }, html("code", {}, ...lines))
     ];
     if (preview.added.length) parts.push(html("h4", {}, "New findings"), findings(preview.added));
     if (preview.removed.length) parts.push(html("h4", {}, "Findings that disappear"), findings(preview.removed));
     return parts;
+  }
+  function otherLine(lines, index) {
+    const line = lines[index];
+    const [sign, step] = line.startsWith("-") ? ["+", 1] : ["-", -1];
+    const other = lines[index + Number(step)];
+    const isChange = (text) => /^[+-](?![+-]{2} )/.test(text);
+    return other?.startsWith(String(sign)) && isChange(line) && isChange(other) ? other : null;
+  }
+  function markedWords(line, other) {
+    if (other === null) return [line];
+    const [words, others] = [line, other].map((text) => text.slice(1).split(/(\s+|[[\]{},:])/));
+    let start = 0;
+    while (start < words.length && words[start] === others[start]) start += 1;
+    let end2 = 0;
+    while (end2 < Math.min(words.length, others.length) - start && words.at(-1 - end2) === others.at(-1 - end2)) end2 += 1;
+    const middle = words.slice(start, words.length - end2).join("");
+    if (!middle) return [line];
+    return [line[0] + words.slice(0, start).join(""), html("mark", {}, middle), words.slice(words.length - end2).join("")];
   }
 
   // src/control.ts
@@ -1296,38 +1438,46 @@ ${target2}`;
       if (!this.able) return;
       void act(this.token, "control", body).then((reason) => this.refused(reason ?? ""));
     }
-    hasBreakpoint(path, outcome) {
-      return this.status?.breakpoints.some((each) => each.path === path && each.outcome === outcome) ?? false;
+    hasBreakpoint(place2) {
+      return this.status?.breakpoints.some((each) => each.path === place2.path && each.outcome === place2.outcome && each.round === place2.round) ?? false;
     }
-    toggleBreakpoint(path, outcome) {
-      const action = this.hasBreakpoint(path, outcome) ? "unbreak" : "break";
-      this.do(outcome === null ? { action, path } : { action, path, outcome });
+    toggleBreakpoint(place2) {
+      this.do({ action: this.hasBreakpoint(place2) ? "unbreak" : "break", ...place2 });
     }
     /** What can be done at a state: breakpoints, and for one that waits, its step and its outcomes. */
     partFor(node) {
       if (!this.able) return null;
-      const path = node.shown ?? node.path;
-      const part = html("div", { class: "breakpoints" }, this.box("Pause before it starts", path, null));
-      for (const { name } of node.outcomes) part.append(this.box(`Pause when it ends with ${name}`, path, name));
-      const waiting = this.status.at.find((each) => each.path === path);
+      const at = (outcome, round = null) => ({ path: node.path, outcome, round });
+      const part = html("div", { class: "breakpoints" }, this.box("Pause before it starts", at(null)));
+      const rounds = new Set((node.parts ?? []).map(([, , begins]) => begins));
+      if (rounds.has("item")) part.append(this.box("Pause before each item", at(null, "item")));
+      if (rounds.has("try")) part.append(this.box("Pause before each try", at(null, "try")));
+      const leaves = new Set(node.outcomes.map(({ name }) => name));
+      for (const name of leaves) part.append(this.box(`Pause when it ends with ${name}`, at(name)));
+      for (const { name } of node.repeated ?? []) {
+        if (!leaves.has(name)) part.append(this.box(`Pause when a try ends with ${name}`, at(name)));
+      }
+      const waiting = this.status.at.find((each) => each.path === node.path);
       if (waiting) part.prepend(this.waiting(waiting));
       return part;
     }
-    waiting({ path, outcome, outcomes: outcomes2 }) {
+    waiting({ path, outcome, round, outcomes: outcomes2 }) {
       const force = outcomes2.map((name) => button(`End with ${name}`, name, () => this.do({ action: "outcome", path, outcome: name })));
+      const where = round === null ? "It waits before its start." : `It waits before ${round === "try" ? "a try" : "an item"}.`;
+      const run = outcome === null ? round === null ? "Run it" : `Run the ${round}` : "Go on";
       return html(
         "div",
         { class: "waiting" },
-        html("p", {}, outcome === null ? "It waits before its start." : `It has ended with ${outcome} and waits.`),
-        button("Run this state", outcome === null ? "Run it" : "Go on", () => this.do({ action: "step", path })),
+        html("p", {}, outcome === null ? where : `It has ended with ${outcome} and waits.`),
+        button("Run this state", run, () => this.do({ action: "step", path })),
         html("p", {}, "Force an outcome:"),
         html("p", { class: "forced" }, ...force)
       );
     }
-    box(label, path, outcome) {
+    box(label, place2) {
       const input = html("input", { type: "checkbox" });
-      input.checked = this.hasBreakpoint(path, outcome);
-      input.addEventListener("change", () => this.toggleBreakpoint(path, outcome));
+      input.checked = this.hasBreakpoint(place2);
+      input.addEventListener("change", () => this.toggleBreakpoint(place2));
       return html("label", {}, input, ` ${label}`);
     }
     show() {
@@ -1447,6 +1597,7 @@ ${target2}`;
     return {
       active: /* @__PURE__ */ new Map(),
       visited: /* @__PURE__ */ new Map(),
+      rounds: /* @__PURE__ */ new Map(),
       taken: /* @__PURE__ */ new Map(),
       written: /* @__PURE__ */ new Map(),
       error: null,
@@ -1465,6 +1616,7 @@ ${target2}`;
       ...state,
       active: new Map(state.active),
       visited,
+      rounds: new Map(state.rounds),
       taken: new Map(state.taken),
       written: new Map(state.written)
     };
@@ -1486,6 +1638,12 @@ ${to}`;
       case "enter":
         enter(state, path);
         break;
+      case "try":
+      case "item": {
+        const others = (state.rounds.get(path) ?? []).filter(({ what }) => what === "item" && event.event === "try");
+        state.rounds.set(path, [...others, { what: event.event, number: event.number ?? 1, of: event.of }]);
+        break;
+      }
       case "exit":
       case "finish":
         leave(state, path, event.outcome ?? null);
@@ -1516,6 +1674,7 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
   function leave(state, path, outcome) {
     const since = state.active.get(path);
     state.active.delete(path);
+    state.rounds.delete(path);
     const visited = state.visited.get(path);
     if (!visited) return;
     if (since !== void 0) visited.seconds += state.t - since;
@@ -1526,9 +1685,14 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
     state.ended = true;
     state.outcome = outcome;
     state.active.clear();
+    state.rounds.clear();
   }
   function count(counts, key) {
     counts.set(key, (counts.get(key) ?? 0) + 1);
+  }
+  function roundInWords(state, path) {
+    const rounds = state.rounds.get(path) ?? [];
+    return rounds.map(({ what, number, of }) => `${what} ${number}${of === void 0 ? "" : ` of ${of}`}`).join(", ");
   }
   function activeLeaves(state) {
     const containers = /* @__PURE__ */ new Set();
@@ -1618,8 +1782,8 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
   };
 
   // src/run_marks.ts
-  function nodeAt(graph, shown) {
-    return graph.byShown.get(shown) ?? graph.nodes.get(shown);
+  function nodeAt(graph, path) {
+    return graph.nodes.get(path);
   }
   function highlightOf(graph, state, control) {
     const visits = /* @__PURE__ */ new Map();
@@ -1631,6 +1795,7 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
       active: known(graph, activeLeaves(state)).filter((path) => !isContainer(graph.nodes.get(path))),
       taken: takenEdges(graph, state),
       visits,
+      rounds: new Map([...state.rounds.keys()].map((path) => [path, roundInWords(state, path)])),
       waiting: known(graph, control?.at.map((each) => each.path) ?? []),
       breakpoints: known(graph, control?.breakpoints.map((each) => each.path) ?? [])
     };
@@ -1650,12 +1815,9 @@ ${key}`, { path, key, value: event.value, t: state.t, order: state.writes });
     const found = /* @__PURE__ */ new Set();
     for (const key of state.taken.keys()) {
       const [path = "", outcome = "", to = ""] = key.split("\n");
-      const source = nodeAt(graph, path);
-      if (!source) continue;
-      const target2 = nodeAt(graph, to)?.path ?? exitOf(graph, source, to);
-      found.add(`${source.path}
+      if (nodeAt(graph, path)) found.add(`${path}
 ${outcome}
-${target2}`);
+${to}`);
     }
     for (const [path, visited] of state.visited) {
       const node = nodeAt(graph, path);
@@ -1663,23 +1825,15 @@ ${target2}`);
       for (const edge of graph.inside.get(node.path) ?? []) {
         const end2 = typeof edge.target === "string" ? edge.target : null;
         if (edge.source === null) {
-          if (end2 !== null && state.visited.has(shownPath(graph, end2))) found.add(edgeId(edge));
+          if (end2 !== null && state.visited.has(end2)) found.add(edgeId(edge));
         } else if (node.kind === "concurrence" && end2 === null) {
-          const branch = state.visited.get(shownPath(graph, edge.source));
+          const branch = state.visited.get(edge.source);
           const outcome = edge.target.outcome;
           if (branch?.lastOutcome === edge.outcome && visited.lastOutcome === outcome) found.add(edgeId(edge));
         }
       }
     }
     return found;
-  }
-  function exitOf(graph, source, to) {
-    const container = source.parent ?? source.path;
-    const shown = shownPath(graph, container);
-    return to.startsWith(`${shown}:`) ? `${container}:${to.slice(shown.length + 1)}` : to;
-  }
-  function shownPath(graph, path) {
-    return graph.nodes.get(path)?.shown ?? path;
   }
   function keyValues(graph, state) {
     const found = /* @__PURE__ */ new Map();
@@ -1719,7 +1873,8 @@ ${place2.key}`;
   function inWords(graph, event) {
     const node = nodeAt(graph, event.path);
     const name = node?.name ?? event.path;
-    const failure = node?.outcomes.find((each) => each.name === event.outcome)?.failure ?? false;
+    const outcomes2 = [...node?.outcomes ?? [], ...node?.repeated ?? []];
+    const failure = outcomes2.find((each) => each.name === event.outcome)?.failure ?? false;
     const tone = failure ? "bad" : "good";
     switch (event.event) {
       case "start":
@@ -1738,6 +1893,14 @@ ${place2.key}`;
       }
       case "write":
         return { text: `${name} writes ${event.key} = ${inline(event.value)}`, tone: "" };
+      case "try":
+      case "item":
+        return { text: `${name}: ${event.event} ${event.number}${event.of === void 0 ? "" : ` of ${event.of}`}`, tone: "" };
+      case "try ended":
+      case "item ended": {
+        const [what] = event.event.split(" ");
+        return { text: `${name}: ${what} ${event.number} ends${withOutcome(event)}`, tone };
+      }
       case "preempt":
         return { text: `${name} is requested to stop`, tone: "" };
       case "error":
@@ -1876,6 +2039,71 @@ ${place2.key}`;
     }
   };
 
+  // src/written_events.ts
+  var WrittenEvents = class {
+    /** `parts` are those of the machine that is shown now. */
+    constructor(parts) {
+      this.parts = parts;
+    }
+    parts;
+    visits = /* @__PURE__ */ new Map();
+    clear() {
+      this.visits.clear();
+    }
+    all(events) {
+      return events.map((event) => this.one(event)).filter((event) => event !== null);
+    }
+    /** The event of the written state, or null for one that only a part of the state has. */
+    one(event) {
+      const part = this.parts().of(event.path);
+      const to = event.to === void 0 ? {} : { to: this.place(event.to) };
+      if (!part) return { ...event, ...to };
+      if (part.added) return null;
+      const { path } = part;
+      switch (event.event) {
+        case "enter":
+          return this.enter(event, part);
+        case "exit":
+          return this.exit(event, part);
+        case "transition":
+          return this.visits.has(path) ? null : { ...event, path, ...to };
+        case "preempt":
+          return part.outer ? { ...event, path } : null;
+        default:
+          return { ...event, path };
+      }
+    }
+    enter(event, part) {
+      const { path, begins } = part;
+      const known2 = this.visits.get(path);
+      if (part.outer || !known2) {
+        this.visits.set(path, { first: event.path, try: 0, item: 0 });
+        return { ...event, path };
+      }
+      if (!begins) return null;
+      known2[begins] += 1;
+      if (begins === "item") known2.try = 0;
+      return { ...event, event: begins, path, number: known2[begins], of: part.count ?? void 0 };
+    }
+    exit(event, part) {
+      const { path, begins } = part;
+      const known2 = this.visits.get(path);
+      if (part.outer || known2?.first === event.path) {
+        this.visits.delete(path);
+        return { ...event, path };
+      }
+      return begins && known2 ? { ...event, event: `${begins} ended`, path, number: known2[begins] } : null;
+    }
+    /** The target of a transition: a state, or an outcome of a container behind a colon. */
+    place(to) {
+      const state = this.parts().of(to);
+      if (state) return state.path;
+      const colon = to.lastIndexOf(":");
+      const container = colon < 0 ? void 0 : this.parts().of(to.slice(0, colon));
+      return container ? container.path + to.slice(colon) : to;
+    }
+  };
+
   // src/run_view.ts
   var APART2 = 80;
   var FOLLOW_APART = 400;
@@ -1894,6 +2122,7 @@ ${place2.key}`;
     constructor(viewer, token, live) {
       this.viewer = viewer;
       this.live = live;
+      this.written = new WrittenEvents(() => viewer.graph.parts);
       this.timeline = new Timeline(this.recording, () => this.draw());
       this.control = new Control(token, () => this.controlled(), (reason) => viewer.notice(reason));
       this.bar = html(
@@ -1916,6 +2145,7 @@ ${place2.key}`;
     viewer;
     live;
     recording = new Recording();
+    written;
     timeline;
     control;
     status = html("p", { class: "run-status", role: "status" });
@@ -1929,6 +2159,7 @@ ${place2.key}`;
     follows = false;
     followed = 0;
     shownNode = null;
+    filledFor = "";
     errors = [];
     link = "";
     arrived = performance.now();
@@ -1936,7 +2167,7 @@ ${place2.key}`;
     waiting = false;
     loggedTo = -1;
     replay(events) {
-      this.recording.add(events);
+      this.recording.add(this.written.all(events));
       this.timeline.update();
       this.draw();
     }
@@ -1951,6 +2182,7 @@ ${place2.key}`;
         opened: () => {
           this.link = "";
           this.recording.clear();
+          this.written.clear();
           this.loggedTo = -1;
           this.timeline.follows = true;
           this.changed();
@@ -1974,7 +2206,7 @@ ${place2.key}`;
           this.report(message.broken, message.outdated, message.findings);
           break;
         case "trace":
-          this.recording.add(message.events);
+          this.recording.add(this.written.all(message.events));
           this.arrived = performance.now();
           this.timeline.update();
           this.changed();
@@ -2000,7 +2232,8 @@ ${place2.key}`;
       const [first] = this.errors;
       const more = this.errors.length > 1 ? ` (and ${this.errors.length - 1} more)` : "";
       const picture = outdated ? ". The picture is that of the last version without errors." : "";
-      this.viewer.notice(first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "");
+      const text = first ? `${first.file}:${first.line}: error ${first.code}: ${first.message}${more}${picture}` : "";
+      this.viewer.notice(text, this.errorList());
       this.viewer.refresh();
     }
     errorList() {
@@ -2010,6 +2243,7 @@ ${place2.key}`;
         { class: "error" },
         html("p", {}, html("strong", {}, `error ${each.code}`), " ", each.message),
         each.help ? html("p", { class: "help" }, `help: ${each.help}`) : null,
+        ...each.related.map(({ file, line, message }) => html("p", { class: "help" }, `${file}:${line}: ${message}`)),
         each.file ? html("p", { class: "place" }, `${each.file}:${each.line}`) : null
       )));
     }
@@ -2077,8 +2311,9 @@ ${place2.key}`;
       if (state.error && !state.active.size) return `failed in ${name(state.error.path)}`;
       const status = this.timeline.follows ? this.control.status : null;
       if (status?.ended) return state.error ? `failed in ${name(state.error.path)}: ${state.error.message}` : "ended";
-      const running = activeLeaves(state).map((path) => `${name(path)} ${this.since(state, path)}`);
-      const waits = (status?.at ?? []).map(({ path, outcome }) => outcome === null ? `paused before ${name(path)}` : `paused after ${name(path)}: ${outcome}`);
+      const round = (path) => state.rounds.has(path) ? ` (${roundInWords(state, path)})` : "";
+      const running = activeLeaves(state).map((path) => `${name(path)}${round(path)} ${this.since(state, path)}`);
+      const waits = (status?.at ?? []).map(({ path, outcome, round: round2 }) => outcome === null ? `paused before ${round2 === null ? "" : `${round2 === "try" ? "a try" : "an item"} of `}${name(path)}` : `paused after ${name(path)}: ${outcome}`);
       if (waits.length) return waits.join(", ");
       if (status?.stopping) return `stopping: ${running.join(", ")}`;
       if (status?.paused) return `pauses before the next state: ${running.join(", ")}`;
@@ -2135,7 +2370,8 @@ ${place2.key}`;
     /** The section of the selected state; it is filled again as the run goes on. */
     fillPart(node) {
       if (!node) return;
-      const focused = this.part.contains(document.activeElement);
+      const focused = this.filledFor === node.path && this.part.contains(document.activeElement);
+      this.filledFor = node.path;
       const control = this.control.partFor(node);
       if (!focused || !control) this.part.replaceChildren(...control ? [control] : []);
       else this.part.querySelector(".facts")?.remove();
@@ -2144,7 +2380,7 @@ ${place2.key}`;
     facts(node) {
       const { graph } = this.viewer;
       const state = this.recording.at(this.timeline.position);
-      const path = node.shown ?? node.path;
+      const { path } = node;
       const visited = state.visited.get(path);
       const rows = [];
       const row = (name, value) => {
@@ -2172,8 +2408,7 @@ ${place2.key}`);
     key(event) {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.target.closest("input, select, textarea")) return;
-      const { selected, graph } = this.viewer;
-      const path = selected === null ? null : graph.nodes.get(selected)?.shown ?? selected;
+      const path = this.viewer.selected;
       const actions = {
         ",": () => this.timeline.step(-1),
         ".": () => this.timeline.step(1),
@@ -2181,7 +2416,7 @@ ${place2.key}`);
         s: () => this.control.do({ action: "step" }),
         o: () => this.toggleFollow(),
         r: () => this.control.pauseOrResume(),
-        b: () => path !== null && this.control.toggleBreakpoint(path, null)
+        b: () => path !== null && this.control.toggleBreakpoint({ path, outcome: null, round: null })
       };
       actions[event.key]?.();
     }
@@ -2196,8 +2431,9 @@ ${place2.key}`);
     visits.delete(graph.model.root);
     const taken = graph.model.edges.filter((edge) => isTaken(graph, statistics, edge)).map(edgeId);
     const times = new Map([...visits.keys()].flatMap((path) => {
-      const { mean } = statistics.states[path];
-      return mean ? [[path, seconds(mean)]] : [];
+      const { mean, rounds } = statistics.states[path];
+      const words = [rounds, mean ? seconds(mean) : ""].filter(Boolean).join(" \xB7 ");
+      return words ? [[path, words]] : [];
     }));
     viewer.highlight({ active: [], taken, visits, times });
     viewer.onMark((picture) => markNever(graph, statistics, picture));
@@ -2242,6 +2478,7 @@ ${place2.key}`);
       "ul",
       { class: "rows" },
       row("visits", String(found.visits)),
+      ...found.rounds ? [row("tries and items", found.rounds)] : [],
       row("mean time", seconds(found.mean)),
       row("longest", seconds(found.longest)),
       ...outcomes2,
@@ -2567,6 +2804,9 @@ out `);
         return { ...scene, ...size };
       }
       this.compose(root, { x: 0, y: 0 }, 0, placed, scene);
+      for (const [container, { far }] of placed) {
+        scene.lines.push(...far.flatMap((line) => this.straight(container, line, scene)));
+      }
       const { full } = placed.get(root);
       return { ...scene, ...full };
     }
@@ -2596,16 +2836,38 @@ out `);
       );
       const content = contentOf(this.graph, path, open, sizes);
       const done = await this.computed(content, placed);
-      const title = width(fitting(node.name, "title"), "title") + width(fitting(kindInWords(node), "detail"), "detail") + 96;
-      return { ...readLayout(content, done, title, this.direction), written };
+      const title = width(fitting(node.name, "title"), "title") + width(fitting(kindInWords(node), "detail"), "detail") + chipsOf(node).width + 106;
+      return { ...readLayout(content, done, title, this.direction), far: content.far, written };
     }
     async computed(content, placed) {
       const graph = (fast) => elkGraph(content, placed, this.direction, fast, Boolean(this.graph.model.statistics));
-      if (content.lines.length > VERY_MANY || reach(content) > FAR) {
-        return inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+      const rows = () => inRows(graph(true), this.direction === "DOWN", { x: SIDE, y: TOP });
+      if (content.lines.length > VERY_MANY || reach(content) > FAR) return rows();
+      const simple = () => this.compute(graph(true)).catch(rows);
+      return content.lines.length > MANY ? simple() : this.compute(graph(false)).catch(simple);
+    }
+    /** A line from one part of the scene to another one; none where both are in one closed container. */
+    straight(container, line, scene) {
+      const from = this.placeOf(container, line.from, scene);
+      const to = this.placeOf(container, line.to, scene);
+      if (!from || !to || from === to) return [];
+      const points = straightLine(from, to);
+      const [start, end2] = [points[0], points[1]];
+      const widest = Math.max(0, ...line.labels.map((text) => width(fitting(text, "label"), "label")));
+      const size = { width: widest + 10, height: LINE_HEIGHT * line.labels.length + 4 };
+      const label = line.labels.length ? { x: (start.x + end2.x - size.width) / 2, y: (start.y + end2.y - size.height) / 2, ...size } : null;
+      return [{ container, line, points, label }];
+    }
+    /** Where an end of a line is: a state, the closed container that hides it, or a mark of the container. */
+    placeOf(container, id, scene) {
+      const mark = scene.pieces.find((each) => each.container === container && each.piece.id === id);
+      if (mark) return mark;
+      for (let node = this.graph.nodes.get(id); node; node = node.parent === null ? void 0 : this.graph.nodes.get(node.parent)) {
+        const { path } = node;
+        const box = scene.boxes.find((each) => each.path === path);
+        if (box) return box;
       }
-      if (content.lines.length > MANY) return this.compute(graph(true));
-      return this.compute(graph(false)).catch(() => this.compute(graph(true)));
+      return void 0;
     }
     size(path, written = []) {
       const node = this.graph.nodes.get(path);
@@ -2635,6 +2897,16 @@ out `);
       }
     }
   };
+  function straightLine(from, to) {
+    const centre = ({ x, y, width: width2, height }) => ({ x: x + width2 / 2, y: y + height / 2 });
+    const border = (area, other) => {
+      const { x, y } = centre(area);
+      const [dx, dy] = [other.x - x, other.y - y];
+      const scale = Math.min(1, ...[dx ? area.width / 2 / Math.abs(dx) : 1, dy ? area.height / 2 / Math.abs(dy) : 1]);
+      return { x: x + dx * scale, y: y + dy * scale };
+    };
+    return [border(from, centre(to)), border(to, centre(from))];
+  }
   function moved(point, by) {
     return { ...point, x: point.x + by.x, y: point.y + by.y };
   }
@@ -2792,7 +3064,8 @@ ${name}`;
     });
     const lines = (done.edges ?? []).map((edge, index) => {
       const section2 = edge.sections?.[0];
-      const points = section2 ? [section2.startPoint, ...section2.bendPoints ?? [], section2.endPoint] : [];
+      const { from, to } = content.lines[index];
+      const points = section2 ? [section2.startPoint, ...section2.bendPoints ?? [], section2.endPoint] : straightLine(areaOf(places.get(from)), areaOf(places.get(to)));
       const box = edge.labels?.[0];
       const label = box && { x: box.x ?? 0, y: box.y ?? 0, width: box.width ?? 0, height: box.height ?? 0 };
       return {
@@ -2805,6 +3078,9 @@ ${name}`;
     const start = pieces[0];
     const entry = down ? start.x + start.width / 2 : start.y + start.height / 2;
     return { direction, ...frames(pieces, done, least, down), entry, pieces, lines };
+  }
+  function areaOf({ x = 0, y = 0, width: width2 = 0, height = 0 } = {}) {
+    return { x, y, width: width2, height };
   }
   function frames(pieces, done, least, down) {
     const exits = pieces.filter((each) => each.piece.what === "exit");
@@ -2885,9 +3161,11 @@ ${name}`;
     }
     const outcome = node.outcomes.find((each) => has(each.name));
     if (outcome) return { rank: 5, reason: `outcome ${outcome.name}` };
+    const badge2 = node.badges.find((each) => has(each.text) || has(each.field));
+    if (badge2) return { rank: 5, reason: badge2.text };
     const tag = node.tags.find(has);
     if (tag) return { rank: 5, reason: `tag ${tag}` };
-    if (has(node.shown ?? node.path)) return { rank: 6, reason: "path" };
+    if (has(node.path)) return { rank: 6, reason: "path" };
     return has(node.doc) ? { rank: 7, reason: "doc" } : null;
   }
   function searchField(graph, select, leave2) {
@@ -2930,7 +3208,7 @@ ${name}`;
       show();
     };
     const row = ({ node, reason }, index) => {
-      const around = node.parent === null ? "" : graph().nodes.get(node.parent)?.shown ?? node.parent;
+      const around = node.parent === null ? "" : node.parent;
       const item = html(
         "li",
         { id: `hit-${index}`, role: "option", "aria-selected": String(index === chosen) },
@@ -3025,7 +3303,7 @@ ${name}`;
     const world = svg("g", {});
     const frame = svg("svg", { class: "picture", role: "group", "aria-label": "State graph" }, world);
     const panel = html("aside", { "aria-label": "Details" });
-    const notice = html("p", { class: "notice", role: "status" });
+    const notice = html("div", { class: "notice", role: "status" });
     const progressText = html("span", { role: "status" });
     const progress = html(
       "p",
@@ -3121,8 +3399,7 @@ ${name}`;
     }
     function mark() {
       if (!picture) return;
-      markSelection(picture, selected);
-      if (selected === null) picture.states.get(graph.model.root)?.setAttribute("tabindex", "0");
+      markSelection(picture, selected, selected ?? graph.model.root);
       markRun(graph, picture, run);
       for (const each of markers) each(picture);
     }
@@ -3300,8 +3577,9 @@ ${name}`;
       setModel,
       expect,
       fit: whole,
-      notice(text) {
-        notice.textContent = text;
+      notice(text, more = null) {
+        if (text && more) notice.replaceChildren(html("details", {}, html("summary", {}, text), more));
+        else notice.textContent = text;
       },
       onSelect(listener) {
         listeners.push(listener);
@@ -3349,7 +3627,7 @@ ${name}`;
   }
 
   // src/main.ts
-  var VERSION = 1;
+  var VERSION = 2;
   async function main() {
     const model = JSON.parse(textOf("smachac-model"));
     if (model.version !== VERSION) throw new Error(`the model has version ${model.version}, not ${VERSION}`);

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from smachac.diagnostics.diagnostic import Report
 from smachac.ir.nodes import Checked
-from smachac.targets import BuildContext, Files, OptionError, Target, levels_open, made_by, stem
+from smachac.targets import (
+    DEPTH,
+    GENERATED,
+    BuildContext,
+    Files,
+    OptionError,
+    Target,
+    levels_open,
+    made_by,
+    stem,
+    view_of,
+)
 from smachac.targets.mermaid.diagram import diagram
 
 DIRECTIONS = ("TB", "LR", "BT", "RL")
@@ -15,11 +26,12 @@ def emit(machine: Checked, context: BuildContext, report: Report) -> Files:
 
     Raises OptionError for an invalid value of an option.
     """
-    depth = levels_open(context.options)
+    view = view_of(machine, context.options)
+    depth = levels_open(context.options, view)
     direction = context.options.get("direction", "TB")
     if direction not in DIRECTIONS:
         raise OptionError(f"`direction` must be one of {', '.join(DIRECTIONS)}, not `{direction}`")
-    lines = diagram(machine, depth=depth, direction=direction)
+    lines = diagram(machine, view, depth=depth, direction=direction)
     return {f"{stem(machine)}.mmd": "\n".join([f"%% {made_by(machine)}", *lines, ""])}
 
 
@@ -29,7 +41,8 @@ TARGET = Target(
     emit=emit,
     is_picture=True,
     options={
-        "depth": "levels of containers that are drawn open; deeper ones are closed boxes",
+        "depth": DEPTH,
+        "generated": GENERATED,
         "direction": "where the picture runs to: TB (down, the default), LR, BT or RL",
     },
 )

@@ -11,11 +11,9 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from smachac.ir import nodes
-from smachac.ir.graph import Edge, Vertex, edges
-from smachac.ir.nodes import Concurrence, Container, Leaf, Machine, Node, StateMachine
+from smachac.ir.nodes import Concurrence, Leaf, Machine, StateMachine
 from smachac.ir.outcome_names import fails
-from smachac.ir.script_paths import name_in_script, role_in_words
-from smachac.targets.dot.edges import items
+from smachac.ir.written import Written, WrittenEdge, WrittenState, items_in_words
 from smachac.targets.dot.style import UNKNOWN_LEGEND
 
 FAILURE = "✗"
@@ -29,66 +27,72 @@ _ODD = re.compile("[\x00-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 """Characters that HTML cannot represent."""
 
 
-def diagram(machine: Machine, *, depth: int | None, direction: str) -> Iterator[str]:
-    """The lines of a state diagram. Containers below `depth` levels are drawn as closed boxes."""
-    root = machine.root
+def diagram(machine: Machine, view: Written, *, depth: int | None, direction: str) -> Iterator[str]:
+    """The lines of a state diagram of the states of a view. Containers below `depth` levels are
+    drawn as closed boxes."""
+    root = view.root
     yield "stateDiagram-v2"
     yield f"  accTitle: {label(root.name)}"
     yield f"  direction {direction}"
-    ids = _Ids()
+    picture = _Picture(view, depth, frozenset(map(view.state, machine.unknown)))
     dashed: list[str] = []
-    todo: list[str | _Open] = [_Open(root, ids.new(root.name), root.name, 1)]
+    todo: list[str | _Open] = [_Open(root, picture.ids.new(root.name))]
     while todo:
         item = todo.pop()
         if isinstance(item, str):
             yield item
         else:
-            todo += reversed(list(_inside(item, ids, depth, machine.unknown, dashed)))
+            todo += reversed(list(_inside(item, picture, dashed)))
     if dashed:  # Mermaid ignores classes that are given in a composite state
-        legend = ids.new("legend")
+        legend = picture.ids.new("legend")
         yield f'  state "{label(UNKNOWN_LEGEND)}" as {legend}'
         yield "  classDef unknown stroke-dasharray: 4 3"
         yield f"  class {','.join([legend, *dashed])} unknown"
 
 
+class _Picture:
+    """What is drawn: the states of a view, the levels that are open, and the states that are not
+    known exactly."""
+
+    def __init__(self, view: Written, depth: int | None, unknown: frozenset[str]) -> None:
+        self.view, self.depth, self.unknown = view, depth, unknown
+        self.ids = _Ids()
+
+    def is_closed(self, state: WrittenState) -> bool:
+        return not state.children or (self.depth is not None and state.level >= self.depth)
+
+
 class _Open(NamedTuple):
-    """A container whose states are drawn in it: its identifier, its path, its level from 1."""
+    """A container whose states are drawn in it, and its identifier."""
 
-    container: Container
+    state: WrittenState
     id: str
-    path: str
-    level: int
 
 
-def _inside(
-    place: _Open, ids: _Ids, depth: int | None, unknown: Mapping[str, str], dashed: list[str]
-) -> Iterator[str | _Open]:
+def _inside(place: _Open, picture: _Picture, dashed: list[str]) -> Iterator[str | _Open]:
     """The lines in a container, and the containers in it that are drawn open. The identifiers of
-    the states in `unknown` go into `dashed`."""
-    container, pad = place.container, "  " * place.level
-    inside = {child.name: ids.new(f"{place.id}__{child.name}") for child in container.children}
-    arrows = _arrows(container, inside)
-    parallel = isinstance(container, Concurrence)
-
-    def closed(child: Node) -> bool:
-        return isinstance(child, Leaf) or not child.children or place.level == depth
-
+    the states that are not known exactly go into `dashed`."""
+    container, pad = place.state, "  " * (place.state.level + 1)
+    states = [picture.view.states[path] for path in container.children]
+    ids = {each.path: picture.ids.new(f"{place.id}__{each.name}") for each in states}
+    arrows = _arrows(container, {each.path: each for each in states}, ids)
+    parallel = isinstance(container.node, Concurrence)
     # Mermaid's layout fails for some composite states that follow a simple one.
-    children = container.children if parallel else sorted(container.children, key=closed)
-    for number, child in enumerate(children):
-        id, path = inside[child.name], f"{place.path}/{child.name}"
+    ordered = states if parallel else sorted(states, key=picture.is_closed)
+    for number, state in enumerate(ordered):
+        id = ids[state.path]
         if parallel and number:
             yield f"{pad}--"
-        if isinstance(child, Leaf) or closed(child):
-            yield from (pad + line for line in _box(child, id))
+        if picture.is_closed(state):
+            yield from (pad + line for line in _box(state, id))
         else:
-            yield f'{pad}state "{_title(child)}" as {id} {{'
-            yield _Open(child, id, path, place.level + 1)
+            yield f'{pad}state "{_title(state)}" as {id} {{'
+            yield _Open(state, id)
             yield f"{pad}}}"
-        if path in unknown:
+        if state.path in picture.unknown:
             dashed.append(id)
         if parallel:
-            yield from (pad + line for line in arrows.pop(child.name, ()))
+            yield from (pad + line for line in arrows.pop(state.path, ()))
     for lines in arrows.values():
         yield from (pad + line for line in lines)
 
@@ -132,56 +136,62 @@ def _code(character: str) -> str:
     return f"#{ord(character)};"
 
 
-def _kind(node: Node) -> str:
-    return role_in_words(node) or node.type
+def _with_badges(text: str, state: WrittenState) -> str:
+    """A text, and the badges of a state behind it."""
+    return ", ".join([text, *(label(badge.text) for badge in state.badges)])
 
 
-def _box(node: Node, id: str) -> Iterator[str]:
+def _box(state: WrittenState, id: str) -> Iterator[str]:
     """A leaf, or a container that is drawn closed."""
-    yield f'state "{label(name_in_script(node))}" as {id}'
-    if node.type:
-        more = "" if isinstance(node, Leaf) else " +"
-        yield f"{id} : {label(_kind(node))}{more}"
+    yield f'state "{label(state.name)}" as {id}'
+    if state.node.type:
+        more = "" if isinstance(state.node, Leaf) else " +"
+        yield f"{id} : {_with_badges(label(state.node.type) + more, state)}"
 
 
-def _title(container: Container) -> str:
-    name = label(name_in_script(container))
-    if isinstance(container, StateMachine) and not container.sugar:
-        return name
-    first = isinstance(container, Concurrence) and container.join == "any" and not container.sugar
-    return f"{name} ({label(_kind(container))}{', first to end' if first else ''})"
+def _title(state: WrittenState) -> str:
+    name, container = label(state.name), state.node
+    if isinstance(container, StateMachine):
+        words = ", ".join(label(badge.text) for badge in state.badges)
+        return f"{name} ({words})" if words else name
+    kind = label(container.type)
+    if isinstance(container, Concurrence) and container.join == "any":
+        kind += ", first to end"
+    return f"{name} ({_with_badges(kind, state)})"
 
 
-def _rules(child: Node, outcome: str) -> str:
+def _rules(state: WrittenState, outcome: str) -> str:
     """When a concurrence of the script ends with an outcome; empty for all other nodes."""
-    if not isinstance(child, Concurrence) or child.sugar:
+    node = state.node
+    if not isinstance(node, Concurrence):
         return ""
     found = []
-    for rule in child.rules:
+    for rule in node.rules:
         if rule.outcome == outcome:
             when = [f"{label(each.child)} = {label(each.outcome)}" for each in rule.when]
             found.append(" and ".join(when) or "always")
-    if outcome == child.default_outcome:
+    if outcome == node.default_outcome:
         found.append("otherwise")
     return f" ({' or '.join(found)})" if found else ""
 
 
-def _arrows(container: Container, ids: dict[str, str]) -> dict[str, list[str]]:
-    """The lines of the edges in a container, by the child that they start at or enter; all edges
-    between the same two states are one.
+def _arrows(
+    container: WrittenState, states: Mapping[str, WrittenState], ids: Mapping[str, str]
+) -> dict[str, list[str]]:
+    """The lines of the edges in a container, by the path of the state that they start at or enter;
+    all edges between the same two states are one.
 
     The edges on which an iterator goes on are a label of its start: Mermaid draws the label of an
     edge from a state to itself below other labels.
     """
-    children = {child.name: child for child in container.children}
     bundles: dict[tuple[str, str], dict[str, None]] = {}
-    for edge in edges(container):
-        source, target = _name(edge.source), _name(edge.target)
+    for edge in container.edges():
         if edge.kind == "loop":
             continue
+        source, target = edge.source or "", "" if edge.leaves else edge.target
         line = f"{ids.get(source, '[*]')} --> {ids.get(target, '[*]')}"
         bundle = bundles.setdefault((source or target, line), {})
-        texts = _words(container, edge, children[source]) if source else _start(container, edge)
+        texts = _words(container, edge, states[source]) if source else _start(container, edge)
         bundle.update(dict.fromkeys(texts))
     found: dict[str, list[str]] = {}
     for (owner, line), labels in bundles.items():
@@ -190,35 +200,28 @@ def _arrows(container: Container, ids: dict[str, str]) -> dict[str, list[str]]:
     return found
 
 
-def _name(vertex: Vertex) -> str:
-    """A child by its name; empty for the start and the exits."""
-    return vertex if isinstance(vertex, str) else ""
-
-
-def _words(container: Container, edge: Edge, child: Node) -> list[str]:
-    """The label of an edge: its outcome, and that of the container if it ends with another one."""
-    text = label(edge.outcome) + _rules(child, edge.outcome)
-    if not isinstance(edge.target, str) and not isinstance(container, Concurrence):
-        end = edge.target[1]
+def _words(container: WrittenState, edge: WrittenEdge, state: WrittenState) -> list[str]:
+    """The label of an edge: its outcome, and that of the container if it ends with another one, or
+    what begins after it."""
+    text = label(edge.outcome) + _rules(state, edge.outcome)
+    if edge.leaves and not isinstance(container.node, Concurrence):
+        end = edge.target
         text += f" → {label(end)}" if end != edge.outcome else ""
-        text += f" (after the last {_round(container)})" if edge.kind == "exhausted" else ""
+        text += " (after the last item)" if edge.kind == "exhausted" else ""
+        if (again := container.next_round(end)) is not None:
+            text += f" → next {again}"
     if edge.kind == "implicit":
         text = f"({text})"
-    return [f"{FAILURE} {text}" if fails(child, edge.outcome) else text]
+    return [f"{FAILURE} {text}" if fails(state.outer, edge.outcome) else text]
 
 
-def _start(container: Container, edge: Edge) -> list[str]:
+def _start(container: WrittenState, edge: WrittenEdge) -> list[str]:
     """The lines of the label of an edge from the start; those of an iterator describe the loop."""
-    if not isinstance(container, nodes.Iterator):
+    node = container.node
+    if not isinstance(node, nodes.Iterator):
         return []
-    if not isinstance(edge.target, str):
-        return [f"no items → {label(edge.target[1])}"]
-    found = []
-    if container.sugar != "retry":
-        found.append(f"for each {label(container.item_key)} {label(items(container))}")
-    again = [label(name) for name in container.loop_outcomes]
-    return [*found, f"next {_round(container)} after {' or '.join(again)}"] if again else found
-
-
-def _round(container: Container) -> str:
-    return "try" if container.sugar == "retry" else "item"
+    if edge.leaves:
+        return [f"no items → {label(edge.target)}"]
+    found = [f"for each {label(node.item_key)} {label(items_in_words(node))}"]
+    again = [label(name) for name in node.loop_outcomes]
+    return [*found, f"next item after {' or '.join(again)}"] if again else found

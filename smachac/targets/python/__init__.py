@@ -17,7 +17,6 @@ from smachac.pysource.user_code import Declared
 from smachac.targets import BuildContext, Files, OptionError, Target, stem
 from smachac.targets.errors import unsupported_by_target
 from smachac.targets.python import ros
-from smachac.targets.python.package import package_name
 
 OPTIONS = {
     "comments": "yes: print the comment blocks of templates (default: no)",
@@ -90,6 +89,8 @@ def _package(machine: Machine, context: BuildContext, version: Ros) -> str:
         return ""
     if not ros.is_node(machine, context.library, version):
         raise OptionError("`package` needs a node of ROS 2: a script with the base `ROSBase`")
+    from smachac.targets.python.package import package_name
+
     return package_name(value, machine)
 
 

@@ -269,13 +269,14 @@ def _forms(machine: Machine, inlined: Inlined) -> dict[str, int | None]:
                 callbacks = [v for v in child.variables if v.role == "callbacks"]
                 parts += [v.name for v in child.variables]
                 parts.append(repr([v.value.data for v in callbacks]))
-                child = replace(child, variables=())
+                if child.variables or child.claims:
+                    child = replace(child, variables=(), claims=())
             else:
                 inner = found[f"{path}/{child.name}"]
                 if inner is None or inlined(child):
                     break
-                child = _bare(child)
-            parts += [inner, child.span, replace(child, claims=())]
+                child = replace(_bare(child), claims=())
+            parts += [inner, child.span, child]
         else:
             found[path] = numbers.setdefault(tuple(parts), len(numbers))
             continue

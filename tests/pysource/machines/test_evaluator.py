@@ -232,6 +232,32 @@ with sm:
     smach.StateMachine.add("A", Do(), transitions=dict(ok="B"))
     smach.StateMachine.add("B", Do(), transitions={**{"ok": "wrong"}, "ok": "done"})
 """,
+    "a function that a loop runs an unknown number of times": """
+def main():
+    sm = smach.StateMachine(outcomes=["done"])
+    names = []
+    for name in "AB":
+        names.append(name)
+    with sm:
+        smach.StateMachine.add(names[0], Do(), {"ok": names[1]})
+        smach.StateMachine.add(names[1], Do(), {"ok": "done"})
+    sm.execute()
+
+while not vendor.is_shutdown():
+    main()
+""",
+    "objects of one branch": """
+if vendor.flag():
+    sm = smach.StateMachine(outcomes=["done"])
+    sm.userdata.a = 1
+    with sm:
+        smach.StateMachine.add("A", Do(), {"ok": "B"})
+        smach.StateMachine.add("B", Do(), {"ok": "done"})
+    found = {}
+    found["A"] = "B"
+else:
+    found = vendor.found()
+""",
     "recursion with known ends": """
 def chain(names):
     if not names:
@@ -259,6 +285,54 @@ if vendor.flag():
 sm = smach.StateMachine(outcomes=["done"])
 with sm:
     smach.StateMachine.add("A", Do(outcomes), {"ok": "done"})
+""",
+    "a list that one turn of a loop makes, and another one changes": """
+while vendor.flag():
+    if vendor.first():
+        outcomes = ["ok"]
+    else:
+        outcomes.append("failed")
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+    smach.StateMachine.add("A", Do(outcomes), {"ok": "done"})
+""",
+    "an attribute that one turn of a loop makes, and another one changes": """
+class Lists:
+    pass
+lists = Lists()
+while vendor.flag():
+    if vendor.first():
+        lists.outcomes = ["ok"]
+    else:
+        lists.outcomes.append("failed")
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+    smach.StateMachine.add("A", Do(lists.outcomes), {"ok": "done"})
+""",
+    "a list that an inner function of a loop keeps": """
+kept = []
+def more():
+    outcomes = ["ok"]
+    kept.append(outcomes)
+    return outcomes
+while vendor.flag():
+    for outcomes in kept:
+        outcomes.append("failed")
+    more()
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+    smach.StateMachine.add("A", Do(kept[0]), {"ok": "done"})
+""",
+    "a list before and after an unknown return": """
+def outcomes():
+    found = ["ok"]
+    if vendor.flag():
+        return found
+    found.append("failed")
+    return found
+sm = smach.StateMachine(outcomes=["done"])
+with sm:
+    smach.StateMachine.add("A", Do(outcomes()), {"ok": "done"})
 """,
     "outcomes that unknown code gets": """
 outcomes = ["ok"]

@@ -65,6 +65,15 @@ WRONG = {
         '    sm.add("A", names.Dooo())\n',
         'SM803 sm.add("A", names.Dooo())',
     ),
+    "a name that the file lacks": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Dooo())\n',
+        'SM803 sm.add("A", Dooo())',
+    ),
+    "a name that the file and the module of a star import lack": (
+        'from names import *\nsm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", Dooo())\n',
+        'SM803 sm.add("A", Dooo())',
+    ),
     "a key twice": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
         '    sm.add("A", Do(), {"ok": "gone", "ok": "ok"})\n',
@@ -83,6 +92,57 @@ WRONG = {
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Do())\n'
         '    sm.add("B", Do())\n',
         'SM201 sm.add("B", Do())',
+    ),
+    "a container that runs as a state": (
+        'class Run(smach.StateMachine):\n    def __init__(self):\n'
+        '        smach.StateMachine.__init__(self, outcomes=["ok"])\n'
+        '    def execute(self, userdata):\n        return "okk"\n'
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Run())\n',
+        'SM309 return "okk"',
+    ),
+    "a key that is read in a loop after another condition": (
+        'class Loop(smach.State):\n    def __init__(self):\n'
+        '        smach.State.__init__(self, outcomes=["ok"], input_keys=["part"])\n'
+        '    def execute(self, userdata):\n        if self.preempt_requested():\n'
+        '            return "ok"\n        while not vendor.is_shutdown():\n'
+        '            print(userdata.part)\n        return "ok"\n'
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Loop())\n',
+        'SM301 sm.add("A", Loop())',
+    ),
+    "a key that a state sets under another name": (
+        'class Set(smach.State):\n    def __init__(self):\n'
+        '        smach.State.__init__(self, outcomes=["ok"], output_keys=["part"])\n'
+        '    def execute(self, userdata):\n        userdata.part = 1\n        return "ok"\n'
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", Set(), {"ok": "B"}, {"part": "other"})\n    sm.add("B", Use())\n',
+        'SM301 sm.add("B", Use())',
+    ),
+    "an outcome that a comment names": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    # smachac: outcomes ok, no\n'
+        '    # the arm\n    sm.add("A", vendor.Do(), {"ok": "ok"})\n',
+        'SM104 sm.add("A", vendor.Do(), {"ok": "ok"})',
+    ),
+    "a key that a comment names": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", vendor.Do(),  # smachac: outcomes ok\n'
+        '           {"ok": "ok"})  # smachac: input_keys part\n',
+        'SM301 sm.add("A", vendor.Do(),  # smachac: outcomes ok',
+    ),
+    "a key that a state does not set, as a comment says": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    # smachac: outcomes ok\n    # smachac: output_keys other\n'
+        '    sm.add("A", vendor.Do(), {"ok": "B"})\n    sm.add("B", Use())\n',
+        'SM301 sm.add("B", Use())',
+    ),
+    "a comment at a state that is known": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", Do())  # smachac: outcomes ok\n',
+        'SM022 sm.add("A", Do())  # smachac: outcomes ok',
+    ),
+    "a comment without names": (
+        'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+        '    sm.add("A", vendor.Do())  # smachac: outcomes\n',
+        'SM022 sm.add("A", vendor.Do())  # smachac: outcomes',
     ),
     "a key that nothing sets": (
         'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Use())\n',
@@ -104,6 +164,185 @@ sm = smach.StateMachine(outcomes=["done", "no"])
 with sm:
     sm.add("A", Do("ok", "no"), dict(table, no="B"))
     sm.add("B", Do(), table.copy())
+""",
+    "a name that a module can have that was not found": """
+from vendor import *
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Dooo())
+""",
+    "a name of Python 2, and one that a handler expects to be missing": """
+try:
+    text = nothing
+except NameError:
+    text = unicode("A")
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Do() if raw_input() else text)
+""",
+    "a name that the file binds in another function": """
+def prepare():
+    global table
+    table = {"ok": "ok"}
+def build():
+    sm = smach.StateMachine(outcomes=["ok"])
+    with sm:
+        sm.add("A", Do(), table)
+""",
+    "one value twice": """
+sm = smach.StateMachine(outcomes=["ok"])
+sm.userdata.b = 1
+with sm:
+    sm.add("A", Use(), remapping={"part": "b", "part": "b"})
+""",
+    "a method execute that other code sets": """
+class Plan(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok"])
+def run(userdata):
+    return "ok"
+plan = Plan()
+plan.execute = run
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", plan)
+sm.execute()
+""",
+    "a callback whose second parameter gets another value": """
+class Node:
+    @smach.cb_interface(outcomes=["ok"])
+    def call(self, robot):
+        robot.count = robot.total
+        return "ok"
+    def build(self, robot):
+        sm = smach.StateMachine(outcomes=["ok"])
+        with sm:
+            sm.add("A", smach.CBState(self.call, cb_kwargs={"robot": robot}))
+        sm.execute()
+Node().build(vendor.robot())
+""",
+    "a key that the values of other keys select": """
+class Mode(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"], input_keys=["mode", "part"])
+    def execute(self, userdata):
+        mode = userdata.mode
+        if mode == 1:
+            return "no"
+        print(userdata.part)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok", "no"])
+sm.userdata.mode = 1
+with sm:
+    sm.add("A", Mode())
+sm.execute()
+""",
+    "a key whose absence is caught": """
+class Careful(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"], input_keys=["part"])
+    def execute(self, userdata):
+        try:
+            part = userdata.part
+        except KeyError:
+            return "no"
+        print(userdata.part, part)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok", "no"])
+with sm:
+    sm.add("A", Careful())
+sm.execute()
+""",
+    "a key that a try sets": """
+class Try(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok"], input_keys=["part"], output_keys=["part"])
+    def execute(self, userdata):
+        try:
+            userdata.part = vendor.part()
+        except vendor.Error:
+            print("error")
+        print(userdata.part)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Try())
+sm.execute()
+""",
+    "a key that a counter selects": """
+class Count(smach.State):
+    def __init__(self):
+        smach.State.__init__(self, outcomes=["ok", "no"], input_keys=["part"], output_keys=["part"])
+        self.tries = 0
+    def execute(self, userdata):
+        self.tries += 1
+        if self.tries == 2:
+            print(userdata.part)
+            return "ok"
+        userdata.part = 1
+        return "no"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Count(), {"no": "A"})
+sm.execute()
+""",
+    "outcomes of a concurrence that are not known": """
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    both = smach.Concurrence(vendor.outcomes(), "no")
+    with both:
+        smach.Concurrence.add("A", Do())
+    sm.add("BOTH", both, {"ok": "ok", "no": "ok"})
+sm.execute()
+""",
+    "a concurrence with the outcomes of an unknown state": """
+class Limited(smach.Concurrence):
+    def __init__(self, state):
+        outcomes = set(state.get_registered_outcomes())
+        outcomes.add("late")
+        smach.Concurrence.__init__(self, list(outcomes), default_outcome="late",
+                                   outcome_map={"ok": {"B": "ok"}})
+        with self:
+            smach.Concurrence.add("A", state)
+            smach.Concurrence.add("B", Do())
+""",
+    "outcomes that an assignment to a slice changes": """
+outcomes = ["ok", "no", "wrong"]
+outcomes[:] = [name for name in outcomes if name != "wrong"]
+outcomes[1:2] = ["bad"]
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    inner = smach.StateMachine(outcomes)
+    with inner:
+        inner.add("A", Do("ok", "bad"))
+    sm.add("B", inner, {"bad": "ok"})
+sm.execute()
+""",
+    "a key that an unknown attribute selects": """
+class Wait(smach.State):
+    def __init__(self, time=None):
+        smach.State.__init__(self, outcomes=["ok"], input_keys=["time"])
+        self.time = time
+    def execute(self, userdata):
+        print(self.time if self.time else userdata.time)
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Wait(vendor.Duration(1)))
+sm.execute()
+""",
+    "a key of the name of an attribute that selects": """
+class Wait(smach.State):
+    def __init__(self, time=None):
+        smach.State.__init__(self, outcomes=["ok"], input_keys=["time"], output_keys=["time"])
+        self.time = time
+    def execute(self, userdata):
+        userdata.time = self.time if self.time else userdata.time
+        return "ok"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    sm.add("A", Wait(2))
+sm.execute()
 """,
     "a container added twice": """
 def inner():
@@ -218,6 +457,14 @@ sm = smach.StateMachine(outcomes=["ok"])
 with sm:
     sm.add("A", Do(), {"ok": None})
 """,
+    "a comment in a text": """
+TEXT = "# smachac: outcomes done"
+sm = smach.StateMachine(outcomes=["ok"])
+with sm:
+    # smachac: outcomes ok, no
+    sm.add("A", vendor.Do("# smachac: outcomes done"), {"ok": "ok", "no": "B"})
+    sm.add("B", Use())
+""",
     "a suppression": """
 sm = smach.StateMachine(outcomes=["ok"])
 with sm:
@@ -247,3 +494,35 @@ def test_files_of_a_repository_do_not_change_each_other(tmp_path: Path) -> None:
         for name in ("one.py", "two.py", "one.py")
     ]
     assert codes == [["SM101"], [], ["SM101"]]
+
+
+def test_a_fault_of_a_module_belongs_to_each_file_that_imports_it(tmp_path: Path) -> None:
+    (tmp_path / "names.py").write_text("import other\nFIRST = other.MISSING\n", "utf-8")
+    (tmp_path / "other.py").write_text("import smach\n", "utf-8")
+    text = 'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", Do())\n'
+    for name in ("one.py", "two.py"):
+        (tmp_path / name).write_text(f"{HEAD}\nimport names\n{text}", "utf-8")
+    project = PythonProject(Disk())
+    places = [
+        [(item.code, Path(item.span.source.name).name) for item in project.read(file).report]
+        for file in (tmp_path / "two.py", tmp_path / "one.py", tmp_path / "two.py")
+    ]
+    assert places == [[("SM803", "names.py")]] * 3
+
+
+def test_a_state_that_a_comment_describes_is_known(tmp_path: Path) -> None:
+    path = tmp_path / "machine.py"
+    text = 'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n    sm.add("A", vendor.Do())'
+    path.write_text(f"{HEAD}{text}  # smachac: outcomes ok\n", "utf-8")
+    coverage = PythonProject(Disk()).read(path).coverage
+    assert coverage is not None
+    assert (coverage.states, coverage.exact) == (1, 1)
+
+
+def test_a_comment_about_a_finding_that_only_all_rules_report_is_used(tmp_path: Path) -> None:
+    code = 'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+    code += '    sm.add("A", Do("ok", "no"), {"no": "A"})  # smachac: allow SM105 it is meant\n'
+    assert found(code, tmp_path) == []
+    path = tmp_path / "machine.py"
+    report = PythonProject(Disk()).read(path, everything=True).report
+    assert "SM105" not in {item.code for item in report}

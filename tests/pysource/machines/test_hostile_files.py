@@ -85,6 +85,13 @@ def test_any_text_gives_findings_or_none(name: str, tmp_path: Path) -> None:
     assert (done.returncode in (0, 1), done.stderr) == (True, ""), done.stderr[-2000:]
 
 
+@pytest.mark.parametrize("before", ["\f\n", "\f", "# \f\v\n", "x = '\f'\n", "# more\n" * 100_000])
+def test_a_place_is_right_after_form_feeds_and_in_a_long_file(before: str, tmp_path: Path) -> None:
+    path = tmp_path / "machine.py"
+    path.write_text(f"import smach\n{before}sm = smach.StateMachine('d')\nsm.execute()\n", "utf-8")
+    assert [(item.code, item.span.text) for item in read(path).report] == [("SM801", "'d'")]
+
+
 def test_a_folder_and_a_file_that_nobody_may_read(tmp_path: Path) -> None:
     folder = tmp_path / "x.py"
     folder.mkdir()

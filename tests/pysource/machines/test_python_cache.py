@@ -54,9 +54,9 @@ def read(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     found: list[Path] = []
     repository = PythonProject._repository
 
-    def noted(self: PythonProject, path: Path) -> object:
+    def noted(self: PythonProject, path: Path, everything: bool) -> object:
         found.append(path)
-        return repository(self, path)
+        return repository(self, path, everything)
 
     monkeypatch.setattr(PythonProject, "_repository", noted)
     return found
