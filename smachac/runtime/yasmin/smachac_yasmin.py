@@ -109,9 +109,11 @@ class _Node:
             self.observer({"event": event, "path": self.path, **fields})
 
     def ended(self, outcome):
-        """Note the outcome of this visit."""
+        """Note the outcome of this visit. YASMIN raises an error for one that is not declared."""
         self.last = outcome
         self.tell("exit", outcome=outcome)
+        if isinstance(self.parent, Machine) and outcome not in self.get_outcomes():
+            self.tell("error", message=f"{outcome!r} is not one of its outcomes")
         return outcome
 
 
