@@ -8,8 +8,8 @@
 
 The machines and the loops (bench/cpp_machines) run the same bodies of states, which the optimiser
 does not see. CPU time, minimum of interleaved rounds; instructions are those of callgrind, where
-valgrind is installed. `watched` is the machine with an observer that counts events, `with writes`
-with one that gets the writes too.
+valgrind is installed. `watched` is the machine with an Observer that counts events, `with writes`
+with one that gets the writes too, `counted` with an observer of another class (a template).
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ PLACED = "-falign-functions=32"
 """Without a fixed alignment of functions the times of such short loops differ by a third."""
 STEPS = 10_000_000
 COUNTED = 100_000
-WAYS = ("by_hand", "alone", "watched", "with_writes")
+WAYS = ("by_hand", "alone", "watched", "with_writes", "counted")
 
 WORKLOADS = {
     "ping-pong": (machines.ring(2), machines.ring_by_hand(2)),
@@ -130,8 +130,8 @@ def instructions(program: Path, count: int, way: str) -> float:
 
 def speed(compiler: str, steps: int) -> Iterator[str]:
     """Lines of a table."""
-    yield f"| {compiler} | by hand | smachac | ratio | watched | with writes |"
-    yield "| --- | --- | --- | --- | --- | --- |"
+    yield f"| {compiler} | by hand | smachac | ratio | watched | with writes | counted |"
+    yield "| --- | --- | --- | --- | --- | --- | --- |"
     for name, (script, by_hand) in WORKLOADS.items():
         with tempfile.TemporaryDirectory() as folder:
             program = compiled(Path(folder), script, by_hand, compiler)
@@ -141,9 +141,9 @@ def speed(compiler: str, steps: int) -> Iterator[str]:
             rows = {"ns": [float(each) for each in ran.stdout.split()]}
             if shutil.which("valgrind"):
                 rows["instructions"] = [instructions(program, COUNTED, way) for way in WAYS]
-            for unit, (hand, alone, watched, writes) in rows.items():
+            for unit, (hand, alone, watched, writes, counted) in rows.items():
                 cells = [f"{hand:.1f}", f"{alone:.1f}", f"{alone / hand:.2f}"]
-                cells += [f"{watched:.0f}", f"{writes:.0f}"]
+                cells += [f"{watched:.0f}", f"{writes:.0f}", f"{counted:.1f}"]
                 yield f"| {name}, {unit} | {' | '.join(cells)} |"
 
 
@@ -166,7 +166,7 @@ def stepped(compiler: str) -> Iterator[str]:
             main.write_text(f'{text}{by_hand}#include "step_main.hpp"\n')
             program = Path(folder) / "program"
             call = command(compiler, "-O2", "-fno-exceptions", "-fno-rtti")
-            files = [main, BODIES / "step_bodies.cpp", "-o", program]
+            files = [str(main), str(BODIES / "step_bodies.cpp"), "-o", str(program)]
             subprocess.run([*call, *files], check=True)
             hand, own, counted = (
                 instructions(program, COUNTED, way) for way in ("by_hand", "stepped", "counted")

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from smachac.driver import analyse_script, compile_script
 from smachac.targets.html import TARGET
 from tests.browser.pages import started_browser
-from tests.browser.scripts import SHAPES, flat_script, large_script
+from tests.browser.scripts import SHAPES, flat_script, large_script, limited_script
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -66,6 +66,44 @@ def measure(browser: Browser, path: Path, *, open_all: bool = False) -> str:
     return f"{drawn:.1f} | {answered:.1f} | {fitted:.1f}"
 
 
+CLICKS = 40
+
+
+def click_cost(browser: Browser, path: Path) -> str:
+    """The CPU time of the page's thread for one click on a state, in ms, with all containers open,
+    and the wall time of the middle one of the clicks until the next frame."""
+    page = browser.new_page(viewport={"width": 1440, "height": 900})
+    page.set_default_timeout(10 * TIMEOUT)
+    page.goto(path.as_uri())
+    page.wait_for_selector("html[data-ready]")
+    page.get_by_role("button", name="Open all").click()
+    page.wait_for_selector("svg.picture:not([aria-busy])")
+    devtools = page.context.new_cdp_session(page)
+    devtools.send("Performance.enable")
+
+    def thread_time() -> float:
+        found = devtools.send("Performance.getMetrics")["metrics"]
+        return next(float(each["value"]) for each in found if each["name"] == "ThreadTime")
+
+    before = thread_time()
+    walls = page.evaluate(
+        """async (count) => {
+          const states = [...document.querySelectorAll("g.state")], found = [];
+          for (let at = 0; at < count; at += 1) {
+            const start = performance.now(), state = states[(at * 53 + 7) % states.length];
+            state.dispatchEvent(new MouseEvent("click", { bubbles: true }));
+            await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+            found.push(performance.now() - start);
+          }
+          return found;
+        }""",
+        CLICKS,
+    )
+    cost = 1000 * (thread_time() - before) / CLICKS
+    page.close()
+    return f"{cost:.0f} ms of CPU, {sorted(walls)[CLICKS // 2]:.0f} ms until the next frame"
+
+
 def main(counts: list[int]) -> None:
     print("| shape | states | until drawn, s | a selection, s | the whole machine, s |")
     print("|---|---:|---:|---:|---:|")
@@ -78,6 +116,8 @@ def main(counts: list[int]) -> None:
         print(f"| 40 machines of 50 | 2,041 | {measure(browser, path)} |", flush=True)
         found = measure(browser, path, open_all=True)
         print(f"| the same, Open all | 2,041 | {found} |", flush=True)
+        path = page_of(limited_script(20, 24), Path(name))
+        print(f"a click, 500 states with limits and tries: {click_cost(browser, path)}")
 
 
 if __name__ == "__main__":

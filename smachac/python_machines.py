@@ -18,7 +18,7 @@ from smachac.frontend.discovery import PYTHON_SUFFIX
 from smachac.frontend.errors import python_machines as errors
 from smachac.frontend.errors.suppressions import vain_description
 from smachac.frontend.files import Disk, disk_library, lies_inside
-from smachac.frontend.text.suppressions import suppress
+from smachac.frontend.text.suppressions import MARK, suppress
 from smachac.ir.nodes import Machine
 from smachac.ir.recursion import deep_recursion
 from smachac.ir.traversal import walk
@@ -44,6 +44,8 @@ Only errors of these are, because a warning can be about a path that is impossib
 branches (SM405) is none of them: both can use parts of one value, as entries of a dictionary."""
 
 _RULES = frozenset(rule.code.code for rule in RULES)
+
+_DEFAULT_RULES = tuple(rule for rule in RULES if rule.code.code in CANNOT_WORK)
 
 IN_ALL = frozenset({"SM201", "SM203"})
 """The codes of findings that count only if they are true of each instance of a container: another
@@ -98,7 +100,9 @@ class PythonProject:
                 path=path, source=source, report=[*report, *known.report], coverage=known.coverage
             )
         read_before = [*report]
-        repository, evaluator, reader = self._repository(path, everything)
+        whole_rules = everything or MARK in source.text  # a comment can be about any finding
+        rules = RULES if whole_rules else _DEFAULT_RULES
+        repository, evaluator, reader = self._repository(path, whole_rules)
         del evaluator.faults[:]
 
         def made(roots: Roots) -> list[Graph]:
@@ -107,13 +111,13 @@ class PythonProject:
         with deep_recursion():
             several = machines_of(repository, evaluator, str(path), made)
             whole = [graph for some in several for graph in some]
-            findings = [item for graph in whole for item in check_machine(graph.machine)]
+            findings = [item for graph in whole for item in check_machine(graph.machine, rules)]
             findings = _in_file(findings, str(path))
             variants: list[Graph] = []
             if any(item.code in IN_ALL and (everything or _cannot_work(item)) for item in findings):
                 some = variants_of(repository, evaluator, str(path), made)
                 variants = [graph for several in some for graph in several]
-                more = (item for graph in variants for item in check_machine(graph.machine))
+                more = (item for graph in variants for item in check_machine(graph.machine, rules))
                 own = _in_file([*more], str(path))
                 findings += [item for item in own if item.code in IN_ALL]
         report += _true_of_all(findings, [graph.machine for graph in (*whole, *variants)])
@@ -123,7 +127,7 @@ class PythonProject:
             report.append(_too_long(source))
         self.disk.searched.update(repository.files_of(str(path)))
         rest, _, _ = suppress([*map(_of_python, report)], source, (source,), CODES)
-        if not everything:  # afterwards, as a comment can be about any finding
+        if not everything:
             rest = [item for item in rest if _cannot_work(item)]
         found = grouped(apply_severities(in_order(rest), library.policy))
         coverage = coverage_of(whole)

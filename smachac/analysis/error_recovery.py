@@ -32,7 +32,7 @@ from smachac.ir.types import ANY, Type
 def unknown_remaps(node: Node) -> list[Remap]:
     """The remaps of keys that a state does not have. Those of keys that only code of the script
     uses are reported as such (SM308, SM310)."""
-    if is_open(node) or not node.remaps:
+    if not node.remaps or is_open(node):
         return []
     own = {key.name for key in (*node.inputs, *node.outputs)}
     own.update(lacking_inputs(node))
@@ -40,6 +40,11 @@ def unknown_remaps(node: Node) -> list[Remap]:
     if wrong and isinstance(node, Leaf):
         own |= {*undeclared_writes(node), *(key for key, _ in undeclared_reads(node))}
     return [remap for remap in wrong if remap.key not in own]
+
+
+def is_around_open(node: Node) -> bool:
+    """Whether a container was made for the sugar of a state whose keys are not known."""
+    return not isinstance(node, Leaf) and bool(node.sugar) and any(map(is_open, node.children))
 
 
 def lacking_inputs(node: Node) -> tuple[str, ...]:

@@ -46,10 +46,10 @@ def docs_command(arguments: Namespace) -> int:
             subject = path.read_text("utf-8").partition("\n")[0].lstrip("# ")
             print(f"{page:<{width}}  {subject}")
         return OK
-    path = pages.get(name.removeprefix("docs/").removesuffix(".md"))
-    if path is None:
+    wanted = pages.get(name.removeprefix("docs/").removesuffix(".md"))
+    if wanted is None:
         return usage(f"there is no page `{name}`", name, list(pages))
-    sys.stdout.write(path.read_text("utf-8"))
+    sys.stdout.write(wanted.read_text("utf-8"))
     return OK
 
 

@@ -371,7 +371,7 @@ def sugar_of(machine: Machine) -> Sugar:
             if part.role == "timeout":
                 limits[part.shown] = badges["timeout"].limit
             around = part.shown
-        if state.node.catches:
+        if state.catches:
             catching.add(state.path)
     return Sugar(states, repeated, limits, frozenset(added), frozenset(catching))
 

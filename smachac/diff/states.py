@@ -123,7 +123,7 @@ def _interface(inner: Node, outer: Node) -> Iterator[tuple[Fact, Value]]:
         ("doc", outer.doc),
         ("claims", ", ".join(inner.claims)),
         ("tags", ", ".join(inner.tags)),
-        ("caught as", inner.catches),
+        ("caught as", inner.catches or outer.catches),
     ):
         if text:
             yield ("field", name), (text,)

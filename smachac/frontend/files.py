@@ -410,9 +410,8 @@ def disk_library(
     Scripts are searched in the folder of the calling file, then in `scripts`, then in the project's
     `scripts`; templates in `templates`, the project's `templates`, `templates/` beside the main
     script, and the built-in folders; modules and headers of the user in the project's `code`, the
-    folder of the main script and its `include/`; message definitions of ROS as `definitions`
-    describes. No file outside these folders is read. `ros` replaces the version of ROS of the
-    project. `codes`: see `read_project`.
+    folder of the main script and its `include/`; definitions of ROS as `definitions` describes. No
+    other file is read. `ros` replaces that of the project; for `codes` see `read_project`.
     """
     disk = disk or Disk()
     project = find_project(main, report, disk, codes)
@@ -434,11 +433,6 @@ def disk_library(
     def script_folders(caller: str) -> list[Path]:
         return list(dict.fromkeys([Path(caller).parent, *scripts, *project.scripts]))
 
-    def searched(folders: Sequence[Path]) -> list[str]:
-        """The folders for messages, without those of the project that do not exist."""
-        own = (*project.scripts, *project.templates)
-        return [str(folder) for folder in folders if folder not in own or folder.is_dir()]
-
     def script(name: str, caller: str) -> Source | None:
         path = _found(name, script_folders(caller), SUFFIXES, disk, refuse)
         return disk.read(path, report) if path else None
@@ -459,8 +453,8 @@ def disk_library(
         definitions=lambda path, report: definitions(path, message_folders(), disk, report),
         definition_names=lambda folder: definition_names(folder, message_folders()),
         folders_with=lambda files: _folders_with(files, main.parent),
-        script_folders=lambda caller: searched(script_folders(caller)),
-        template_folders=lambda: searched(template_folders[: -len(BUILT_IN)]),
+        script_folders=lambda caller: _searched(script_folders(caller), project),
+        template_folders=lambda: _searched(template_folders[: -len(BUILT_IN)], project),
         script_names=lambda caller: _stems(script_folders(caller), (".yml", ".yaml")),
         robot_names=lambda caller: _with_ending(script_folders(caller), ROBOT_FILES),
         template_names=lambda: _stems(template_folders[:-1], (".tpl.py", ".tpl", ".yml")),
@@ -474,6 +468,12 @@ def disk_library(
         mesh=lambda name, urdf, packages: find_mesh(name, Path(urdf), packages),
         expand=disk.expand,
     )
+
+
+def _searched(folders: Sequence[Path], project: Project) -> list[str]:
+    """The folders for messages, without those of the project that do not exist."""
+    own = (*project.scripts, *project.templates)
+    return [str(folder) for folder in folders if folder not in own or folder.is_dir()]
 
 
 def definitions(path: str, folders: Sequence[Path], disk: Disk, report: Report) -> list[Source]:

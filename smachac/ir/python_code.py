@@ -97,7 +97,15 @@ def _has_too_many_operations(text: str) -> bool:
 def _is_deeper(tree: ast.AST, deepest: int) -> bool:
     level = [tree]
     for _ in range(deepest):
-        level = [child for node in level for child in ast.iter_child_nodes(node)]
-        if not level:
+        inside: list[ast.AST] = []
+        for node in level:
+            for name in node._fields:
+                part = getattr(node, name, None)
+                if isinstance(part, list):
+                    inside += [item for item in part if isinstance(item, ast.AST)]
+                elif isinstance(part, ast.AST) and part._fields:
+                    inside.append(part)
+        if not inside:
             return False
+        level = inside
     return True

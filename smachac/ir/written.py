@@ -64,7 +64,7 @@ class Badge(NamedTuple):
             case "for_each":
                 return f"for each {self.limit}"
             case "catches":
-                return f"error: {self.outcome}"
+                return f"exception \N{RIGHTWARDS ARROW} {self.outcome}"
         return self.limit
 
 
@@ -116,6 +116,11 @@ class WrittenState:
     parts: tuple[Part, ...]
 
     @property
+    def catches(self) -> str:
+        """The outcome that exceptions in the state become; empty if they are not caught."""
+        return self.outer.catches or self.node.catches
+
+    @property
     def repeated(self) -> tuple[str, ...]:
         """The outcomes of one try or item after which the next one begins."""
         return tuple(dict.fromkeys(name for badge in self.badges for name in badge.again))
@@ -137,7 +142,9 @@ class WrittenState:
 
     def field_of(self, outcome: str) -> BadgeField | None:
         """The field that adds an outcome; None for an outcome of the state itself."""
-        if outcome in outcome_names(self.node) and outcome != self.node.catches:
+        if outcome == self.catches:
+            return "catches"
+        if outcome in outcome_names(self.node):
             return None
         found = next((each for each in self.badges if each.outcome == outcome), None)
         if found is None and outcome == PREEMPTED:
@@ -207,6 +214,7 @@ def generated(machine: Machine) -> Written:
 
     def unfolded(node: Node, full: str, path: str) -> _Folded:
         badge = None if isinstance(node, Leaf) else _badge(node, full)
+        badge = badge and badge._replace(again=())  # its edges are drawn
         part = Part(path, "state", full, shown.get(full, full))
         return _Folded(node, full, (part,), (badge,) if badge else ())
 
@@ -235,7 +243,8 @@ def _view(root: Node, fold: Callable[[Node, str, str], _Folded]) -> Written:
         node = found.node
         inside = () if isinstance(node, Leaf) else node.children
         children = tuple(dict.fromkeys(f"{path}/{child.name}" for child in inside))
-        catches = (Badge("catches", "", found.full, node.catches),) if node.catches else ()
+        caught = outer.catches or node.catches
+        catches = (Badge("catches", "", found.full, caught),) if caught else ()
         states[path] = WrittenState(
             path=path,
             name=outer.name,
@@ -301,7 +310,10 @@ def _badge(node: Container, full: str) -> Badge | None:
             limit = f"{tries} {'try' if tries == 1 else 'tries'}"
             return Badge("retry", limit, full, node.exhausted_outcome, again, tries, _delay(node))
         case nodes.Iterator(sugar="for_each"):
-            limit = f"{node.item_key} {items_in_words(node)}".strip()
+            # A remapped key has another name in the state than in the script.
+            word = node.item_span.text
+            item = word if word.isidentifier() else node.item_key
+            limit = f"{item} {items_in_words(node)}".strip()
             return Badge(
                 "for_each", limit, full, "", node.loop_outcomes, _count(node), "", node.items
             )

@@ -78,8 +78,8 @@ def python_text(source: Source, *, template: bool) -> PythonText | None:
         if not template:  # finds `await` outside `async`, and `return` outside a function
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", SyntaxWarning)
-                compile(text, "", "exec", dont_inherit=True)
-    except (SyntaxError, RecursionError, MemoryError):
+                compile(tree, "", "exec", dont_inherit=True)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
     return PythonText(source=source, tree=tree, filled=filled)
 

@@ -8,7 +8,7 @@ from html import escape
 
 from smachac.diagnostics.diagnostic import Diagnostic
 from smachac.ir.nodes import Container, Machine
-from smachac.ir.traversal import walk
+from smachac.ir.written import written
 from smachac.report.terminal import visible
 from smachac.report.text import render_text, summary
 
@@ -62,7 +62,6 @@ def _svg(machine: Machine) -> str:
     import shutil
     import subprocess
 
-    from smachac.ir.written import written
     from smachac.targets.dot.graph import picture
 
     program = shutil.which("dot")
@@ -87,9 +86,11 @@ def _svg(machine: Machine) -> str:
 def _table(machine: Machine) -> str:
     """The states with their types and transitions, in Markdown."""
     lines = ["| state | type | transitions |", "| --- | --- | --- |"]
-    for path, node in walk(machine.root):
+    for path, state in written(machine).states.items():
+        node = state.node
         kind = type(node).__name__ if isinstance(node, Container) else node.type
-        edges = ", ".join(f"{edge.outcome} → {edge.target}" for edge in node.transitions)
+        kind = ", ".join([kind, *(badge.text for badge in state.badges)])
+        edges = ", ".join(f"{edge.outcome} → {edge.target}" for edge in state.outer.transitions)
         cells = (escape(visible(text)).replace("|", "&#124;") for text in (path, kind, edges))
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)

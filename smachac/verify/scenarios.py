@@ -30,8 +30,10 @@ def outcome_scenarios(machine: Machine, script: str, outcomes: Collection[str]) 
         if path.stopped or not path.ends:
             continue
         outcome = _outcome(machine, path.scenario)
-        best = found.get(outcome) if outcome is not None else None
-        if outcome in outcomes and (best is None or path.visits < best.visits):
+        if outcome is None or outcome not in outcomes:
+            continue
+        best = found.get(outcome)
+        if best is None or path.visits < best.visits:
             found[outcome] = path
     return {
         name: _text(machine, found[name].scenario, script, name)

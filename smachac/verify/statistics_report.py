@@ -116,9 +116,12 @@ def forecast_text(machine: Machine, statistics: TraceStatistics, found: Forecast
     lines += [f"as measured, not computed: {path}" for path in found.as_measured]
     if found.sensitivities:
         lines.append("failures, by the successes that the machine would gain without them:")
+    states = written(machine).states
+    words = {None: "visits", "try": "tries", "item": "items"}
     for each in found.sensitivities[:MOST_GAINS]:
+        visits = words[states[each.path].next_round(each.outcome)]
         lines.append(
-            f"  {each.path}: {each.outcome} ({percent(each.probability)} of its visits):"
+            f"  {each.path}: {each.outcome} ({percent(each.probability)} of its {visits}):"
             f" +{percent(each.gain)}"
         )
     return "".join(f"{on_one_line(line)}\n" for line in lines)

@@ -79,3 +79,14 @@ def test_an_unknown_target_can_be_every_state() -> None:
     """No state behind it is unreachable, no key unset, and no loop without an end."""
     text = TASK.replace("seen: GRASP, lost: failed", "seen: SOMEWHERE, lost: LOOK")
     assert [each[0] for each in reported({"main.yml": text})] == ["SM101"]
+
+
+@pytest.mark.parametrize("field", ["timeout: 5s", "retry: {on: [lost], max: 2}"])
+def test_an_unknown_type_with_a_time_limit_or_tries_is_one_finding(field: str) -> None:
+    """Such a state is a container of the state, which has the remapping."""
+    ends = "timeout: failed, preempted: failed"
+    if field.startswith("retry"):
+        ends = "exhausted: failed, preempted: failed"
+    text = TASK.replace("PrintUserdataState", f"Grsap\n      {field}")
+    text = text.replace("{succeeded: MOVE}", f"{{succeeded: MOVE, {ends}}}")
+    assert [each[0] for each in reported({"main.yml": text})] == ["SM013"]

@@ -54,3 +54,35 @@ def flat_script(shape: str, count: int) -> str:
             f" transitions: {{{transitions}}}}}"
         )
     return "\n".join([*lines, ""])
+
+
+def limited_script(machines: int, states: int) -> str:
+    """Machines one after the other, of states with time limits and tries."""
+    fields = (
+        "",
+        "timeout: 5 min, ",
+        "retry: {on: [bad], max: 3, delay: 1s}, ",
+        "timeout: 1 min, retry: {on: [bad], max: 3}, ",
+    )
+    lines = ["name: big", "template: Base", "outcomes: [done, failed, preempted]", "states:"]
+    for number in range(machines):
+        after = f"M{number + 1}" if number + 1 < machines else "done"
+        lines += [
+            f"  - M{number}:",
+            "      template: StateMachine",
+            "      outcomes: [done, failed, preempted]",
+            f"      transitions: {{done: {after}, failed: failed, preempted: preempted}}",
+            "      states:",
+        ]
+        for place in range(states):
+            own = fields[place % len(fields)]
+            ends = {"ok": f"S{place + 1}" if place + 1 < states else "done"}
+            ends["exhausted" if "retry" in own else "bad"] = "failed"
+            ends |= {"timeout": "failed"} if "timeout" in own else {}
+            ends |= {"preempted": "preempted"} if own else {}
+            led = ", ".join(f"{outcome}: {target}" for outcome, target in ends.items())
+            lines.append(
+                f"        - S{place}: {{template: ScriptedState, outcomes: [ok, bad], {own}"
+                f"transitions: {{{led}}}}}"
+            )
+    return "\n".join([*lines, ""])

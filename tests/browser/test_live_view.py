@@ -244,7 +244,15 @@ def test_the_picture_changes_with_the_script(
     script.write_text(LINE.replace("ok: done, bad: failed}", "ok: nowhere, bad: failed}"))
     page.wait_for_selector("text=SM101")
     assert page.locator('[data-path="sm/C"]').count() == 1
+    notice = page.locator(".notice").first
+    assert not notice.locator(".help").first.is_visible()
+    notice.locator("summary").click()
+    assert "help: " in notice.locator(".help").first.inner_text()
     shoot(page, "live_broken")
+    below, picture = notice.bounding_box(), page.locator("svg.picture").bounding_box()
+    assert below is not None
+    assert picture is not None
+    assert below["y"] >= picture["y"] + picture["height"] - 1
     script.write_text(LINE.replace("- C:", "- LAST:").replace("done: C,", "done: LAST,"))
     page.wait_for_selector('[data-path="sm/LAST"]')
     page.wait_for_selector("text=SM101", state="detached")

@@ -34,13 +34,13 @@ def differences(names: Iterable[str], compiler: Compiler, folder: Path, *flags: 
     """The machines that do not do what the interpreter does, branch by branch."""
     parts = {name: found for name in names if isinstance(found := made(name), Part)}
     runs = replay([*parts.values()], compiler, folder, *BARE, *flags, stepped=True)
-    found = set()
+    different: set[str] = set()
     for name, own in parts.items():
         case = recorded.CASES[name]
         ours = [without_shared(run, own) for run in recorded.replay(case)]
         if [told(case, ran) for ran in runs[name]] != ours:
-            found.add(name)
-    return found
+            different.add(name)
+    return different
 
 
 def test_machines_do_what_smach_did(tmp_path: Path) -> None:

@@ -171,14 +171,13 @@ def test_state_types_are_looked_up_in_few_places() -> None:
     ]
     assert users == [
         "smachac/commands/new.py",
-        "smachac/commands/states.py",
         "smachac/frontend/script/kept.py",
         "smachac/frontend/script/resolve.py",
         "smachac/lsp/complete_templates.py",
         "smachac/lsp/facts.py",
         "smachac/lsp/session.py",
         "smachac/refactor/change_states.py",
-        "smachac/view/edits.py",
+        "smachac/report/state_types.py",
     ]
 
 

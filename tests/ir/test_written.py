@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from smachac.diagnostics.source import Source
 from smachac.driver import analyse_script
 from smachac.ir import nodes
 from smachac.ir.nodes import Leaf, Machine
@@ -126,3 +127,31 @@ def test_the_generated_view_has_every_node() -> None:
 )  # fmt: skip
 def test_a_time_limit_is_in_the_units_of_a_script(seconds: float, text: str) -> None:
     assert duration(seconds) == text
+
+
+def test_exceptions_in_a_state_with_tries_are_a_badge() -> None:
+    text = """
+name: sm
+template: Base
+outcomes: [done, failed]
+on_error: failed
+states:
+  - A: {template: ScriptedState, outcomes: [ok, bad], retry: {on: [bad], max: 2},
+        transitions: {ok: done, exhausted: failed, preempted: failed}}
+"""
+    found = analyse_script(Source("m.yml", text)).machine
+    assert found is not None
+    state = written(found).states["sm/A"]
+    texts = [badge.text for badge in state.badges]
+    assert texts == ["exception \N{RIGHTWARDS ARROW} error", "2 tries"]
+    assert state.field_of("error") == "catches"
+    (whole, inner) = [each for each in generated(found).states.values() if each.name == "A"]
+    assert (whole.repeated, inner.repeated) == ((), ())
+
+
+def test_the_item_of_a_loop_has_its_name_in_the_script() -> None:
+    path = ROOT / "tests" / "cases" / "sugar" / "main.yml"
+    found = analyse_script(path).machine
+    assert found is not None
+    (badge,) = written(found).states["tour/VISIT"].badges
+    assert badge.text == "for each wp in waypoints"

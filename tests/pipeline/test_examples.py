@@ -29,8 +29,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_there_are_thirteen() -> None:
-    assert len(EXAMPLES) == 13
+def test_there_are_fourteen() -> None:
+    assert len(EXAMPLES) == 14
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -12,7 +12,14 @@ from smachac.version import __version__
 from tests.support.golden import compare_file
 
 FOLDER = Path(__file__).parents[1] / "reports"
-ENDINGS = {"text": "txt", "github": "txt", "json": "json", "sarif": "sarif", "junit": "xml"}
+ENDINGS = {
+    "text": "txt",
+    "concise": "txt",
+    "github": "txt",
+    "json": "json",
+    "sarif": "sarif",
+    "junit": "xml",
+}
 
 
 @pytest.mark.parametrize("form", FORMATS)

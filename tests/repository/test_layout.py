@@ -144,8 +144,8 @@ def test_links_at_the_root_lead_into_the_package(link: str) -> None:
 def test_examples_are_numbered_and_explained() -> None:
     folders = [path for path in sorted((ROOT / "examples").glob("[!._]*")) if path.is_dir()]
     numbered = [folder for folder in folders if (folder / "main.yml").is_file()]
-    for folder in folders:  # those without `main.yml` need ROS 2: make test-ros2 runs them
-        prefix = r"\d\d" if folder in numbered else "ros2"
+    for folder in folders:  # the others: make test-ros2 and tests/cpp/test_step_example.py
+        prefix = r"\d\d" if folder in numbered else "(ros2|cpp)"
         assert re.fullmatch(rf"{prefix}_[a-z0-9_]+", folder.name), folder
         assert (folder / "README.md").read_text("utf-8").strip(), folder
     numbers = [folder.name[:2] for folder in numbered]

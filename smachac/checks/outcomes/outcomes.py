@@ -396,10 +396,8 @@ def _field_that_adds(node: Node, outcome: str) -> str:
     return _field_that_adds(inner, outcome) if outcome in outcome_names(inner) else node.sugar
 
 
-def _unhandled(
-    path: str, container: Linear, child: Node, outcome: Outcome, target: str, again: str
-) -> Finding:
-    """SM104 for an outcome; `again` is the state that may have to run again."""
+def _unhandled(path: str, container: Linear, child: Node, outcome: Outcome, target: str) -> Finding:
+    """SM104 for an outcome without a transition."""
     held = child.variables if isinstance(child, Leaf) else ()
     default = next((each for each in held if each.name == "default_outcome"), None)
     meant = meant_default(child) if isinstance(child, Leaf) else None

@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from smachac.analysis.context import Context
 from smachac.analysis.definite_assignment import DataFlow, UserdataScope
-from smachac.analysis.error_recovery import lacking_inputs, unknown_remaps
+from smachac.analysis.error_recovery import is_around_open, lacking_inputs, unknown_remaps
 from smachac.analysis.type_inference import Types
 from smachac.analysis.unset_reads import Missing, Searches, container_name, provided_keys, reader_at
 from smachac.checks import notation
@@ -183,7 +183,7 @@ def _ignored(node: Node, meant: str | None, outer: str) -> str:
 def _unknown_remaps(path: str, container: Container, definitions: Definitions) -> Iterator[Finding]:
     lacking: set[tuple[Span, tuple[str, ...]]] = set()
     for node in container.children:
-        if not node.remaps:
+        if not node.remaps or is_around_open(node):
             continue
         found = list(_unknown_remaps_of(f"{path}/{node.name}", node))
         leaf = node if found and isinstance(node, nodes.Leaf) else None

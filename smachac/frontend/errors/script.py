@@ -7,11 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from difflib import SequenceMatcher
 from typing import NamedTuple
 
 from smachac.diagnostics.diagnostic import (
-    LONGEST_WORD,
     Diagnostic,
     Finding,
     Problem,
@@ -285,27 +283,12 @@ def _variable_help(word: str, sure: str | None, names: list[str], own: list[str]
     others among `names`."""
     if sure is not None:
         return f"did you mean `{sure}`?"
-    if not own:
-        meant = by_words(word, names)
-        return did_you_mean(word, names) or (f"did you mean `{meant}`?" if meant else None)
-    others = [name for name in names if name not in own]
-    near = SequenceMatcher(a=word)
-    for name in others:
-        near.set_seq2(name)
-        if len(word) <= LONGEST_WORD and near.quick_ratio() > NEAR and near.ratio() > NEAR:
-            return did_you_mean(word, names)
+    meant = by_words(word, own or names)
+    near = did_you_mean(word, own or names)
+    if near is not None or meant is not None:
+        return near or f"did you mean `{meant}`?"
     is_one = len(own) == 1
-    meant = by_words(word, own)
-    return (
-        did_you_mean(word, own)
-        or (f"did you mean `{meant}`?" if meant is not None else None)
-        or f"its variable{'' if is_one else 's'} {'is' if is_one else 'are'} {listed(own)}"
-    )
-
-
-NEAR = 0.75
-"""How similar a name must be to a variable of the language that is meant, if the state type has
-variables of its own."""
+    return f"its variable{' is' if is_one else 's are'} {listed(own)}" if own else None
 
 
 _LONGEST_NUMBER = 20

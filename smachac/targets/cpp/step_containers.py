@@ -89,7 +89,7 @@ def states_members(plan: StepPlan) -> list[tuple[str, int]]:
     found = [(f"State active_ = {NONE};", 8)]
     if isinstance(node, Iterator):
         found.append(("std::size_t position_ = 0;", 8))
-        stored = _stored_items(plan)
+        stored = _stored_items(plan, node)
         if stored is not None:
             found.append((f"{cpp_type(stored)} items_{{}};", most_bytes(stored)))
     return [*found, (f"[[nodiscard]] bool idle() const {{ return active_ == {NONE}; }}", 0)]
@@ -161,7 +161,8 @@ def requests(plan: StepPlan) -> Lines:
         *indented(inner),
         "}",
         "",
-        "template <class Run> void ask_running_(States &states, Run &run) {",
+        "template <class Run>",
+        "void ask_running_(States &states, Run &run) {",
         *indented(running),
         "}",
     ]
@@ -370,9 +371,9 @@ def _concurrence(plan: StepPlan, node: Concurrence) -> Lines:
 # Iterators
 
 
-def _stored_items(plan: StepPlan) -> Type | None:
+def _stored_items(plan: StepPlan, node: Iterator) -> Type | None:
     """The type of the items that an iterator keeps while it runs; None if they are constants."""
-    node, scope = plan.node, plan.container.scope
+    scope = plan.container.scope
     if node.items_key:
         type_ = scope.key(node.items_key)
         if type_.name not in ("bounded", "array"):
@@ -418,7 +419,7 @@ def _iterator(plan: StepPlan, node: Iterator) -> Lines:
     container, scope = plan.container, plan.container.scope
     done = container.own_outcome(final.get(node.exhausted_outcome, node.exhausted_outcome))
     stopped = _stopped(plan, node)
-    stored = _stored_items(plan)
+    stored = _stored_items(plan, node)
     constants = node.items.data if stored is None and node.items is not None else ()
     if not isinstance(constants, tuple):
         raise UnportableError("the items of the iterator are not a list")

@@ -65,7 +65,8 @@ def machine_class(
     return [
         "/// The machine: its states, its userdata, and the states that run. Its size is at most",
         f"/// {most} bytes{of_user}.",
-        "template <class Observer = smachac::step::NoObserver> class Machine {",
+        "template <class Observer = smachac::step::NoObserver>",
+        "class Machine {",
         "public:",
         f"  {alone} : Machine({nobody}) {{}}",
         f"  {head} : run_(observer){states} {{}}",

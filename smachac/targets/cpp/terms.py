@@ -177,8 +177,8 @@ def cpp(type_: Type) -> str:
 
 def spelt(type_: Type) -> str:
     """The C++ type of a type of the script, with a mark if its values need the heap."""
-    mark = UNBOUNDED if any(has(type_, name) for name in ("str", "list", "dict")) else ""
-    return mark + cpp_type(type_)
+    mark = UNBOUNDED if has(type_, "list") or has(type_, "dict") else ""
+    return mark + cpp_type(type_).replace(STRING, TEXT)
 
 
 def shown(type_: Type) -> str:

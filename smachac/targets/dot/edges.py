@@ -92,8 +92,11 @@ def _bar(id: str, colour: str, tooltip: str, length: str, *, sideways: bool) -> 
     return f'"{id}"{attributes(look | {"fillcolor": colour, "color": colour} | size)}'
 
 
-def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn) -> Iterator[Edge]:
-    """The edges of a container: from its start, between its children and to its outcomes."""
+def edges(
+    container: Container, start: str, exits: dict[str, str], drawn: Drawn, caught: str
+) -> Iterator[Edge]:
+    """The edges of a container: from its start, between its children and to its outcomes. `caught`
+    is the outcome that exceptions in it become."""
     match container:
         case Concurrence():
             found = list(_rules(container, start, exits, drawn))
@@ -102,9 +105,9 @@ def edges(container: Container, start: str, exits: dict[str, str], drawn: Drawn)
         case _:
             found = list(_transitions(container, start, exits, drawn))
     yield from found
-    if container.catches in exits:
-        shade = tone(container.catches, container)
-        yield Edge(start, Spot(exits[container.catches]), container.catches, shade, dashed=True)
+    if caught in exits:
+        shade = tone(caught, container)
+        yield Edge(start, Spot(exits[caught]), caught, shade, dashed=True)
     exit = next(iter(exits.values()), None)
     if exit is not None:
         yield from _hidden(found, Spot(exit), drawn)

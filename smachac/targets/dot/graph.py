@@ -260,7 +260,7 @@ def _arrows(place: Position, depth: int | None) -> Iterator[str]:
     if isinstance(container, Concurrence) and drawn:
         level = "; ".join(f'"{piece.entry.id}"' for piece in drawn.values())
         yield f"{{ rank=same; {level} }}"
-    yield from merged(edges(container, place.start, place.exits, drawn))
+    yield from merged(edges(container, place.start, place.exits, drawn, place.state.catches))
 
 
 def _piece(place: Position, depth: int | None) -> Piece:

@@ -215,7 +215,7 @@ def edges_of(state: WrittenState, states: Mapping[str, WrittenState]) -> Iterato
     """The edges inside one of `states`. `source` is null for the edge from its start, `target` is a
     state, or an outcome of the container."""
     found = list(state.edges())
-    if not isinstance(state.node, Leaf) and (caught := state.node.catches):
+    if not isinstance(state.node, Leaf) and (caught := state.catches):
         found.append(WrittenEdge(state.path, None, "", caught, True, "caught"))
     for edge in found:
         source = states.get(edge.source) if edge.source is not None else None

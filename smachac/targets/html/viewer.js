@@ -681,7 +681,7 @@ ${target2}`;
       { class: "legend" },
       row("line", "outcome"),
       differences ? null : row("line failure", "outcome of failure"),
-      row("line implicit", "implied, not written"),
+      row("line implicit", "implied, not written in the script"),
       nodes.some((node) => node.unknown) ? html("li", {}, box(), html("span", {}, "not known exactly")) : null
     );
   }

@@ -517,3 +517,12 @@ def test_a_state_that_a_comment_describes_is_known(tmp_path: Path) -> None:
     coverage = PythonProject(Disk()).read(path).coverage
     assert coverage is not None
     assert (coverage.states, coverage.exact) == (1, 1)
+
+
+def test_a_comment_about_a_finding_that_only_all_rules_report_is_used(tmp_path: Path) -> None:
+    code = 'sm = smach.StateMachine(outcomes=["ok"])\nwith sm:\n'
+    code += '    sm.add("A", Do("ok", "no"), {"no": "A"})  # smachac: allow SM105 it is meant\n'
+    assert found(code, tmp_path) == []
+    path = tmp_path / "machine.py"
+    report = PythonProject(Disk()).read(path, everything=True).report
+    assert "SM105" not in {item.code for item in report}

@@ -203,6 +203,8 @@ struct Event {
   const char *key = nullptr;     ///< of write
   const char *value = nullptr;   ///< of write: JSON
   const char *message = nullptr; ///< of error
+  const char *with =
+      nullptr; ///< of transition, for a class with `on`: the outcome of the container
 };
 
 /// Observer of a machine: receives its events. Calls come from the thread of the machine, from the
@@ -601,6 +603,9 @@ inline void sleep(double seconds) { Stop().wait(seconds); }
 struct Run {
   Stop &stop;
 
+  /// The context of a branch of a concurrence.
+  Run branch(Stop &own) const { return Run{own}; }
+
   template <class State> void enter(const Place *, State) {}
   template <class State> void go(const Place *, State &state, const char *, State next) {
     state = next;
@@ -660,6 +665,83 @@ private:
     stop.keep(place.full());
     detail::throw_on(place, detail::message_of_current());
   }
+};
+
+/// A type, for arguments of a class only: a pointer to an Observer takes the other `run`.
+template <class Watch, class Result>
+using IfClass = std::enable_if_t<std::is_class_v<Watch>, Result>;
+
+/// The context of a run with an observer of any class with `on(const Event &)`. It receives the
+/// events start, enter, exit, transition, error and finish, without a virtual call, a lock or a
+/// text that is made for it: a transition that ends a container has the outcome `with`, and no
+/// `to`. The branches of a concurrence call it at the same time. Writes and requests need an
+/// Observer.
+template <class Watch> class DirectRun : public Run {
+public:
+  DirectRun(Watch &watch, Stop &own) : Run{own}, watch_(watch) {}
+
+  DirectRun branch(Stop &own) const { return DirectRun(watch_, own); }
+
+  void start(const Place &machine) { watch_.on(Event{"start", machine}); }
+  template <class Outcome> Outcome finish(const Place &machine, Outcome outcome) {
+    watch_.on(Event{"finish", machine, name(outcome)});
+    return outcome;
+  }
+  template <class State> void enter(const Place *places, State state) {
+    watch_.on(Event{"enter", at(places, state)});
+  }
+  template <class State>
+  void go(const Place *places, State &state, const char *outcome, State next) {
+    exit(places, state, outcome);
+    watch_.on(Event{"transition", at(places, state), outcome, at(places, next).path});
+    state = next;
+  }
+  template <class State> void again(const Place *places, State state, const char *outcome) {
+    go(places, state, outcome, state);
+  }
+  template <class State, class Outcome>
+  Outcome end(const Place *places, State state, const char *outcome, Outcome with) {
+    exit(places, state, outcome);
+    Event event{"transition", at(places, state), outcome};
+    event.with = name(with);
+    watch_.on(event);
+    return with;
+  }
+  template <class State, class Outcome>
+  Outcome end_asked(const Place *places, State state, const char *outcome, Outcome with) {
+    return Run::end_asked(places, state, outcome, end(places, state, outcome, with));
+  }
+  template <class State> void exit(const Place *places, State state, const char *outcome) {
+    watch_.on(Event{"exit", at(places, state), outcome});
+  }
+  template <class State> void caught(const Place *places, State state) {
+    Run::caught(places, state);
+    error(at(places, state));
+  }
+  template <class State>
+  [[noreturn]] void undeclared(const Place *places, State state, const char *outcome) {
+    exit(places, state, outcome);
+    detail::undeclared(outcome);
+  }
+  template <class State> [[noreturn]] void failed(const Place *places, State state) {
+    error(at(places, state));
+    Run::failed(places, state);
+  }
+
+private:
+  template <class State> static const Place &at(const Place *places, State state) {
+    return places[static_cast<std::size_t>(state)];
+  }
+  void error(const Place &place) {
+    const std::string message = detail::message_of_current();
+    if (!message.empty()) {
+      Event event{"error", place};
+      event.message = message.c_str();
+      watch_.on(event);
+    }
+  }
+
+  Watch &watch_;
 };
 
 /// The context of a run with an observer: sends all events of the run to it. The destructor returns
@@ -932,7 +1014,7 @@ private:
         WatchedRun own(around_.observer(), stops_[i]);
         branch(i, own);
       } else {
-        Run own{stops_[i]};
+        Run own = around_.branch(stops_[i]);
         branch(i, own);
       }
     }

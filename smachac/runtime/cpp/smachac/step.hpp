@@ -171,7 +171,7 @@ struct wants_writes<Observer, std::void_t<decltype(Observer::writes)>>
     : std::bool_constant<Observer::writes> {};
 
 /// The observer of a run; without one, nothing.
-template <class Observer> struct Observed { Observer &observer; };
+template <class Observer> struct Observed { Observer &observer_; };
 template <> struct Observed<NoObserver> {
   constexpr explicit Observed(NoObserver &) {}
 };
@@ -419,7 +419,7 @@ public:
                          write_json(sink,
                                     *static_cast<const typename Key<T>::value_type *>(object));
                        }};
-        this->observer.on(event);
+        this->observer_.on(event);
       }
     }
   }
@@ -438,7 +438,7 @@ public:
       event.result = result;
       event.to = to;
       event.with = with;
-      this->observer.on(event);
+      this->observer_.on(event);
     }
   }
 
@@ -481,7 +481,7 @@ private:
       Event event{Event::Kind::error, table, node, context.now};
       event.message = message;
       event.key = context.key();
-      this->observer.on(event);
+      this->observer_.on(event);
     }
     context.clear();
   }

@@ -298,9 +298,9 @@ template <class To, class From> bool put(Fault &fault, To &to, const From &from)
       fault.fail("a list beyond its bound");
       return false;
     }
-    // The items of a list that extends itself stay where they are.
+    // From the last item to the first, because a list can be extended at its beginning by itself.
     const std::size_t size = from.size();
-    for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t i = size; i-- > 0;) {
       typename To::value_type found{};
       put(fault, found, from[i]);
       to.replace(i, found);
@@ -587,19 +587,37 @@ decltype(auto) min_of(Fault &fault, const T &items, F key = {}) {
   return viewed(items[checked::extreme(fault, items, key, true)]);
 }
 
-/// The concatenation of two lists: it lives as long as the expression, and `put` stores it.
-template <class A, class B> struct Concatenation {
+/// The concatenation of two lists with items of the type `T`: it lives as long as the expression,
+/// and `put` stores it.
+template <class T, class A, class B> struct Concatenation {
+  using value_type = T;
+
   const A &a;
   const B &b;
 
   [[nodiscard]] std::size_t size() const { return a.size() + b.size(); }
-  decltype(auto) operator[](std::size_t i) const { return i < a.size() ? a[i] : b[i - a.size()]; }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  T operator[](std::size_t i) const {
+    return i < a.size() ? T(viewed(a[i])) : T(viewed(b[i - a.size()]));
+  }
 };
-template <class T, class A, class B> Concatenation<A, B> concat(Fault &, const A &a, const B &b) {
+template <class T, class A, class B>
+Concatenation<T, A, B> concat(Fault &, const A &a, const B &b) {
   return {a, b};
 }
 
 } // namespace py
+
+} // namespace step
+
+namespace detail {
+
+template <class T, class A, class B>
+struct is_list<step::py::Concatenation<T, A, B>> : std::true_type {};
+
+} // namespace detail
+
+namespace step {
 
 // JSON
 

@@ -164,4 +164,15 @@ inline Outcome run(States &states, Userdata &ud, smachac::Observer *observer,
   return watched.finish(execute(states, ud, watched));
 }
 
+/// As above, for an observer of any class with `on(const smachac::Event &)`. It receives
+/// all events but those of writes and requests to stop, at less cost.
+template <class Watch>
+smachac::IfClass<Watch, Outcome> run(States &states, Userdata &ud, Watch &watch,
+                                     smachac::Stop &stop) {
+  constexpr smachac::Place machine{"sm", "main.yml:2"};
+  smachac::DirectRun<Watch> watched(watch, stop);
+  watched.start(machine);
+  return watched.finish(machine, execute(states, ud, watched));
+}
+
 } // namespace sm

@@ -1,9 +1,9 @@
-// Made by smachac 0.1.0 from main.yml (sha256 9f64a446864cea9d).
+// Made by smachac 0.1.0 from main.yml (sha256 205e7c6b3d0fea7c).
 #pragma once
 
 #include "smachac/smachac.hpp"
 
-namespace delivery_round::CHARGE { // main.yml:75
+namespace delivery_round::CHARGE { // main.yml:76
 
 enum class Outcome : std::uint8_t {
   full,
@@ -21,7 +21,7 @@ struct Userdata {};
 
 namespace types {
 
-/// main.yml:75
+/// main.yml:76
 struct CHARGE {
   enum class Outcome : std::uint8_t {
     full,
@@ -33,7 +33,7 @@ struct CHARGE {
   }
 };
 
-/// main.yml:75
+/// main.yml:76
 struct TIMER {
   enum class Outcome : std::uint8_t {
     succeeded,
@@ -62,8 +62,8 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"delivery_round/CHARGE", "main.yml:75", "delivery_round/CHARGE/CHARGE", "delivery_round/CHARGE (timeout)"},
-    {"delivery_round/CHARGE (timeout)/TIMER", "main.yml:75", "delivery_round/CHARGE/TIMER", "delivery_round/CHARGE (timeout)"},
+    {"delivery_round/CHARGE", "main.yml:76", "delivery_round/CHARGE/CHARGE", "delivery_round/CHARGE (timeout)"},
+    {"delivery_round/CHARGE (timeout)/TIMER", "main.yml:76", "delivery_round/CHARGE/TIMER", "delivery_round/CHARGE (timeout)"},
 };
 
 template <class Run>
@@ -77,7 +77,7 @@ inline Outcome execute(States &states, Userdata &, Run &around) {
     const auto state = static_cast<State>(branch);
     SMACHAC_TRY {
       switch (state) {
-      case State::CHARGE: // main.yml:75
+      case State::CHARGE: // main.yml:76
         run.enter(places, state);
         ended.CHARGE = states.CHARGE.execute();
         switch (ended.CHARGE) {
@@ -89,7 +89,7 @@ inline Outcome execute(States &states, Userdata &, Run &around) {
           return;
         }
         break;
-      case State::TIMER: // main.yml:75
+      case State::TIMER: // main.yml:76
         run.enter(places, state);
         ended.TIMER = states.TIMER.execute(run.stop_for(places, state));
         switch (ended.TIMER) {
@@ -124,7 +124,7 @@ inline Outcome execute(States &states, Userdata &, Run &around) {
 
 } // namespace delivery_round::CHARGE
 
-namespace delivery_round::DOCK::TRY { // main.yml:70
+namespace delivery_round::DOCK::TRY { // main.yml:71
 
 enum class Outcome : std::uint8_t {
   docked,
@@ -145,7 +145,7 @@ struct UserdataView {
 
 namespace types {
 
-/// main.yml:70
+/// main.yml:71
 struct PAUSE {
   enum class Outcome : std::uint8_t {
     succeeded,
@@ -161,7 +161,7 @@ struct PAUSE {
   }
 };
 
-/// main.yml:70
+/// main.yml:71
 struct DOCK {
   enum class Outcome : std::uint8_t {
     docked,
@@ -186,8 +186,8 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"delivery_round/DOCK (try)/PAUSE", "main.yml:70", "delivery_round/DOCK/TRY/PAUSE", "delivery_round/DOCK (try)"},
-    {"delivery_round/DOCK", "main.yml:70", "delivery_round/DOCK/TRY/DOCK", "delivery_round/DOCK (try)"},
+    {"delivery_round/DOCK (try)/PAUSE", "main.yml:71", "delivery_round/DOCK/TRY/PAUSE", "delivery_round/DOCK (try)"},
+    {"delivery_round/DOCK", "main.yml:71", "delivery_round/DOCK/TRY/DOCK", "delivery_round/DOCK (try)"},
 };
 
 template <class Run>
@@ -195,7 +195,7 @@ template <class Run>
   State state = State::PAUSE;
   SMACHAC_TRY {
     switch (state) {
-    case State::PAUSE: // main.yml:70
+    case State::PAUSE: // main.yml:71
       run.enter(places, state);
       switch (states.PAUSE.execute(ud, run.stop_for(places, state))) {
       case types::PAUSE::Outcome::succeeded:
@@ -205,7 +205,7 @@ template <class Run>
         return run.end_asked(places, state, "preempted", Outcome::missed);
       }
       break;
-    case State::DOCK: // main.yml:70
+    case State::DOCK: // main.yml:71
     DOCK:
       run.enter(places, state);
       switch (states.DOCK.execute()) {
@@ -225,7 +225,7 @@ template <class Run>
 
 } // namespace delivery_round::DOCK::TRY
 
-namespace delivery_round::DOCK { // main.yml:70
+namespace delivery_round::DOCK { // main.yml:71
 
 enum class Outcome : std::uint8_t {
   docked,
@@ -252,7 +252,7 @@ enum class State : std::size_t {
 };
 
 inline constexpr smachac::Place places[] = {
-    {"delivery_round/DOCK (try)", "main.yml:70", "delivery_round/DOCK/TRY", "delivery_round/DOCK (retry)"},
+    {"delivery_round/DOCK (try)", "main.yml:71", "delivery_round/DOCK/TRY", "delivery_round/DOCK (retry)"},
 };
 
 template <class Run>
@@ -265,7 +265,7 @@ inline Outcome execute(States &states, Userdata &ud, Run &run) {
   const auto state = State::TRY;
   for (const auto &item : items) {
     ud.pause.hold(item);
-    // main.yml:70
+    // main.yml:71
     SMACHAC_TRY {
       run.enter(places, state);
       const auto outcome = TRY::execute(states.TRY_, {ud.TRY_, ud.pause}, run);
@@ -1841,13 +1841,13 @@ inline Outcome execute(States &states, Userdata &, Run &around) {
 namespace delivery_round { // main.yml:2
 
 enum class Outcome : std::uint8_t {
-  delivered,
+  done,
   aborted,
   preempted,
 };
 
 constexpr const char *name(Outcome outcome) {
-  constexpr const char *names[] = {"delivered", "aborted", "preempted"};
+  constexpr const char *names[] = {"done", "aborted", "preempted"};
   return names[static_cast<std::size_t>(outcome)];
 }
 
@@ -1864,7 +1864,7 @@ struct Userdata {
 
 namespace types {
 
-/// main.yml:80
+/// main.yml:82
 struct DOCK_AGAIN {
   enum class Outcome : std::uint8_t {
     docked,
@@ -1876,7 +1876,7 @@ struct DOCK_AGAIN {
   }
 };
 
-/// main.yml:84
+/// main.yml:86
 struct CALL_OPERATOR {
   enum class Outcome : std::uint8_t {
     succeeded,
@@ -1917,10 +1917,10 @@ inline constexpr smachac::Place places[] = {
     {"delivery_round/FETCH", "main.yml:22"},
     {"delivery_round/VISIT_ROOMS (for_each)", "main.yml:27", "delivery_round/VISIT_ROOMS", "delivery_round"},
     {"delivery_round/GO_HOME (retry)", "main.yml:64", "delivery_round/GO_HOME", "delivery_round"},
-    {"delivery_round/DOCK (retry)", "main.yml:70", "delivery_round/DOCK", "delivery_round"},
-    {"delivery_round/CHARGE (timeout)", "main.yml:75", "delivery_round/CHARGE", "delivery_round"},
-    {"delivery_round/DOCK_AGAIN", "main.yml:80"},
-    {"delivery_round/CALL_OPERATOR", "main.yml:84"},
+    {"delivery_round/DOCK (retry)", "main.yml:71", "delivery_round/DOCK", "delivery_round"},
+    {"delivery_round/CHARGE (timeout)", "main.yml:76", "delivery_round/CHARGE", "delivery_round"},
+    {"delivery_round/DOCK_AGAIN", "main.yml:82"},
+    {"delivery_round/CALL_OPERATOR", "main.yml:86"},
 };
 
 template <class Run>
@@ -1984,7 +1984,7 @@ inline Outcome execute(States &states, Userdata &ud, Run &run) {
         goto CALL_OPERATOR;
       }
       break;
-    case State::DOCK: // main.yml:70
+    case State::DOCK: // main.yml:71
     DOCK:
       run.enter(places, state);
       switch (DOCK::execute(states.DOCK_, ud.DOCK_, run)) {
@@ -1998,12 +1998,12 @@ inline Outcome execute(States &states, Userdata &ud, Run &run) {
         return run.end_asked(places, state, "preempted", Outcome::preempted);
       }
       break;
-    case State::CHARGE: // main.yml:75
+    case State::CHARGE: // main.yml:76
     CHARGE:
       run.enter(places, state);
       switch (CHARGE::execute(states.CHARGE_, ud.CHARGE_, run)) {
       case CHARGE::Outcome::full:
-        return run.end_asked(places, state, "full", Outcome::delivered);
+        return run.end_asked(places, state, "full", Outcome::done);
       case CHARGE::Outcome::no_current:
         run.go(places, state, "no_current", State::DOCK_AGAIN);
         goto DOCK_AGAIN;
@@ -2014,18 +2014,18 @@ inline Outcome execute(States &states, Userdata &ud, Run &run) {
         return run.end_asked(places, state, "preempted", Outcome::preempted);
       }
       break;
-    case State::DOCK_AGAIN: // main.yml:80
+    case State::DOCK_AGAIN: // main.yml:82
     DOCK_AGAIN:
       run.enter(places, state);
       switch (states.DOCK_AGAIN.execute()) {
       case types::DOCK_AGAIN::Outcome::docked:
-        return run.end(places, state, "docked", Outcome::delivered);
+        return run.end(places, state, "docked", Outcome::done);
       case types::DOCK_AGAIN::Outcome::missed:
         run.go(places, state, "missed", State::CALL_OPERATOR);
         goto CALL_OPERATOR;
       }
       break;
-    case State::CALL_OPERATOR: // main.yml:84
+    case State::CALL_OPERATOR: // main.yml:86
     CALL_OPERATOR:
       run.enter(places, state);
       switch (states.CALL_OPERATOR.execute(ud)) {

@@ -1,4 +1,4 @@
-# Made by smachac 0.1.0 from main.yml (sha256 9f64a446864cea9d).
+# Made by smachac 0.1.0 from main.yml (sha256 205e7c6b3d0fea7c).
 """The state machine `delivery_round`."""
 
 import os
@@ -211,7 +211,7 @@ def build():
     """Build the state machine `delivery_round`."""
     # main.yml:2
     delivery_round = stoppable_again(
-        smach.StateMachine(outcomes=["delivered", "aborted", "preempted"]),
+        smach.StateMachine(outcomes=["done", "aborted", "preempted"]),
     )
     delivery_round.userdata.rooms = [12, 14, 17]
     delivery_round.userdata.failed_rooms = 0
@@ -408,7 +408,7 @@ def build():
             },
         )
 
-        # main.yml:70
+        # main.yml:71
         sm_dock = stoppable(
             smach.Iterator(
                 outcomes=["docked", "exhausted", "preempted"],
@@ -420,20 +420,20 @@ def build():
             ),
         )
         with sm_dock:
-            # main.yml:70
+            # main.yml:71
             sm_dock_try = smach.StateMachine(
                 outcomes=["docked", "missed"],
                 input_keys=["pause"],
             )
             with sm_dock_try:
-                # main.yml:70
+                # main.yml:71
                 smach.StateMachine.add(
                     "PAUSE",
                     SleepState(time=lambda ud: ud.pause, input_keys=["pause"]),
                     transitions={"succeeded": "DOCK", "preempted": "missed"},
                 )
 
-                # main.yml:70
+                # main.yml:71
                 smach.StateMachine.add(
                     "DOCK",
                     ScriptedState(outcomes=["docked", "missed"]),
@@ -457,7 +457,7 @@ def build():
             },
         )
 
-        # main.yml:75
+        # main.yml:76
         sm_charge = stoppable(
             smach.Concurrence(
                 outcomes=["full", "no_current", "timeout", "preempted"],
@@ -470,34 +470,34 @@ def build():
             ),
         )
         with sm_charge:
-            # main.yml:75
+            # main.yml:76
             smach.Concurrence.add(
                 "CHARGE",
                 ScriptedState(outcomes=["full", "no_current"]),
             )
 
-            # main.yml:75
+            # main.yml:76
             smach.Concurrence.add("TIMER", SleepState(time=7200.0))
 
         smach.StateMachine.add(
             "CHARGE",
             ends_preempted(sm_charge),
             transitions={
-                "full": "delivered",
+                "full": "done",
                 "no_current": "DOCK_AGAIN",
                 "timeout": "CALL_OPERATOR",
                 "preempted": "preempted",
             },
         )
 
-        # main.yml:80
+        # main.yml:82
         smach.StateMachine.add(
             "DOCK_AGAIN",
             ScriptedState(outcomes=["docked", "missed"]),
-            transitions={"docked": "delivered", "missed": "CALL_OPERATOR"},
+            transitions={"docked": "done", "missed": "CALL_OPERATOR"},
         )
 
-        # main.yml:84
+        # main.yml:86
         smach.StateMachine.add(
             "CALL_OPERATOR",
             PrintUserdataState(input_keys=["failed_rooms"]),
