@@ -112,7 +112,8 @@ class _Node:
         """Note the outcome of this visit. YASMIN raises an error for one that is not declared."""
         self.last = outcome
         self.tell("exit", outcome=outcome)
-        if isinstance(self.parent, Machine) and outcome not in self.get_outcomes():
+        declared = {*self.get_outcomes(), self.catches}
+        if isinstance(self.parent, Machine) and outcome not in declared:
             self.tell("error", message=f"{outcome!r} is not one of its outcomes")
         return outcome
 
