@@ -210,3 +210,34 @@ def test_verify_names_what_is_missing(
 def test_the_option_is_checked() -> None:
     with pytest.raises(ValueError, match="`trace` must be true or false"):
         smachac.compile(ROOT / "examples/06_callbacks/main.yml", "scxml", options={"trace": "yes"})
+
+
+BORDERS = """\
+name: sm
+outcomes: [done]
+userdata: {x: 1, y: 2}
+states:
+  - INNER:
+      template: StateMachine
+      outcomes: [done]
+      input_keys: [a, b]
+      output_keys: [c, a, b]
+      remapping: {a: x, b: x, c: y}
+      userdata: {c: 3}
+      states:
+        - GO:
+            template: CallbacksState
+            input_keys: [a, b, c]
+            output_keys: [a, b, c]
+            callbacks: {a: 'lambda ud: ud.b + 1', b: 'lambda ud: ud.a', c: 'lambda ud: ud.c'}
+            transitions: {succeeded: done}
+"""
+
+
+def test_keys_are_copied_in_the_order_of_the_script() -> None:
+    """Of two outputs that are copied to one key, the last one counts."""
+    text, report = built(BORDERS)
+    assert report == []
+    assert "copy(sm, INNER, {x: 'a'});" in text
+    assert "copy(sm, INNER, {x: 'b'});" in text
+    assert "copy(INNER, sm, {c: 'y', a: 'x', b: 'x'});" in text

@@ -109,9 +109,12 @@ class _Node:
             self.observer({"event": event, "path": self.path, **fields})
 
     def ended(self, outcome):
-        """Note the outcome of this visit."""
+        """Note the outcome of this visit. YASMIN raises an error for one that is not declared."""
         self.last = outcome
         self.tell("exit", outcome=outcome)
+        declared = {*self.get_outcomes(), self.catches}
+        if isinstance(self.parent, Machine) and outcome not in declared:
+            self.tell("error", message=f"{outcome!r} is not one of its outcomes")
         return outcome
 
 

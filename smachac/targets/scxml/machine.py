@@ -83,11 +83,14 @@ def copied_out(plan: Plan, path: str, node: Container) -> Content:
 
 
 def _copies(source: str, target: str, pairs: Sequence[tuple[str, str]]) -> Content:
-    """Copies of keys; a key that is copied to several needs a call for each."""
+    """Copies of keys in their order: of two that are copied to one, the last one counts. A key that
+    is copied to several needs a call for each."""
     found: Content = []
     left = list(pairs)
     while left:
-        taken = dict(reversed(left))
+        taken: dict[str, str] = {}
+        for key, to in left:
+            taken.setdefault(key, to)
         found.append(script(f"copy({source}, {target}, {names_object(taken)});"))
         left = [pair for pair in left if taken[pair[0]] != pair[1]]
     return found
