@@ -103,7 +103,7 @@ def _is_deeper(tree: ast.AST, deepest: int) -> bool:
                 part = getattr(node, name, None)
                 if isinstance(part, list):
                     inside += [item for item in part if isinstance(item, ast.AST)]
-                elif isinstance(part, ast.AST) and part._fields:
+                elif isinstance(part, ast.AST):
                     inside.append(part)
         if not inside:
             return False

@@ -93,7 +93,8 @@ def program(headers: Sequence[Part]) -> str:
         name = machine.root.name
         calls.append(
             f"  traced<{name}::States, {name}::Userdata>"
-            f"({json.dumps(asked[0])}, {asked[1]}, {name}::run);"
+            f"({json.dumps(asked[0])}, {asked[1]}, [](auto &&...given) {{"
+            f" return {name}::run(std::forward<decltype(given)>(given)...); }});"
         )
     texts = [text.replace("#pragma once\n", "") for _, text, _ in headers]
     return "\n".join([*texts, MAIN, "int main() {", *calls, "}", ""])

@@ -50,6 +50,7 @@ ELSEWHERE = {
     "checks": "tests/docs/test_checks.py",
     "ci": "tests/repository/test_ci_files.py",
     "cpp": "tests/cpp/test_headers.py",
+    "cpp_step": "tests/cpp/test_step_example.py",
     "editors": "settings of editors",
     "existing": "tests/docs/test_existing.py",
     "frameworks": "tests/scxml/test_host.py, tests/yasmin/test_programs.py",

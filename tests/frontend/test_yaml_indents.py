@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -125,7 +126,7 @@ def test_the_places_after_a_moved_line_are_those_of_the_text(by: int) -> None:
 def test_examples_have_the_form_of_scripts() -> None:
     for path in sorted(EXAMPLES.rglob("*.yml")):
         text = path.read_text("utf-8")
-        if "states:" in text or "template:" in text:
+        if re.search(r"^states:\n +- |template:", text, re.MULTILINE):
             assert form_of(outline(rows_of(text))) == 0.0, path
             assert strays_of(outline(rows_of(text))) == 0, path
 
