@@ -61,8 +61,9 @@ VISITS = 20
 
 def random_path(machine: Machine, seed: int) -> Path | None:
     """A path on which leaves end with random outcomes and write random values, by the first letter
-    of the names of keys; None if it has too many visits. Without concurrences it also has errors
-    and requests to stop: with them the order of branches would matter."""
+    of the names of keys; None if it has too many visits, or ends with an outcome that leads
+    nowhere: a stepped machine reports the error without the exit before it. Without concurrences it
+    also has errors and requests to stop: with them the order of branches would matter."""
     drawn = random.Random(seed)
     apart = not any(isinstance(node, Concurrence) for _, node in walk(machine.root))
     steps = {
@@ -79,7 +80,8 @@ def random_path(machine: Machine, seed: int) -> Path | None:
     scripted = scenario_behaviour(Scenario(steps=steps), machine, builtin_behaviour())
     result = run(machine, behave, schedule=(), max_steps=4 * VISITS)
     visits = visited.total()
-    if visits > VISITS or (result.error is not None and result.error.kind == "no-end"):
+    left_out = ("no-end", "no-transition")
+    if visits > VISITS or (result.error is not None and result.error.kind in left_out):
         return None
     scenario = Scenario(steps={path: steps[path][: visited[path]] for path in visited})
     return Path(kind="random", scenario=scenario, live=False, ends=True, visits=visits)
